@@ -1,5 +1,6 @@
 //! The method `auto` over random plans against the truth of a finer mesh at finite strain, as the table of docs/estimates.md:
-//! `cargo bench --bench auto [-- SCENE … --plans N --from N]`.
+//! `cargo bench --bench auto [-- SCENE … --plans N --from N --head FILE]`; FILE is a mesh that `facies mesh` made of a CT whose
+//! plan cuts `maxilla` and `mandible`, with tissue joined to the teeth.
 //!
 //! Plans are numbered from 0, and a plan of a number is the same each time: 1 to 25 mm in any direction, 0 to 20 degrees about
 //! any axis, accepted errors from .03 to 1 mm. Each is a line: what `auto` took, what it was off by in truth, and which model
@@ -12,6 +13,7 @@ use std::sync::Arc;
 
 use measure::{face, process};
 use mechanics::boundary::NodeSelection;
+use mechanics::format::{Mesh, ReadLimits, read};
 use mechanics::material::LinearElastic;
 use mechanics::mesh::refinement::refine;
 use mechanics::mesh::{Vector, sample};
@@ -72,7 +74,9 @@ fn main() {
         at.and_then(|at| arguments.get(at + 1)?.parse().ok()).unwrap_or(usual)
     };
     let (plans, from) = (number("--plans", 75), number("--from", 0));
-    let entries = entries();
+    let mut entries = entries();
+    let head = arguments.iter().position(|argument| argument == "--head");
+    entries.extend(head.and_then(|at| arguments.get(at + 1)).map(|file| head_of(file)));
     println!(
         "| scene | plan | mm, degrees | accepted mm | taken | met | told mm | true mm | cheapest | time over it |"
     );
@@ -94,7 +98,7 @@ fn main() {
 }
 
 fn is_asked(name: &str, arguments: &[String]) -> bool {
-    let scenes = ["block", "half_head", "subject", "template"];
+    let scenes = ["block", "half_head", "subject", "template", "head"];
     let any = arguments.iter().any(|argument| scenes.contains(&argument.as_str()));
     !any || arguments.iter().any(|argument| argument == name)
 }
@@ -262,6 +266,27 @@ fn hard_block() -> Case {
         volume: Arc::new(mesh),
         ..Case::default()
     }
+}
+
+/// The head in a file: its lower jaw moves.
+fn head_of(file: &str) -> Entry {
+    let bytes = std::fs::read(file).expect("a file that can be read");
+    let Mesh::Volume(mesh) = read(&bytes, &ReadLimits::default()).expect("a valid file").mesh
+    else {
+        panic!("a head is a volume mesh");
+    };
+    let set = |name: &str| NodeSelection::NodeSet(name.to_owned());
+    let material = LinearElastic::new(15.0, 0.46, 1.0).expect("within the ranges");
+    let case = Case {
+        volume: Arc::new(mesh),
+        skin: Some(set("skin")),
+        segments: vec![CaseSegment { name: "mandible".to_owned(), nodes: set("mandible") }],
+        fixed: vec![set("maxilla"), set("fixed")],
+        materials: [("*".to_owned(), material)].into(),
+        ..Case::default()
+    };
+    let pivot = middle(&case, "mandible");
+    Entry { name: "head", case, segment: "mandible", pivot }
 }
 
 fn middle(case: &Case, set: &str) -> Vector {

@@ -87,6 +87,7 @@ impl Accepted {
             engine,
             tags: self.tags,
             mesh_ids: self.mesh_ids,
+            learns_from: None,
             traceparent: None,
             waits_for: None,
         })

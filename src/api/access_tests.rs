@@ -42,6 +42,10 @@ const SERVICE: &str = "
     PUT     /v1/cases/{id}/plans/{plan}         write  noted
     GET     /v1/cases/{id}/response             read   -
     POST    /v1/cases/{id}/response/apply       run    -
+    GET     /v1/cohorts                         read   -
+    POST    /v1/cohorts                         write  noted
+    DELETE  /v1/cohorts/{id}                    write  noted
+    GET     /v1/cohorts/{id}                    read   -
     GET     /v1/jobs                            read   -
     POST    /v1/jobs                            run    noted
     DELETE  /v1/jobs/{id}                       run    noted

@@ -5,7 +5,9 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::Service;
 use super::accepted::{Accepted, fault, in_spec, successful_job};
 use super::error::{ApiError, ApiResult};
+use super::stored_cohort::Members;
 use crate::jobs::{CohortInput, JobInput};
+use crate::schema::cohort::stored::{CohortUse, CohortVersionDocument};
 use crate::schema::predict::result::ResultDocument;
 use crate::schema::{CohortDocument, ErrorCode, Faults};
 use crate::store::NewJob;
@@ -14,18 +16,38 @@ use crate::store::NewJob;
 const RESULT: &str = "result.json";
 
 /// A cohort of comparisons that have ended. It belongs to their cases, and goes with each.
-pub async fn of_cohort(service: &Service, spec: CohortDocument) -> ApiResult<NewJob> {
+pub async fn of_cohort(service: &Service, mut spec: CohortDocument) -> ApiResult<NewJob> {
+    check(service, &spec)?;
+    let Some(cohort) = spec.cohort.take() else { return of_groups(service, spec, None).await };
+    let stored = Members::of(service, &cohort, CohortUse::Compare).await?;
+    stored.compare(&mut spec);
+    if spec.groups.is_empty() {
+        let detail = "no member of the cohort has `comparisons`";
+        return Err(fault("/cohort", ErrorCode::NoSuchOutput, detail));
+    }
+    of_groups(service, spec, Some(stored.version)).await
+}
+
+fn check(service: &Service, spec: &CohortDocument) -> ApiResult<()> {
     let mut faults = Faults::default();
     spec.check(&service.limits, &mut faults);
     faults.into_result().map_err(in_spec)?;
+    Ok(())
+}
+
+/// A cohort by its groups, whose subjects may be the members of a stored one.
+async fn of_groups(
+    service: &Service,
+    spec: CohortDocument,
+    cohort: Option<CohortVersionDocument>,
+) -> ApiResult<NewJob> {
+    check(service, &spec)?;
     let (comparisons, actuals) = (BTreeMap::new(), BTreeMap::new());
-    let mut input = CohortInput { job: None, queue_s: None, spec, comparisons, actuals };
+    let mut input = CohortInput { job: None, queue_s: None, spec, cohort, comparisons, actuals };
     let mut owners = BTreeSet::new();
     let spec = input.spec.clone();
     for (at, job) in spec.jobs() {
-        if !input.take(job, result_of(service, at.as_str(), job).await?) {
-            return Err(compared_nothing(at.as_str()));
-        }
+        input.take(job, compared(service, at.as_str(), job).await?);
         owners.extend(service.store.cases_of_job(job).await?);
     }
     let tags = spec.tags;
@@ -44,6 +66,15 @@ fn compared_nothing(at: &str) -> ApiError {
     let detail =
         "the job compared nothing: name jobs of kind `compare`, or predictions with `compare_to`";
     fault(at, ErrorCode::NoSuchOutput, detail)
+}
+
+/// What a job that compared found.
+pub(super) async fn compared(service: &Service, at: &str, job: &str) -> ApiResult<ResultDocument> {
+    let found = result_of(service, at, job).await?;
+    if found.comparison.is_none() {
+        return Err(compared_nothing(at));
+    }
+    Ok(found)
 }
 
 /// What a job found.

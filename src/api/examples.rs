@@ -33,6 +33,7 @@ fn of(operation: &str) -> Vec<(&'static str, Value)> {
         "create_case" => vec![("case", case()), ("scan to be meshed", scanned())],
         "check_case" => vec![("nothing moves", json!({})), ("plan", json!({ "plan": plan() }))],
         "create_plan" | "replace_plan" => vec![("movements", plan()), ("loads", loads())],
+        "create_cohort" => vec![("cohort", cohort())],
         "apply_response" => vec![("plan", json!({ "plan": plan() }))],
         "create_job" => jobs(),
         "change_job" => {
@@ -81,6 +82,7 @@ fn scanned() -> Value {
 
 fn plan() -> Value {
     json!({
+        "name": "jaw to the left",
         "frame": "LPS",
         "segments": [{
             "name": "mandible", "translation_mm": [4, 0, 1], "rotation_deg": [0, 5, 0], "pivot_mm": [40, 30, 0],
@@ -95,6 +97,27 @@ fn loads() -> Value {
             {"gravity_m_per_s2": [0, 0, -9.81]},
             {"pressure_kpa": 0.1, "faces": {"node_set": "skin"}},
         ],
+    })
+}
+
+/// Three operated blocks, of the last of which only errors may be told.
+fn cohort() -> Value {
+    let id = |group: u32, number: u32| format!("0199d3a0-0000-7000-8000-0000000000{group}{number}");
+    let member = |number: u32| {
+        json!({
+            "prediction": id(1, number), "actual": id(2, number), "name": format!("P{number}"),
+            "comparisons": {"linear": id(3, number)},
+        })
+    };
+    let mut members = [1, 2, 3].map(member);
+    members[0]["class"] = "one_jaw".into();
+    members[1]["matrix4x4"] = json!([1, 0, 0, 0.4, 0, 1, 0, -0.2, 0, 0, 1, 0, 0, 0, 0, 1]);
+    members[2]["consent"] =
+        json!({"statement": "consent form 4, errors only", "uses": ["compare"]});
+    json!({
+        "name": "one jaw, 2026",
+        "consent": {"statement": "consent form 4, signed by each", "uses": ["learn", "compare"]},
+        "members": members,
     })
 }
 

@@ -15,6 +15,7 @@ use super::resources::Resources;
 use super::{Service, body, conditional, json, time, with_header};
 use crate::schema::PlanDocument;
 use crate::schema::key::Scope;
+use crate::schema::wire::fault::{Faults, Pointer};
 use crate::schema::wire::strict;
 use crate::store::{Change, PlanRow};
 
@@ -69,10 +70,13 @@ async fn row_of(service: &Service, case: &str, id: &str) -> ApiResult<PlanRow> {
     row.ok_or_else(|| ApiError::not_found("plan of this case"))
 }
 
-/// The plan of a body; its form is checked here, what it means with the case when it is carried out.
+/// The plan of a body; its form and name are checked here, what it means with the case when it is carried out.
 async fn read(service: &Service, request: Request) -> ApiResult<String> {
     let bytes = body::json(service, request).await?;
     let plan: PlanDocument = strict::parse(&bytes, &service.limits)?;
+    let mut faults = Faults::default();
+    plan.check_name(&Pointer::root(), &service.limits, &mut faults);
+    faults.into_result()?;
     serde_json::to_string(&plan).map_err(ApiError::internal)
 }
 

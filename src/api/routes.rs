@@ -16,6 +16,7 @@ pub(super) fn resources() -> Resources {
         .merge(super::meshes::router())
         .merge(super::cases::router())
         .merge(super::plans::router())
+        .merge(super::cohorts::router())
         .merge(super::jobs::router())
         .merge(super::events::router())
         .merge(super::results::router())

@@ -37,7 +37,7 @@ impl Waiting<'_> {
         let mut named: Vec<String> =
             plan.surface_references_mut().into_iter().map(|(_, id)| id.clone()).collect();
         named.extend(require_compared(service, &spec).await?);
-        let asked = json!({ "plan": to_value(&plan), "spec": spec.content() });
+        let asked = json!({ "plan": to_value(&plan.unnamed()), "spec": spec.content() });
         let (case, tags) = (to_come(), spec.tags.clone());
         let input = PredictInput { job: None, queue_s: None, case, plan, spec };
         self.accept(service, &JobInput::Predict(input), Asked { asked, tags, named }).await

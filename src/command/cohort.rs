@@ -58,8 +58,13 @@ pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
         Some(path) => (read(path)?, path.parent().unwrap_or(Path::new(""))),
         None => (of_twins(arguments), Path::new("")),
     };
+    if spec.cohort.is_some() {
+        let detail = "a stored cohort is a service's: state `groups` in its place";
+        return Err(CommandError::Usage(detail.to_owned()));
+    }
     let (comparisons, actuals) = (BTreeMap::new(), BTreeMap::new());
-    let mut input = CohortInput { job: None, queue_s: None, spec, comparisons, actuals };
+    let (job, queue_s, cohort) = (None, None, None);
+    let mut input = CohortInput { job, queue_s, spec, cohort, comparisons, actuals };
     let spec = input.spec.clone();
     for (_, job) in spec.jobs() {
         let path = folder.join(job).join("result.json");

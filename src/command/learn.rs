@@ -65,6 +65,10 @@ pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
             (LearnDocument { made: Some(made), ..LearnDocument::default() }, PathBuf::new())
         }
     };
+    if spec.cohort.is_some() {
+        let detail = "a stored cohort is a service's: state `cases` in its place";
+        return Err(CommandError::Usage(detail.to_owned()));
+    }
     let mut cases = Vec::new();
     for case in &spec.cases {
         let Predicted { case, plan, spec } = read(&folder.join(&case.prediction))?;
@@ -73,7 +77,8 @@ pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
     }
     let limits = Limits::default();
     let sources = FileSource::new(&folder, LengthUnit::Mm, ScaleArguments::default());
-    let input = JobInput::Learn(LearnInput { job: None, queue_s: None, spec, cases });
+    let (job, queue_s, cohort) = (None, None, None);
+    let input = JobInput::Learn(LearnInput { job, queue_s, spec, cohort, cases });
     let place = Workplace { sources: &sources, limits: &limits, out: &arguments.out };
     let done = work_in_sight(&input, &place)?;
     if let Some(found) = &done.result.learning {

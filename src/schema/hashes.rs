@@ -6,6 +6,7 @@ use serde_json::{Value, json};
 
 use super::case::document::CaseDocument;
 use super::cohort::document::CohortDocument;
+use super::cohort::stored::CohortVersionDocument;
 use super::compare::document::CompareDocument;
 use super::compare::result::ComparisonDocument;
 use super::conform::document::ConformDocument;
@@ -30,7 +31,7 @@ pub fn predict_hash(
     let mut case = case.clone();
     case.name = None;
     case.tags.clear();
-    let mut plan = plan.clone();
+    let mut plan = plan.unnamed();
     let mut spec = spec.clone();
     let case_meshes = case.mesh_references_mut().into_iter();
     let plan_meshes = plan.surface_references_mut().into_iter();
@@ -72,7 +73,7 @@ pub fn optimise_hash(
 }
 
 /// The hash of a study: its cases with contents of meshes in place of their ids, in the order of its scenes, and the
-/// report that it is held against; names of cases stay, since rows carry them.
+/// report that it is held against; names of cases stay, since rows carry them, and those of plans do not.
 pub fn study_hash(
     cases: &[&CaseDocument],
     spec: &StudyDocument,
@@ -88,6 +89,7 @@ pub fn study_hash(
     }
     let mut spec = spec.clone();
     for plan in spec.plan_documents_mut() {
+        plan.name = None;
         for (_, id) in plan.surface_references_mut() {
             replace(id, content_of);
         }
@@ -153,9 +155,10 @@ pub fn conform_hash(spec: &ConformDocument, content_of: &dyn Fn(&str) -> Option<
     hash(json!({ "spec": to_value(&spec) }))
 }
 
-/// The hash of a cohort: what the comparisons found in place of their ids, tags left out.
+/// The hash of a cohort: what the comparisons found in place of their ids, tags left out, and the stored cohort that they are of.
 pub fn cohort_hash(
     spec: &CohortDocument,
+    stored: Option<&CohortVersionDocument>,
     comparisons: &BTreeMap<String, ComparisonDocument>,
 ) -> String {
     let mut spec = spec.clone();
@@ -163,7 +166,10 @@ pub fn cohort_hash(
     for job in spec.groups.values_mut().flatten() {
         *job = hash(json!({ "comparison": comparisons.get(job).map(to_value) }));
     }
-    hash(json!({ "spec": to_value(&spec) }))
+    match stored {
+        None => hash(json!({ "spec": to_value(&spec) })),
+        Some(stored) => hash(json!({ "spec": to_value(&spec), "cohort": to_value(stored) })),
+    }
 }
 
 /// The hash of a meshing: the contents of the scan or the surfaces in place of their ids, tags left out. One that a case waits
@@ -226,6 +232,6 @@ mod tests {
     fn every_hash_of_a_job_and_the_key_of_a_response_are_made_in_one_place() {
         let code = include_str!("hashes.rs").split("#[cfg(test)]").next().unwrap_or_default();
         let made = code.matches("hash(json!(").count();
-        assert_eq!((made, code.matches("sha256_hex(").count()), (12, 0));
+        assert_eq!((made, code.matches("sha256_hex(").count()), (13, 0));
     }
 }

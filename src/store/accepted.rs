@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 use super::database::{Transaction, is_reference, query};
 use super::events::record;
 use super::job_tags::put_on;
+use super::membership::learn;
 use super::{Store, StoreError};
 use crate::schema::engine::EngineDocument;
 use crate::schema::job::JobStatus;
@@ -30,6 +31,8 @@ pub struct NewJob {
     pub tags: Vec<String>,
     /// The meshes that have to stay while the job is there.
     pub mesh_ids: Vec<String>,
+    /// The stored cohort that it learns from, and which version of it.
+    pub learns_from: Option<(String, i64)>,
     /// Where in a trace it is accepted, where there is one.
     pub traceparent: Option<String>,
     /// The meshing of its case, which has no mesh yet. The document lacks the case, which the claim puts in.
@@ -188,6 +191,9 @@ impl Store {
                 .bind(case)
                 .execute(&mut *transaction)
                 .await?;
+        }
+        if let Some((cohort, version)) = &job.learns_from {
+            learn(transaction, &job.id, (cohort, *version)).await?;
         }
         for mesh in &job.mesh_ids {
             query(

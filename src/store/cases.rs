@@ -4,6 +4,7 @@ use super::accepted::NewJob;
 use super::database::{Row, Transaction, is_duplicate, is_reference, query};
 use super::events::record;
 use super::made::column;
+use super::membership::{Leaving, leave};
 use super::references::{Content, hashes};
 use super::{NewMesh, Store, StoreError};
 use crate::schema::job::JobStatus;
@@ -92,7 +93,8 @@ const MESHES_OF_CASE: &str = "WITH gone AS (SELECT id FROM jobs WHERE case_id = 
        UNION SELECT job_id FROM job_cases WHERE case_id = $1) \
      SELECT id FROM meshes WHERE id IN (SELECT mesh_id FROM case_meshes WHERE case_id = $1 \
        UNION SELECT mesh_id FROM made_meshes WHERE job_id IN (SELECT id FROM gone) \
-       UNION SELECT mesh_id FROM job_meshes WHERE job_id IN (SELECT id FROM gone)) \
+       UNION SELECT mesh_id FROM job_meshes WHERE job_id IN (SELECT id FROM gone) \
+       UNION SELECT mesh_id FROM cohort_members WHERE case_id = $1 OR job_id IN (SELECT id FROM gone)) \
      ORDER BY id FOR UPDATE";
 
 /// Sorts after every id.
@@ -189,7 +191,7 @@ impl Store {
     }
 
     /// Erases a case: its plans, its jobs with their results, and the meshes that came with it or that its jobs made or
-    /// read and that nothing else refers to. A job of it that is running finds itself gone and stops.
+    /// read and that nothing else refers to; it leaves every cohort. A job of it that is running finds itself gone and stops.
     pub async fn delete_case(&self, id: &str, version: Option<i64>) -> Result<Change, StoreError> {
         let mut transaction = self.database.begin().await?;
         let found = query("SELECT version FROM cases WHERE id = $1 AND tenant = $2 FOR UPDATE")
@@ -208,6 +210,7 @@ impl Store {
         let mut blobs = column(&mut transaction, FILES_OF_CASE, id).await?;
         let meshes = column(&mut transaction, MESHES_OF_CASE, id).await?;
         self.bury_case(&mut transaction, id).await?;
+        leave(&mut transaction, Leaving::Case(id)).await?;
         query(DELETE_SHARED_JOBS).bind(id).execute(&mut transaction).await?;
         query("DELETE FROM cases WHERE id = $1").bind(id).execute(&mut transaction).await?;
         blobs.extend(self.remove_unused(&mut transaction, meshes).await?);

@@ -21,6 +21,7 @@ const REFERENCES: &str = "SELECT blob, 'mesh' AS kind, id FROM meshes \
 const UNREACHED: &str = "SELECT id, tenant FROM meshes WHERE standalone = 0 \
      AND NOT EXISTS (SELECT 1 FROM case_meshes WHERE mesh_id = meshes.id) \
      AND NOT EXISTS (SELECT 1 FROM job_meshes WHERE mesh_id = meshes.id) \
+     AND NOT EXISTS (SELECT 1 FROM cohort_members WHERE mesh_id = meshes.id) \
      AND NOT EXISTS (SELECT 1 FROM made_meshes WHERE mesh_id = meshes.id) ORDER BY id";
 /// Places that are about to be referred to, or removed.
 const IN_MOTION: &str =

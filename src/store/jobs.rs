@@ -4,6 +4,7 @@ use super::cases::AFTER_ALL;
 use super::database::{Row, query};
 use super::events::record;
 use super::made::meshes_of_job;
+use super::membership::{Leaving, leave, unlearn};
 use super::waiting::fail_waiting;
 use super::{Store, StoreError, tenants};
 use crate::schema::job::JobStatus;
@@ -108,6 +109,9 @@ const DISMISS: &str = "UPDATE jobs SET status = 'dismissed', lease_token = NULL,
      WHERE id = $1 AND tenant = $2 AND status IN ('accepted', 'running')";
 const FILES: &str = "SELECT job_files.blob FROM job_files JOIN jobs ON jobs.id = job_files.job_id \
      WHERE jobs.id = $1 AND jobs.tenant = $2";
+/// Locked before the cohorts that it leaves.
+const ENDED: &str = "SELECT 1 FROM jobs WHERE id = $1 AND tenant = $2 \
+     AND status IN ('successful', 'failed', 'dismissed') FOR UPDATE";
 const REMOVE: &str = "DELETE FROM jobs WHERE id = $1 AND tenant = $2 AND status IN ('successful', 'failed', 'dismissed')";
 
 fn status_of(row: &Row) -> Result<JobStatus, sqlx::Error> {
@@ -203,7 +207,7 @@ impl Store {
     }
 
     /// Ends a job that is accepted or running, removes one that has ended, with the meshes that it made or read and that
-    /// nothing else refers to, unless somebody uploaded them for their own sake.
+    /// nothing else refers to, unless somebody uploaded them for their own sake. A prediction leaves every cohort.
     pub async fn dismiss(&self, id: &str) -> Result<Dismissal, StoreError> {
         let mut transaction = self.database.begin().await?;
         let dismissed =
@@ -220,6 +224,11 @@ impl Store {
         let mut blobs =
             rows.iter().map(|row| row.try_get(0)).collect::<Result<Vec<String>, _>>()?;
         let meshes = meshes_of_job(&mut transaction, id).await?;
+        let ended = query(ENDED).bind(id).bind(self.tenant());
+        if ended.fetch_optional(&mut transaction).await?.is_some() {
+            leave(&mut transaction, Leaving::Prediction(id)).await?;
+            unlearn(&mut transaction, id).await?;
+        }
         let removed = query(REMOVE).bind(id).bind(self.tenant()).execute(&mut transaction).await?;
         if removed == 1 {
             self.bury(&mut transaction, id).await?;

@@ -21,10 +21,12 @@ const REFER: &str =
 /// Locked, so that a request which is about to refer to one of them has either done so or finds it gone.
 const MESHES_OF_JOB: &str = "SELECT id FROM meshes \
      WHERE id IN (SELECT mesh_id FROM made_meshes WHERE job_id = $1 \
-       UNION SELECT mesh_id FROM job_meshes WHERE job_id = $1) ORDER BY id FOR UPDATE";
+       UNION SELECT mesh_id FROM job_meshes WHERE job_id = $1 \
+       UNION SELECT mesh_id FROM cohort_members WHERE job_id = $1) ORDER BY id FOR UPDATE";
 const DELETE_UNUSED: &str = "DELETE FROM meshes WHERE id = $1 AND standalone = 0 \
      AND NOT EXISTS (SELECT 1 FROM case_meshes WHERE mesh_id = $1) \
      AND NOT EXISTS (SELECT 1 FROM job_meshes WHERE mesh_id = $1) \
+     AND NOT EXISTS (SELECT 1 FROM cohort_members WHERE mesh_id = $1) \
      AND NOT EXISTS (SELECT 1 FROM made_meshes WHERE mesh_id = $1) RETURNING blob";
 
 impl MadeMesh {
@@ -94,7 +96,7 @@ fn contended(error: sqlx::Error) -> StoreError {
     if is_duplicate(&error) { StoreError::Contended } else { error.into() }
 }
 
-/// The meshes that a job made, and those that it reads: when it goes, it may be the last that refers to them.
+/// The meshes that a job made, those that it reads, and those that leave a cohort with it: when it goes, it may be the last that refers to them.
 pub(super) async fn meshes_of_job(
     transaction: &mut Transaction,
     job: &str,

@@ -33,6 +33,7 @@ const OLD_MESHES: &str = "SELECT id FROM meshes WHERE tenant = $1 \
      AND created < (SELECT now_ms FROM clock) - $2 \
      AND NOT EXISTS (SELECT 1 FROM case_meshes WHERE mesh_id = meshes.id) \
      AND NOT EXISTS (SELECT 1 FROM job_meshes WHERE mesh_id = meshes.id) \
+     AND NOT EXISTS (SELECT 1 FROM cohort_members WHERE mesh_id = meshes.id) \
      AND NOT EXISTS (SELECT 1 FROM made_meshes WHERE mesh_id = meshes.id)";
 
 /// Who erases what is too old.

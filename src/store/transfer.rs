@@ -17,7 +17,7 @@ use super::references::{Content, hold};
 use super::{Store, StoreError};
 
 /// Every table with rows of a deployment, each behind those that it refers to.
-const TABLES: [&str; 19] = [
+const TABLES: [&str; 23] = [
     "tenants",
     "keys",
     "meshes",
@@ -30,6 +30,10 @@ const TABLES: [&str; 19] = [
     "job_cases",
     "job_meshes",
     "made_meshes",
+    "cohorts",
+    "cohort_members",
+    "cohort_left",
+    "cohort_models",
     "job_files",
     "job_events",
     "idempotency_keys",

@@ -31,6 +31,7 @@ pub fn new_job(document: &str, hash: &str) -> NewJob {
         engine: "test".into(),
         tags: vec!["a".into()],
         mesh_ids: vec![],
+        learns_from: None,
         traceparent: None,
         waits_for: None,
     }

@@ -15,11 +15,11 @@ const LANGUAGE = "facies-language";
 const THEME = "facies-theme";
 
 /** Views that draw in three dimensions come when they are asked for. */
-const later = (name: "casePage" | "planPage" | "resultPage" | "inversePage" | "comparePage"): View => async (app) =>
+const later = (name: "casePage" | "planPage" | "resultPage" | "inversePage" | "comparePage" | "plansPage"): View => async (app) =>
   (await import("./views/three.js"))[name](app);
 const VIEWS: Record<string, View> = {
   cases, jobs, studies,
-  "case": later("casePage"), "case plan": later("planPage"), "case inverse": later("inversePage"),
+  "case": later("casePage"), "case plan": later("planPage"), "case plans": later("plansPage"), "case inverse": later("inversePage"),
   "case compare": later("comparePage"), "job": later("resultPage"),
 };
 

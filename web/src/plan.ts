@@ -52,6 +52,13 @@ export function pivotsOf(stored: Documents["PlanDocument"], frame: FrameName): P
   return Object.fromEntries(parts.map(({ name, pivot_mm }) => [name, inFrame(pivot_mm ?? [0, 0, 0], stated, frame)]));
 }
 
+/** Those of segments that turn alone: of the others nothing is said. */
+export function turningPivots(stored: Documents["PlanDocument"], frame: FrameName): Pivots {
+  const turning = ((stored.segments ?? []) as unknown as { name: string; rotation_deg?: Triple }[])
+    .filter(({ rotation_deg }) => rotation_deg?.some((angle) => angle !== 0) ?? false).map(({ name }) => name);
+  return Object.fromEntries(Object.entries(pivotsOf(stored, frame)).filter(([name]) => turning.includes(name)));
+}
+
 /** The words of a plan of the service; undefined where it says more than six numbers of each segment about its pivot, growth and
  * muscles. */
 export function fromDocument(stored: Documents["PlanDocument"], pivots: Pivots, frame: FrameName): Plan | undefined {

@@ -12,7 +12,7 @@ import { share, type Rgb, type Scheme } from "./colours.js";
 import { coarse } from "./coarse.js";
 import { drawn, type FrameName } from "./frame.js";
 import { geometryOf, seenFrom, VIEWS, type Shape } from "./geometry.js";
-import { Marks, type Mark } from "./marks.js";
+import { Marks, type Mark, type Sheet } from "./marks.js";
 import { normals } from "./normals.js";
 import { BONE, hex, hexOf, MOVING_BONE, OUTLINE, SKIN } from "./palette.js";
 import { contour, isDrawnBySoftware, lights, setBands, veil } from "./shading.js";
@@ -36,7 +36,17 @@ const MOVING = { ratio: 0.5, triangles: 12_000 };
 /** What follows another change within this is a movement, which ends after as long without one; in ms. */
 const SETTLED = 250;
 
+/** A matrix from its rows; none moves nothing. */
+const ofRows = (rows?: number[]): Matrix4 => (rows === undefined ? new Matrix4() : new Matrix4().fromArray(rows).transpose());
+
+/** A camera that was turned by hand: degrees to the patient's left of the front and above it, how near, and the point in the middle of the view
+ * in mm (patient's left, up, front). */
+export type Turned = [about: number, over: number, zoom: number, left: number, up: number, front: number];
+const DEGREE = Math.PI / 180;
+
 export class Scene {
+  /** Called when the camera was turned by hand. */
+  turned: () => void = () => {};
   readonly canvas: HTMLCanvasElement;
   private readonly renderer: WebGLRenderer;
   private readonly graph = new Graph();
@@ -48,6 +58,7 @@ export class Scene {
   private readonly marks = new Marks();
   /** What a warning speaks of, or the pointer is over. */
   private readonly pointed = new Marks();
+  private readonly planes = new Marks();
   private lit: Mesh | undefined;
   private readonly skinMaterial = new MeshLambertMaterial({ color: hexOf(SKIN), side: DoubleSide });
   /** Half of a map's colour is lit and half shines by itself, so that it is read off the legend also where there is shade. */
@@ -62,6 +73,8 @@ export class Scene {
   private veil: Mesh | undefined;
   /** The skin of the left half, where there are two. */
   private twin: Mesh | undefined;
+  /** Where bones are there. */
+  private twinBones: Record<string, number[]> = {};
   private rest: Shape = { points_mm: new Float32Array(), triangles: new Uint32Array() };
   private centre = new Vector3();
   private radius = 100;
@@ -83,10 +96,11 @@ export class Scene {
     host.prepend(this.canvas);
     lights(this.graph, this.camera);
     this.graph.add(this.head, this.camera);
-    this.head.add(this.marks.group, this.pointed.group);
+    this.head.add(this.planes.group, this.marks.group, this.pointed.group);
     this.controls = new OrbitControls(this.camera, this.canvas);
     this.controls.enableDamping = false;
     this.controls.addEventListener("change", () => this.stir());
+    this.controls.addEventListener("end", () => this.turned());
     this.watcher = new ResizeObserver(() => this.resize());
     this.watcher.observe(host);
     // For tests, and for whoever wants the numbers that are drawn.
@@ -101,8 +115,10 @@ export class Scene {
     this.head.updateMatrixWorld(true);
   }
 
-  showSkin(rest: Shape): void {
+  /** A surface in the colour of skin or another. */
+  showSkin(rest: Shape, colour = hexOf(SKIN)): void {
     this.rest = rest;
+    this.skinMaterial.color.setHex(colour);
     this.settle();
     for (const old of [this.skin, this.prepass]) if (old !== undefined) this.drop(old);
     const geometry = geometryOf(rest);
@@ -211,9 +227,11 @@ export class Scene {
     this.head.add(this.ghost);
   }
 
-  /** Another state of the skin in the left half, with bones at rest, seen by the same camera; or the whole view for one. */
-  beside(shape: Shape | undefined): void {
+  /** Another state of the skin in the left half, with bones at rest or where row-major matrices bring them, seen by the same camera; or the
+   * whole view for one. */
+  beside(shape: Shape | undefined, bones: Record<string, number[]> = {}): void {
     if (this.twin !== undefined) this.drop(this.twin);
+    this.twinBones = bones;
     this.twin = shape === undefined ? undefined : new Mesh(geometryOf(shape), this.skinMaterial);
     if (this.twin !== undefined) {
       this.twin.visible = false;
@@ -236,7 +254,7 @@ export class Scene {
   moveBone(name: string, matrix: number[]): void {
     const bone = this.bones.get(name);
     if (bone === undefined) return;
-    bone.matrix.copy(new Matrix4().fromArray(matrix).transpose());
+    bone.matrix.copy(ofRows(matrix));
     bone.matrixWorldNeedsUpdate = true;
     this.draw();
   }
@@ -249,6 +267,12 @@ export class Scene {
   /** Points in the frame of the case; lines lead to where they are to be. */
   mark(points: Mark[]): void {
     this.marks.place(points);
+    this.draw();
+  }
+
+  /** Planes that are sawn. */
+  saw(sheets: Sheet[]): void {
+    this.planes.sheets(sheets);
     this.draw();
   }
 
@@ -313,6 +337,25 @@ export class Scene {
     this.camera.updateProjectionMatrix();
     this.controls.update();
     this.stir();
+    this.turned();
+  }
+
+  /** The camera beside the last standard view, of which it keeps how much is seen. */
+  get turnedTo(): Turned {
+    const { x, y, z } = this.camera.position.clone().sub(this.controls.target).normalize();
+    const round = (value: number) => Number(value.toFixed(2));
+    return [round(Math.atan2(x, z) / DEGREE), round(Math.asin(Math.min(Math.max(y, -1), 1)) / DEGREE), Number(this.camera.zoom.toFixed(4)), ...this.controls.target.toArray().map(round) as Triple];
+  }
+
+  /** As `turnedTo` told it, after `view`. */
+  turnTo([about, over, zoom, ...target]: Turned): void {
+    const from = new Vector3(Math.sin(about * DEGREE) * Math.cos(over * DEGREE), Math.sin(over * DEGREE), Math.cos(about * DEGREE) * Math.cos(over * DEGREE));
+    this.controls.target.set(...target);
+    this.camera.position.copy(this.controls.target).addScaledVector(from, 4 * this.radius);
+    this.camera.zoom = zoom;
+    this.camera.updateProjectionMatrix();
+    this.controls.update();
+    this.draw();
   }
 
   /** The node of the skin under the pointer. */
@@ -343,6 +386,13 @@ export class Scene {
     const point = this.head.localToWorld(new Vector3(...through_mm));
     const along = point.sub(ray.origin).dot(ray.direction);
     return this.head.worldToLocal(ray.origin.clone().addScaledVector(ray.direction, along)).toArray();
+  }
+
+  /** Where a point is seen, in pixels of the window. */
+  seenAt(point_mm: Triple): [number, number] {
+    const { left, top, width, height } = this.canvas.getBoundingClientRect();
+    const { x, y } = this.head.localToWorld(new Vector3(...point_mm)).project(this.camera);
+    return [left + ((x + 1) / 2) * width, top + ((1 - y) / 2) * height];
   }
 
   turnable(on: boolean): void {
@@ -411,13 +461,13 @@ export class Scene {
   /** The left half: the other skin, and bones where they were. */
   private renderTwin(twin: Mesh): void {
     const hidden = [this.skin, this.prepass, this.ghost, this.veil, this.marks.group, this.pointed.group].filter((one) => one?.visible);
-    const moved = [...this.bones.values()].map((bone) => [bone, bone.matrix.clone()] as const);
+    const moved = [...this.bones].map(([name, bone]) => [name, bone, bone.matrix.clone()] as const);
     const place = (bone: Mesh, matrix: Matrix4) => { bone.matrix.copy(matrix); bone.matrixWorldNeedsUpdate = true; };
     twin.visible = this.skin?.visible ?? true;
     for (const one of hidden) one!.visible = false;
-    for (const [bone] of moved) place(bone, new Matrix4());
+    for (const [name, bone] of moved) place(bone, ofRows(this.twinBones[name]));
     this.renderer.render(this.graph, this.camera);
-    for (const [bone, matrix] of moved) place(bone, matrix);
+    for (const [, bone, matrix] of moved) place(bone, matrix);
     for (const one of hidden) one!.visible = true;
     twin.visible = false;
   }

@@ -5,8 +5,8 @@ import { button, choice, make, save, select } from "./dom.js";
 import { figure } from "./figures.js";
 import { VIEWS } from "./geometry.js";
 import { INK, PAPER } from "./palette.js";
-import { note } from "./route.js";
-import { Scene, type SkinLook } from "./scene.js";
+import { note, read } from "./route.js";
+import { Scene, type SkinLook, type Turned } from "./scene.js";
 
 /** A map that may colour the skin. */
 export interface SkinMap {
@@ -25,6 +25,10 @@ export interface SkinMap {
 
 const RANGES = [0.5, 1, 2, 5, 10, 20];
 const SHOWN = "map";
+/** A camera that was turned by hand, in the address beside the standard view that it was turned from. */
+const CAMERA = "camera";
+/** It is written once it has stood for so long, in ms: browsers count how often an address changes. */
+const STOOD = 200;
 
 export class Workbench {
   readonly scene: Scene;
@@ -43,11 +47,16 @@ export class Workbench {
   private maps: SkinMap[] = [];
   private map: SkinMap | undefined;
   private range_mm = 10;
+  private turning: ReturnType<typeof setTimeout> | undefined;
   private readonly keys = (event: KeyboardEvent) => this.pressed(event);
 
   constructor(private readonly app: App, crumbs: HTMLElement) {
     const { words } = app;
     this.scene = new Scene(this.screen, words.headLabel);
+    this.scene.turned = () => {
+      clearTimeout(this.turning);
+      this.turning = setTimeout(() => note({ [CAMERA]: this.scene.turnedTo.join(",") }), STOOD);
+    };
     this.screen.append(this.sides, this.legend, this.caption);
     this.viewport.append(this.tools(), this.screen);
     app.stage.replaceChildren(make("div", { className: "bench" }, crumbs, this.strip, this.viewport, this.panel));
@@ -73,10 +82,12 @@ export class Workbench {
     this.sides.replaceChildren(...(names ?? []).map((name) => make("span", {}, name)));
   }
 
-  /** Turns to the view of the address. */
+  /** Turns to the view of the address as it is now. */
   start(): void {
-    const { state } = this.app.route;
+    const { state } = read(location.hash);
     this.scene.view(state.get("view") ?? "4");
+    const turned = (state.get(CAMERA) ?? "").split(",").map(Number);
+    if (turned.length === 6 && turned.every(Number.isFinite) && turned[2]! > 0) this.scene.turnTo(turned as Turned);
     this.setLook((state.get("look") ?? "solid") as SkinLook);
   }
 
@@ -105,6 +116,7 @@ export class Workbench {
   }
 
   leave(): void {
+    clearTimeout(this.turning);
     removeEventListener("keydown", this.keys);
     this.app.stage.classList.remove("wide");
     this.scene.leave();
@@ -159,8 +171,9 @@ export class Workbench {
   }
 
   private setView(key: string): void {
+    clearTimeout(this.turning);
     this.scene.view(key);
-    note({ view: key });
+    note({ view: key, [CAMERA]: undefined });
   }
 
   private setLook(look: SkinLook): void {

@@ -103,6 +103,43 @@ export async function kinds(page) {
     assert.match(await (await fetch(address + await link.getAttribute("href"))).text(), /<html/);
   });
 
+  await check("marks of a study's chart are pressed by pointer and by keys, and show the rows behind them", async () => {
+    const { id } = await ended({ kind: "study", scenes: ["slab"], plans: ["patch 4 mm"], methods: ["fem_linear", "mtm_ti"], levels: [0, 1], sweep: { "*": { young_modulus_kpa: [10, 20] } } });
+    const report = await json(`/v1/jobs/${id}/report`);
+    const pairs = new Set(report.rows.filter(({ status }) => status === "solved").map(({ label, level }) => `${label}, level ${level}`));
+    await go(page, `#/studies?study=${id}`);
+    const marks = page.locator(".chart .mark");
+    await marks.first().waitFor();
+    assert.equal(await marks.count(), pairs.size);
+    const shown = () => page.locator("table", { has: page.locator("caption", { hasText: "Rows" }) }).locator("tbody tr").evaluateAll((all) => all.map((row) => [row.children[0].textContent, Number(row.children[4].textContent)]));
+    assert.equal((await shown()).length, report.rows.length);
+    const { label: called } = report.rows.find(({ level }) => level === 1);
+    const first = page.locator(`.chart .mark[aria-label^=${JSON.stringify(`${called}, level 1: `)}]`);
+    // Marks may lie over each other: this one is pressed itself.
+    await first.dispatchEvent("click");
+    const behind = report.rows.filter(({ label, level }) => label === called && level === 1);
+    assert(behind.length > 0 && behind.length < report.rows.length);
+    assert.deepEqual(await shown(), behind.map(({ label, level }) => [label, level]));
+    await page.getByRole("status").getByText(`${called}, Mesh level 1: ${behind.length} of ${report.rows.length} rows`).waitFor();
+    assert.equal(await first.getAttribute("aria-pressed"), "true");
+    assert.deepEqual(await serious(page), []);
+    await fits(page);
+    await pictured(page, "study-mark");
+    // By keys alone; the address keeps it.
+    await first.focus();
+    await page.keyboard.press("Tab");
+    const name = await page.evaluate(() => document.activeElement.getAttribute("aria-label"));
+    await page.keyboard.press("Enter");
+    const [, label, level] = /^(.+), level (\d+): /.exec(name);
+    assert.notDeepEqual([label, level], [called, "1"]);
+    assert((await shown()).every(([one, other]) => one === label && other === Number(level)));
+    await page.reload();
+    await page.locator(".chart [aria-pressed=true]").waitFor();
+    assert((await shown()).every(([one, other]) => one === label && other === Number(level)));
+    await page.getByRole("button", { name: "All rows" }).click();
+    assert.equal((await shown()).length, report.rows.length);
+  });
+
   await check("a template on a patient is shown with what is left", async () => {
     const { volume, landmarks } = (await json(`/v1/cases/${caseId}`)).case;
     const marks = Object.fromEntries(Object.entries(landmarks).slice(0, 4).map(([name, at]) => [name, { template_mm: at, patient_mm: [at[0], at[1] + 0.2, at[2]] }]));

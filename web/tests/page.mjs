@@ -2,10 +2,12 @@
 import assert from "node:assert/strict";
 import { readFile, writeFile } from "node:fs/promises";
 import { join } from "node:path";
+import { cuts } from "./cuts.mjs";
 import { kinds } from "./kinds.mjs";
 import { dragged, framed } from "./frames.mjs";
 import { mended } from "./mended.mjs";
 import { muscles } from "./muscles.mjs";
+import { plans } from "./plans.mjs";
 import { guarded } from "./service.mjs";
 import {
   ended, fits, BINARY, WIDE, PICTURES, KEY, HEAD, AGREED_MM, check, service, browser, hosts, complaints, opened, excused, addressed, go, painted,
@@ -134,7 +136,7 @@ await check("a slider's frame is short", async () => {
   assert(took.length === 40 && took[took.length >> 2] < 16);
 });
 
-await check("a plan is saved, compared and removed", async () => {
+await check("a plan is saved, laid over the one that is planned on, and removed", async () => {
   await page.getByRole("button", { name: "Save plan" }).click();
   const saved = page.locator(".plans li").first();
   await saved.getByRole("button", { name: "Compare" }).click();
@@ -153,7 +155,7 @@ let job;
 await check("a prediction is run, and shown before and after", async () => {
   await go(page, `${plan}?p=maxilla,4,0,0,0,0,0;mandible,-6,2,0,0,0,0`);
   await planned(page);
-  await page.locator("section", { hasText: "Predict in full" }).locator("select").selectOption("fem_linear");
+  await page.locator("section", { has: page.getByRole("button", { name: "Predict in full" }) }).getByLabel("Model", { exact: false }).first().selectOption("fem_linear");
   await page.getByRole("button", { name: "Predict in full" }).click();
   await page.getByRole("heading", { name: "Before and after" }).waitFor();
   job = await page.evaluate(() => /job\/([0-9a-f-]+)/.exec(location.hash)[1]);
@@ -324,7 +326,9 @@ await check("a predicted skin is compared with a real one", async () => {
   await pictured(page, "comparison");
 });
 
+await plans(page);
 await mended(page, job);
+await cuts(page, job);
 
 await check("files that are no mesh are refused in words", async () => {
   await go(page, `#/cases`);
@@ -496,7 +500,7 @@ await check("a large head turns with fewer pixels and triangles, and stands with
 await check("memory is steady while sliders are dragged", () => dragged(page, DRAGGED_S));
 
 const views = { cases: "#/cases", case: `#/case/${caseId}`, plan: `${plan}?p=mandible,-4,0,0,0,0,0&view=1`, inverse: `#/case/${caseId}/inverse`,
-  compare: `#/case/${caseId}/compare?job=${job}`, result: `#/job/${job}?map=displacement&view=1&show=sides`, jobs: "#/jobs", studies: "#/studies" };
+  compare: `#/case/${caseId}/compare?job=${job}`, plans: `#/case/${caseId}/plans`, result: `#/job/${job}?map=displacement&view=1&show=sides`, jobs: "#/jobs", studies: "#/studies" };
 await check("German and dark, and at 390 pixels nothing is cut off", async () => {
   const small = await opened({ width: 390, height: 844 }, { locale: "de-DE", colorScheme: "dark", reducedMotion: "reduce" });
   for (const [name, path] of Object.entries(views)) {

@@ -50,7 +50,7 @@ fn boxes_joined(fixed: &TriangleSurface, moving: &TriangleSurface) -> RigidTrans
 }
 
 /// The centre of a surface and its principal axes, right-handed, the longest first.
-fn inertia(surface: &TriangleSurface) -> (Vector, Matrix3<f64>) {
+pub(super) fn inertia(surface: &TriangleSurface) -> (Vector, Matrix3<f64>) {
     let samples = area_sampling::equal_areas(surface, POINTS);
     let origin = samples.first().map_or_else(Vector::zeros, |sample| sample.point);
     let offsets: Vec<Vector> = samples.iter().map(|sample| sample.point - origin).collect();
@@ -63,6 +63,12 @@ fn inertia(surface: &TriangleSurface) -> (Vector, Matrix3<f64>) {
     (origin + mean, Matrix3::from_columns(&[first, second, first.cross(&second)]))
 }
 
+/// What leaves every one of three axes where it was or turns it round.
+pub(super) fn half_turns() -> [Matrix3<f64>; 4] {
+    let axes = [Vector::zeros(), Vector::x(), Vector::y(), Vector::z()];
+    axes.map(|axis| Rotation3::new(axis * std::f64::consts::PI).into_inner())
+}
+
 fn axes_joined(
     fixed: &TriangleSurface,
     moving: &TriangleSurface,
@@ -70,10 +76,8 @@ fn axes_joined(
 ) -> RigidTransform {
     let ((to, to_axes), (from, from_axes)) = (inertia(fixed), inertia(moving));
     let points = area_sampling::equal_areas(fixed, POINTS);
-    let flips = [Vector::zeros(), Vector::x(), Vector::y(), Vector::z()];
-    let candidates = flips.map(|axis| {
-        let flip = Rotation3::new(axis * std::f64::consts::PI);
-        let rotation = to_axes * flip.matrix() * from_axes.transpose();
+    let candidates = half_turns().map(|flip| {
+        let rotation = to_axes * flip * from_axes.transpose();
         RigidTransform { rotation, translation: to - rotation * from }
     });
     let left = |transform: &RigidTransform| -> f64 {

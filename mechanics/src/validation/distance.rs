@@ -7,6 +7,8 @@
 //! Source of the pooled measure: Zachow et al. 2006, section 3.2, and Aspert, Santa-Cruz, Ebrahimi, MESH: measuring errors
 //! between surfaces using the Hausdorff distance, IEEE International Conference on Multimedia (2002).
 
+use std::ops::Add as _;
+
 use rayon::prelude::*;
 
 use super::statistics::{Statistics, StatisticsError};
@@ -131,7 +133,7 @@ impl Distances {
         let area: f64 = areas.iter().sum();
         let share_below = |limit: f64| {
             let below = samples().filter(|measured| measured.distance < limit);
-            below.map(|measured| measured.area).sum::<f64>() / area
+            below.map(|measured| measured.area).fold(0.0, f64::add) / area
         };
         Ok(DistanceStatistics {
             unsigned: Statistics::weighted(&unsigned, &areas)?,

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use crate::schema::CohortDocument;
+use crate::schema::cohort::stored::CohortVersionDocument;
 use crate::schema::compare::result::ComparisonDocument;
 use crate::schema::hashes::cohort_hash;
 use crate::schema::predict::result::ResultDocument;
@@ -17,6 +18,9 @@ pub struct CohortInput {
     /// From acceptance to start.
     pub queue_s: Option<f64>,
     pub spec: CohortDocument,
+    /// The stored cohort that the spec has its groups from.
+    #[serde(default)]
+    pub cohort: Option<CohortVersionDocument>,
     /// What each job found, by its id.
     pub comparisons: BTreeMap<String, ComparisonDocument>,
     /// The SHA-256 of the scan that each compared with, by its id: who the patient was.
@@ -38,6 +42,6 @@ impl CohortInput {
 
     /// The hash of everything that decides the numbers.
     pub fn spec_hash(&self) -> String {
-        cohort_hash(&self.spec, &self.comparisons)
+        cohort_hash(&self.spec, self.cohort.as_ref(), &self.comparisons)
     }
 }

@@ -53,7 +53,8 @@ pub fn cohort_job(
     let pairs = pairs(input.spec.statistic, &groups.tested)?;
     groups.tested.extend(groups.beside);
     let (groups, statistic) = (groups.tested, input.spec.statistic);
-    let cohort = CohortResultDocument { distance, statistic, groups, pairs };
+    let cohort = input.cohort.clone();
+    let cohort = CohortResultDocument { cohort, distance, statistic, groups, pairs };
 
     clock.phase(Phase::Write);
     let origin = Origin {

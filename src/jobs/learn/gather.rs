@@ -12,7 +12,7 @@ use crate::jobs::output::Workplace;
 use crate::jobs::predict::Prepared;
 use crate::jobs::source::StoredShape;
 use crate::schema::predict::result::InputDocument;
-use crate::schema::{ErrorCode, Pointer, Problem};
+use crate::schema::{ErrorCode, Matrix4x4, Pointer, Problem};
 use mechanics::learning::classes::{ThetaOfClass, held_out, thetas};
 use mechanics::learning::validation::Column;
 use mechanics::learning::virtual_cohort::virtual_cohort;
@@ -20,6 +20,7 @@ use mechanics::learning::{Cohort, LearningCase, measures};
 use mechanics::mesh::{Frame, TriangleSurface, Vector};
 use mechanics::prediction::{Scene, Skin, equilibrium};
 use mechanics::progress::Progress;
+use mechanics::registration::RigidTransform;
 
 /// What is learned from, and the columns of the table that are not learned.
 pub struct Gathered {
@@ -73,7 +74,8 @@ fn of_cases(input: &LearnInput, place: &Workplace, clock: &Observed) -> Result<G
         let stated = input.spec.cases.get(index).map(|case| case.actual.as_str());
         let actual = fetch(place.sources, stated.unwrap_or_default(), &at.key("actual"))?;
         inputs.push(actual.to_input(&format!("actual {name}")));
-        let after = places(&actual.shape, &prepared.scene, &at.key("actual"))?;
+        let mut after = places(&actual.shape, &prepared.scene, &at.key("actual"))?;
+        register(&mut after, input.spec.cases.get(index).and_then(|case| case.matrix4x4));
         if let Some(frame) = actual.frame.filter(|frame| *frame != prepared.case.frame) {
             let detail = format!(
                 "the mesh is in {frame:?}, and the case in {:?}: distances between them mean nothing",
@@ -170,6 +172,13 @@ fn places(shape: &StoredShape, scene: &Scene, at: &Pointer) -> Result<Vec<Vector
         StoredShape::Volume(_) => nodes.iter().map(|&node| points[node as usize]).collect(),
         StoredShape::Surface(_) | StoredShape::Image(_) => points.to_vec(),
     })
+}
+
+/// Brings points into the frame of the case.
+fn register(points: &mut [Vector], matrix: Option<Matrix4x4>) {
+    let Some(Matrix4x4(matrix)) = matrix else { return };
+    let transform = RigidTransform::from_matrix4(&matrix);
+    points.iter_mut().for_each(|point| *point = transform.apply(point));
 }
 
 fn learned(

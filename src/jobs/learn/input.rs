@@ -3,8 +3,10 @@
 use serde::{Deserialize, Serialize};
 use serde_json::json;
 
+use crate::jobs::failure::JobError;
 use crate::jobs::predict::PredictInput;
 use crate::schema::LearnDocument;
+use crate::schema::cohort::stored::CohortVersionDocument;
 use crate::schema::wire::canonical::{hash, to_value};
 use mechanics::prediction::MethodKind;
 
@@ -16,6 +18,9 @@ pub struct LearnInput {
     /// From acceptance to start.
     pub queue_s: Option<f64>,
     pub spec: LearnDocument,
+    /// The stored cohort that the spec has its cases from.
+    #[serde(default)]
+    pub cohort: Option<CohortVersionDocument>,
     /// One for each case of the spec.
     pub cases: Vec<LearnedCase>,
 }
@@ -41,6 +46,21 @@ impl LearnInput {
         let mut spec = self.spec.clone();
         spec.tags.clear();
         let predictions: Vec<_> = self.cases.iter().map(|case| &case.spec_hash).collect();
-        hash(json!({ "spec": to_value(&spec), "predictions": predictions }))
+        match &self.cohort {
+            None => hash(json!({ "spec": to_value(&spec), "predictions": predictions })),
+            Some(cohort) => hash(
+                json!({ "spec": to_value(&spec), "predictions": predictions, "cohort": to_value(cohort) }),
+            ),
+        }
+    }
+
+    /// What is wrong with a case, at its place in the document that was posted.
+    pub fn at_its_place(&self, error: JobError) -> JobError {
+        match (error, &self.cohort) {
+            (JobError::Refused(problem), Some(_)) => {
+                JobError::Refused(problem.moved("/spec/cases", "/spec/cohort/members"))
+            }
+            (error, _) => error,
+        }
     }
 }

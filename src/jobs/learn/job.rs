@@ -43,7 +43,7 @@ pub fn learn_job(
 
     // 1. What is predicted and what was measured.
     clock.phase(Phase::Solve);
-    let gathered = gather(input, place, &clock)?;
+    let gathered = gather(input, place, &clock).map_err(|error| input.at_its_place(error))?;
     clock.check()?;
 
     // 2. What is learned, without the case that is predicted.
@@ -52,7 +52,8 @@ pub fn learn_job(
     let validated = Method::ALL.map(|method| validate(&gathered.cohort, method, distance));
     clock.check()?;
     let model = LearnedModel::new(&gathered.cohort, method, distance);
-    let found = document(&gathered, &validated, &model, distance)?;
+    let mut found = document(&gathered, &validated, &model, distance)?;
+    found.cohort.clone_from(&input.cohort);
     clock.check()?;
 
     // 3. The model, where it errs, the picture and the manifest.
@@ -110,6 +111,7 @@ fn document(
     let of = |method: Method| validated.iter().find(|own| own.method == method);
     let mean = mechanical.iter().sum::<f64>() / mechanical.len().max(1) as f64;
     Ok(LearningDocument {
+        cohort: None,
         method: model.method.name().to_owned(),
         width: match &model.fitted.rule {
             Rule::Regression(found) => Some(WidthDocument {
@@ -157,6 +159,7 @@ fn kept(input: &LearnInput, gathered: &Gathered, found: &LearningDocument) -> Mo
     ModelDocument {
         engine: EngineDocument::this(),
         spec: input.spec.clone(),
+        cohort: input.cohort.clone(),
         cases: gathered.cohort.cases.iter().enumerate().map(case).collect(),
         regions: gathered.cohort.regions.clone(),
         frame: Some(gathered.frame.into()),

@@ -317,7 +317,7 @@ impl Documents<'_> {
         faults.into_result()?;
         self.stored_truth(&mut scene, &first, found)?;
         let stated = (1..).zip(documents).map(|(number, (_, plan))| {
-            let text = canonical::to_value(plan).to_string();
+            let text = canonical::to_value(&plan.unnamed()).to_string();
             (format!("plan {number}"), canonical::sha256_hex(text.as_bytes()))
         });
         found.plans.insert(scene.name.clone(), stated.collect());

@@ -28,8 +28,8 @@ pub enum CohortKind {
     Cohort,
 }
 
-/// Comparisons with scans, of the same subjects in each group, held against each other in pairs. Exactly one of `groups` and
-/// `virtual`.
+/// Comparisons with scans, of the same subjects in each group, held against each other in pairs. Exactly one of `groups`,
+/// `cohort` and `virtual`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CohortDocument {
@@ -39,6 +39,11 @@ pub struct CohortDocument {
     /// By the name of a method: the id of a job that compared, for each subject in the same order.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub groups: BTreeMap<String, Vec<String>>,
+    /// The id of a stored cohort, as it is at this moment: its members are the subjects, and the methods of their `comparisons` the
+    /// groups.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub cohort: Option<String>,
     /// Twins that the program makes itself, modelled in four ways; the groups are these, and distances are of nodes.
     #[serde(default, rename = "virtual", skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
@@ -136,6 +141,9 @@ impl CohortDocument {
     pub fn check(&self, limits: &Limits, faults: &mut Faults) {
         let at = Pointer::root().key("spec");
         check_tags(&self.tags, &at.key("tags"), limits, faults);
+        if self.cohort.is_some() {
+            return self.check_cohort(&at, faults);
+        }
         if let Some(made) = &self.made {
             return self.check_made(made, &at, limits, faults);
         }
@@ -164,9 +172,19 @@ impl CohortDocument {
         }
     }
 
+    /// What is not in the stored cohort itself.
+    fn check_cohort(&self, at: &Pointer, faults: &mut Faults) {
+        let given = 1 + usize::from(!self.groups.is_empty()) + usize::from(self.made.is_some());
+        faults.check_one_of(at, given, "`groups`, `cohort`, `virtual`");
+        if !self.subjects.is_empty() {
+            let detail = "the subjects of a stored cohort are called as its members are";
+            faults.add(&at.key("subjects"), ErrorCode::UnknownField, detail);
+        }
+    }
+
     fn check_made(&self, made: &TwinsDocument, at: &Pointer, limits: &Limits, faults: &mut Faults) {
         let given = 1 + usize::from(!self.groups.is_empty());
-        faults.check_one_of(at, given, "`groups`, `virtual`");
+        faults.check_one_of(at, given, "`groups`, `cohort`, `virtual`");
         made.check(&at.key("virtual"), limits, faults);
         self.check_subjects(made.patients as usize, at, limits, faults);
         if self.distance == CohortDistance::TpsCp {

@@ -1,4 +1,5 @@
-//! The spec of a cohort and its result.
+//! The spec of a cohort and its result, and cohorts that are kept.
 
 pub mod document;
 pub mod result;
+pub mod stored;

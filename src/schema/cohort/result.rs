@@ -4,11 +4,16 @@ use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 use super::document::{CohortDistance, CohortStatistic};
+use super::stored::CohortVersionDocument;
 use crate::schema::compare::result::StatDocument;
 
 /// Methods over the same subjects. Lengths in mm.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct CohortResultDocument {
+    /// The stored cohort whose members are the subjects.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub cohort: Option<CohortVersionDocument>,
     pub distance: CohortDistance,
     /// The number that boxes and tests are of.
     pub statistic: CohortStatistic,

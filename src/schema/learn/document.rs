@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
+use crate::schema::Matrix4x4;
 use crate::schema::code::ErrorCode;
 use crate::schema::predict::budget::BudgetDocument;
 use crate::schema::wire::fault::{Faults, Pointer};
@@ -12,6 +13,7 @@ use crate::schema::wire::limits::Limits;
 use crate::schema::wire::names::check_tags;
 use mechanics::learning::cohort::LEAST_CASES;
 use mechanics::learning::{Distance, Learner, Method, Target};
+use mechanics::plan::RigidMovement;
 
 /// Virtual patients that one job may make.
 const MOST_VIRTUAL: f64 = 200.0;
@@ -34,9 +36,13 @@ pub struct LearnDocument {
     #[serde(default)]
     #[schema(required)]
     pub kind: LearnKind,
-    /// Exactly one of `cases` and `virtual`. At least 3, each of another patient, all on meshes with the same cells.
+    /// Exactly one of `cases`, `cohort` and `virtual`. At least 3, each of another patient, all on meshes with the same cells.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub cases: Vec<LearnCaseDocument>,
+    /// The id of a stored cohort, whose members are learned from as they are at this moment.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub cohort: Option<String>,
     /// Patients that the program makes itself.
     #[serde(default, rename = "virtual", skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
@@ -65,9 +71,13 @@ pub struct LearnDocument {
 pub struct LearnCaseDocument {
     /// The id of a job of kind `predict`, whose case, plan and method are taken.
     pub prediction: String,
-    /// The id of a mesh after the operation, in the frame of the case: a volume with the nodes of the case's, or a surface with
-    /// the points of its skin, in their order.
+    /// The id of a mesh after the operation: a volume with the nodes of the case's, or a surface with the points of its skin, in
+    /// their order.
     pub actual: String,
+    /// The registration of `actual` onto the case: row-major, x' = R x + t in mm. Absent: it lies in the frame of the case.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub matrix4x4: Option<Matrix4x4>,
     /// Absent: its number from 1.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
@@ -170,8 +180,9 @@ impl LearnDocument {
         let at = Pointer::root().key("spec");
         check_tags(&self.tags, &at.key("tags"), limits, faults);
         self.budget.check(&at.key("budget"), limits, faults);
-        let given = usize::from(!self.cases.is_empty()) + usize::from(self.made.is_some());
-        faults.check_one_of(&at, given, "`cases`, `virtual`");
+        let given = [!self.cases.is_empty(), self.cohort.is_some(), self.made.is_some()];
+        let given = given.into_iter().filter(|given| *given).count();
+        faults.check_one_of(&at, given, "`cases`, `cohort`, `virtual`");
         if let Some(made) = &self.made {
             let place = at.key("virtual");
             let (patients, fineness) = (f64::from(made.patients), f64::from(made.fineness));
@@ -201,6 +212,7 @@ impl LearnDocument {
                     faults.check_name(&place.key(member), named, limits.name_characters as usize);
                 }
             }
+            check_registration(case.matrix4x4.as_ref(), &place, faults);
             let name = self.name(index);
             let members =
                 [("prediction", &case.prediction), ("actual", &case.actual), ("name", &name)];
@@ -213,5 +225,12 @@ impl LearnDocument {
                 }
             }
         }
+    }
+}
+
+/// Refuses a registration that is not rigid.
+pub fn check_registration(matrix: Option<&Matrix4x4>, at: &Pointer, faults: &mut Faults) {
+    if let Some(Err(error)) = matrix.map(|matrix| RigidMovement::from_matrix4(&matrix.0)) {
+        faults.add(&at.key("matrix4x4"), ErrorCode::PlanNotRigid, error.to_string());
     }
 }

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::document::LearnDocument;
 use crate::schema::case::document::FrameName;
+use crate::schema::cohort::stored::CohortVersionDocument;
 use crate::schema::engine::EngineDocument;
 use mechanics::learning::{Cohort, CohortError, Features, LearnedModel, LearningCase};
 use mechanics::mesh::Warning;
@@ -18,6 +19,9 @@ pub const MODEL_FILE: &str = "model.json";
 pub struct ModelDocument {
     pub engine: EngineDocument,
     pub spec: LearnDocument,
+    /// The stored cohort that the cases are the members of.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub cohort: Option<CohortVersionDocument>,
     pub cases: Vec<ModelCaseDocument>,
     pub regions: BTreeMap<String, Vec<u32>>,
     /// That of the cases; models of earlier versions do not say it.

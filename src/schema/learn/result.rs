@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 use crate::schema::cohort::result::CohortPairDocument;
+use crate::schema::cohort::stored::CohortVersionDocument;
 use mechanics::learning::classes::ThetaOfClass;
 use mechanics::learning::curve::CurvePoint;
 use mechanics::learning::regression::WidthEnd;
@@ -14,6 +15,10 @@ use mechanics::learning::validation::{CaseErrors, Column, Validated};
 /// What was learned, and how good it is. Lengths in mm.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct LearningDocument {
+    /// The stored cohort that was learned from.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub cohort: Option<CohortVersionDocument>,
     /// The method whose model is kept.
     pub method: String,
     /// How its width was found, of a regression.

@@ -26,6 +26,10 @@ pub use super::load::LoadDocument;
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PlanDocument {
+    /// Tells it from other plans of the case; decides nothing of what is computed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub name: Option<String>,
     /// Segments that are not named stay where they are.
     #[serde(default)]
     pub segments: Vec<PlanSegmentDocument>,
@@ -131,6 +135,17 @@ impl PlanDocument {
         document.to_osteotomy(&at.key("osteotomy"), &context, faults)
     }
 
+    /// What it says of movements and of what acts.
+    pub fn unnamed(&self) -> PlanDocument {
+        PlanDocument { name: None, ..self.clone() }
+    }
+
+    pub fn check_name(&self, at: &Pointer, limits: &Limits, faults: &mut Faults) {
+        if let Some(name) = &self.name {
+            faults.check_name(&at.key("name"), name, limits.name_characters as usize);
+        }
+    }
+
     /// The plan in the frame of the case, whose segments are there. What is wrong is added to `faults`, and left out of
     /// the plan.
     pub fn to_plan(&self, at: &Pointer, context: &PlanContext, faults: &mut Faults) -> Plan {
@@ -140,6 +155,7 @@ impl PlanDocument {
             faults.add(&at.key("osteotomy"), ErrorCode::NoScan, detail);
         }
         let limits = context.limits;
+        self.check_name(at, limits, faults);
         let context = MovementContext {
             mirrored_axes: self.mirrored_axes(at, context.frame, faults),
             centre: context.centre,

@@ -282,7 +282,7 @@ impl StudyDocument {
         let plans = self.plans.iter().enumerate();
         plans
             .filter_map(|(index, plan)| match plan {
-                PlanReference::Plan(document) => Some((index, document)),
+                PlanReference::Plan(document) => Some((index, document.as_ref())),
                 PlanReference::Name(_) => None,
             })
             .collect()
@@ -311,7 +311,7 @@ impl StudyDocument {
     /// All plans in full: those of the study, of its cases and of its items.
     pub fn plan_documents_mut(&mut self) -> Vec<&mut PlanDocument> {
         let shared = self.plans.iter_mut().filter_map(|plan| match plan {
-            PlanReference::Plan(document) => Some(document),
+            PlanReference::Plan(document) => Some(document.as_mut()),
             PlanReference::Name(_) => None,
         });
         let own = self.scenes.iter_mut().filter_map(|scene| match scene {

@@ -38,7 +38,7 @@ pub struct CaseReference {
 #[serde(untagged)]
 pub enum PlanReference {
     Name(String),
-    Plan(PlanDocument),
+    Plan(Box<PlanDocument>),
 }
 
 impl<'de> Deserialize<'de> for SceneReference {

@@ -5,7 +5,9 @@ use std::path::Path;
 
 use facies::config::DatabasePlace;
 use facies::schema::key::{KeyDocument, Scope};
-use facies::store::{AddedCase, Deed, NewCase, Published, Store, StoreError};
+use facies::store::{
+    AddedCase, Deed, Dismissal, MemberRow, NewCase, NewCohort, Published, Store, StoreError,
+};
 
 use crate::deployments::Deployment;
 use crate::rows::mesh;
@@ -48,17 +50,33 @@ async fn fill(store: &Store) {
     store.chain_deeds().await.unwrap();
     store.begin_deed(&deed).await.unwrap();
     store.reserve("a key", "a request", &case.id).await.unwrap();
-    enqueue(store, "done").await;
+    let done = enqueue(store, "done").await;
     let lease = store.claim(LEASE).await.unwrap().unwrap().lease;
     let point = facies::store::Point { residual: Some(1.0 / 3.0), ..Default::default() };
     assert!(store.renew(&lease, LEASE, &point).await.unwrap());
     let (files, meshes) = ([file("a result")], [made("of the job")]);
     let result = Published { result: "{}", files: &files, meshes: &meshes, case: None };
     assert!(store.publish(&lease, result).await.unwrap());
+    let removed = enqueue(store, "removed").await;
+    let member = |number: i64, job: &String| MemberRow {
+        number,
+        case_id: case.id.clone(),
+        job_id: job.clone(),
+        mesh_id: case_mesh.id.clone(),
+        document: "{}".into(),
+    };
+    let members = vec![member(1, &done), member(2, &removed)];
+    let (id, name) = (uuid::Uuid::now_v7().to_string(), "blocks".into());
+    let cohort = NewCohort { id, name, consent: Some("{}".into()), members };
+    assert!(store.add_cohort(&cohort).await.unwrap());
     let mut waiting = new_job("{}", "waiting");
+    waiting.learns_from = Some((cohort.id, 1));
     waiting.shared_cases = vec![case.id.clone()];
     waiting.mesh_ids = vec![case_mesh.id];
     store.enqueue(&waiting, 100).await.unwrap();
+    for ended in [Dismissal::Dismissed, Dismissal::Removed] {
+        assert_eq!(store.dismiss(&removed).await.unwrap(), ended);
+    }
 }
 
 /// The content of an export, whatever the order of its rows.
@@ -81,7 +99,7 @@ async fn a_deployment_moves_to_postgresql_and_back(shared: Deployment) {
     fill(&store).await;
     let folders = ["1", "2", "3"].map(|name| first.folder().join(name));
     let moved = store.export(&folders[0]).await.unwrap();
-    assert_eq!((moved.rows, moved.blobs), (26, 3));
+    assert_eq!((moved.rows, moved.blobs), (31, 3));
     for (on, [from, to]) in [(&shared, [0, 1]), (&last, [1, 2])] {
         let store = on.open().await;
         assert_eq!(store.import(&folders[from]).await.unwrap(), moved);

@@ -47,7 +47,7 @@ fn cohort(
     let spec = serde_json::from_value(spec).unwrap();
     let comparisons = comparisons.clone();
     let actuals = BTreeMap::new();
-    let input = CohortInput { job: None, queue_s: None, spec, comparisons, actuals };
+    let input = CohortInput { job: None, queue_s: None, spec, cohort: None, comparisons, actuals };
     let input = JobInput::Cohort(input);
     let out = tempfile::tempdir().unwrap();
     let sources = Meshes(BTreeMap::new());
@@ -65,7 +65,8 @@ fn lists_in_another_order_and_a_patient_who_stands_twice_are_told() {
         let spec = serde_json::from_value(json!({"groups": groups})).unwrap();
         let actuals = names.map(|name| (name.to_owned(), name[2..].to_owned())).into();
         let comparisons = comparisons.clone();
-        let input = CohortInput { job: None, queue_s: None, spec, comparisons, actuals };
+        let input =
+            CohortInput { job: None, queue_s: None, spec, cohort: None, comparisons, actuals };
         let (out, sources) = (tempfile::tempdir().unwrap(), Meshes(BTreeMap::new()));
         let place = Workplace { sources: &sources, limits: &Limits::default(), out: out.path() };
         let done = work(&JobInput::Cohort(input), &place, &Unobserved).unwrap();
@@ -192,7 +193,7 @@ fn what_is_wrong_with_twins_is_told_before_any_is_made() {
         (json!({"virtual": {"patients": 2}}), "/spec/virtual/patients"),
         (json!({"virtual": {"patients": 26}}), "/spec/virtual/patients"),
         (json!({"virtual": {"patients": 3, "fineness": 3}}), "/spec/virtual/fineness"),
-        (json!({"virtual": twins(), "groups": {"a": ["b"]}}), "`groups`, `virtual`"),
+        (json!({"virtual": twins(), "groups": {"a": ["b"]}}), "`groups`, `cohort`, `virtual`"),
         (json!({"virtual": twins(), "region": "ear"}), "/spec/region"),
         (json!({"virtual": twins(), "distance": "tps_cp"}), "/spec/distance"),
         (json!({"virtual": twins(), "subjects": ["one"]}), "/spec/subjects"),

@@ -80,7 +80,10 @@ fn operated() -> (Sources, LearnInput) {
         cases.push(LearnedCase { case: None, spec_hash: None, prediction });
     }
     let spec = serde_json::from_value(json!({"cases": named})).unwrap();
-    (Sources { meshes, model: Vec::new() }, LearnInput { job: None, queue_s: None, spec, cases })
+    (
+        Sources { meshes, model: Vec::new() },
+        LearnInput { job: None, queue_s: None, spec, cohort: None, cases },
+    )
 }
 
 fn done(input: JobInput, sources: &Sources) -> Result<(JobOutput, tempfile::TempDir), JobError> {
@@ -198,7 +201,7 @@ fn virtual_patients_are_the_same_for_the_same_seed() {
     let learned = |seed: u64| {
         let made = json!({"virtual": {"patients": 4, "seed": seed, "fineness": 1}});
         let spec = serde_json::from_value(made).unwrap();
-        let input = LearnInput { job: None, queue_s: None, spec, cases: Vec::new() };
+        let input = LearnInput { job: None, queue_s: None, spec, cohort: None, cases: Vec::new() };
         let none = Sources { meshes: BTreeMap::new(), model: Vec::new() };
         done(JobInput::Learn(input), &none).unwrap().0.result.learning.unwrap()
     };
@@ -235,7 +238,10 @@ fn operated_with_theta(truth: f64) -> (Sources, LearnInput) {
         cases.push(LearnedCase { case: None, spec_hash: None, prediction: of(x, 1.0) });
     }
     let spec = serde_json::from_value(json!({"cases": named, "theta": true})).unwrap();
-    (Sources { meshes, model: Vec::new() }, LearnInput { job: None, queue_s: None, spec, cases })
+    (
+        Sources { meshes, model: Vec::new() },
+        LearnInput { job: None, queue_s: None, spec, cohort: None, cases },
+    )
 }
 
 #[test]

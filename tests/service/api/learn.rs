@@ -10,13 +10,18 @@ use crate::helpers::{SMALL, Server, ask, spec};
 
 /// The block after an operation, as it was measured.
 fn after(number: usize) -> Vec<u8> {
-    let mut mesh = sample::block(Vector::new(60.0, 60.0, 30.0), SMALL.cells, CellShape::Hex8);
-    let moved = |z: f64| Vector::new(number as f64 * (1.0 - z / 30.0), 0.0, 0.3);
-    mesh.nodes.iter_mut().for_each(|node| *node += moved(node.z));
-    vtu::write(&VolumeOutput::plain(&mesh, Frame::Unspecified)).unwrap()
+    after_beside(number, Vector::zeros(), Frame::Unspecified)
 }
 
-fn linear(case: &str, x: f64) -> Value {
+/// The same as it lies in a scanner, by so much beside the case and in a frame.
+pub fn after_beside(number: usize, beside: Vector, frame: Frame) -> Vec<u8> {
+    let mut mesh = sample::block(Vector::new(60.0, 60.0, 30.0), SMALL.cells, CellShape::Hex8);
+    let moved = |z: f64| Vector::new(number as f64 * (1.0 - z / 30.0), 0.0, 0.3) + beside;
+    mesh.nodes.iter_mut().for_each(|node| *node += moved(node.z));
+    vtu::write(&VolumeOutput::plain(&mesh, frame)).unwrap()
+}
+
+pub fn linear(case: &str, x: f64) -> Value {
     let mut spec = spec(case, x);
     spec["method"] = json!("fem_linear");
     spec

@@ -11,6 +11,7 @@ mod case_page;
 mod cases;
 mod clients_folder;
 mod clients_that_stall;
+mod cohorts;
 mod conform;
 mod entrance;
 mod error_codes;

@@ -62,3 +62,39 @@ async fn a_plan_of_a_case_that_is_not_there_is_not_kept() {
     ask(server.post(&plans).json(&plan(1.0))).await.problem(404, "not-found");
     ask(server.get(&plans)).await.problem(404, "not-found");
 }
+
+#[tokio::test]
+async fn a_name_tells_a_plan_from_others_and_changes_nothing_of_what_is_computed() {
+    let server = Server::start();
+    let case = server.case(&SMALL).await;
+    let plans = format!("/v1/cases/{case}/plans");
+    let named = |name: &str| {
+        let mut plan = plan(1.0);
+        plan["name"] = name.into();
+        plan
+    };
+    let keep = |name: &str| ask(server.post(&plans).json(&named(name)));
+    let first = keep("bone forward").await.expect(StatusCode::CREATED);
+    let second = keep("the same").await.expect(StatusCode::CREATED);
+    let listed = ask(server.get(&plans)).await.expect(StatusCode::OK);
+    let names: Vec<&Value> =
+        listed["items"].as_array().unwrap().iter().map(|item| &item["plan"]["name"]).collect();
+    assert_eq!(names, ["the same", "bone forward"]);
+
+    let job = |id: &Value| json!({"kind": "predict", "case": case, "plan_id": id});
+    let jobs = [job(&first["id"]), job(&second["id"])];
+    let hash =
+        async |spec: &Value| server.job(spec).await.expect(StatusCode::OK)["spec_hash"].clone();
+    assert_eq!(hash(&jobs[0]).await, hash(&jobs[1]).await);
+
+    let long = "a".repeat(129);
+    for name in ["", " ", "a\nb", &long] {
+        let refused = keep(name).await;
+        let fault = &refused.problem(422, "validation-failed")["errors"][0];
+        assert_eq!(
+            (fault["code"].as_str(), fault["pointer"].as_str()),
+            (Some("bad-name"), Some("/name")),
+            "{name:?}"
+        );
+    }
+}

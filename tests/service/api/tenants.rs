@@ -4,6 +4,7 @@ use reqwest::{Method, RequestBuilder, StatusCode};
 use serde_json::{Value, json};
 use tempfile::TempDir;
 
+use super::cohorts::Operated;
 use crate::helpers::{Answer, SMALL, Server, ask, spec};
 
 /// A service that asks for keys, and where it is run from.
@@ -76,6 +77,7 @@ const ALL: [&str; 4] = ["read", "write", "run", "admin"];
 /// What a tenant has, by the words that stand for it in routes.
 struct Belongings {
     case: String,
+    cohort: String,
     plan: String,
     job: String,
     mesh: String,
@@ -99,15 +101,19 @@ impl Belongings {
         let job = id(ask(wait(spec(&case, 1.0))).await.expect(StatusCode::OK));
         let response = json!({"kind": "response", "case": case, "segments": ["bone"]});
         ask(wait(response)).await.expect(StatusCode::OK);
+        let members = Operated::by(server, key, 3).await.cohort(&[0, 1, 2]);
+        let cohort =
+            id(hospital.post(key, "/v1/cohorts", &members).await.expect(StatusCode::CREATED));
         let wanted = json!({"label": "another", "scopes": ["read"]});
         let key = id(hospital.post(key, "/v1/keys", &wanted).await.expect(StatusCode::CREATED));
-        Belongings { case, plan, job, mesh, key }
+        Belongings { case, cohort, plan, job, mesh, key }
     }
 
     /// A route with what its words stand for.
     fn address(&self, route: &str) -> String {
         let id = match route.split('/').nth(2) {
             Some("cases") => &self.case,
+            Some("cohorts") => &self.cohort,
             Some("jobs") => &self.job,
             Some("meshes") => &self.mesh,
             Some("keys") => &self.key,
@@ -163,7 +169,7 @@ async fn a_key_of_another_tenant_finds_nothing_at_any_address() {
         }
     }
     assert!(asked >= 20, "{asked} operations");
-    for list in ["/v1/cases", "/v1/jobs"] {
+    for list in ["/v1/cases", "/v1/cohorts", "/v1/jobs"] {
         let own = hospital.get(&ours, list).await.expect(StatusCode::OK);
         assert!(!own["items"].as_array().unwrap().is_empty(), "{list}");
         let met = hospital.get(&theirs, list).await.expect(StatusCode::OK);

@@ -10,6 +10,9 @@ import { told } from "./movements.js";
 /** The end of an id tells it from those that were made at the same time. */
 export const tail = (id: string): string => `…${id.slice(-6)}`;
 
+/** A stored plan by its name, or by the end of its id. */
+export const planName = ({ id, plan }: Documents["PlanView"]): string => plan.name ?? tail(id);
+
 /** A plan of the service in a line; segments alone where it moves them in a way that six numbers do not say. */
 export function planInWords(words: Words, plan: Documents["PlanDocument"], frame: FrameName): string {
   const shown = fromDocument(plan, pivotsOf(plan, frame), frame);
@@ -19,7 +22,7 @@ export function planInWords(words: Words, plan: Documents["PlanDocument"], frame
 /** What a job is of, as far as its result says; empty where it does not. */
 export function aboutJob(words: Words, { results, error }: Job): string {
   const plan = results?.optimisation?.plan ?? results?.provenance?.plan ?? undefined;
-  if (plan !== undefined) return planInWords(words, plan, results?.provenance?.frame ?? "unspecified");
+  if (plan !== undefined) return [plan.name ?? "", planInWords(words, plan, results?.provenance?.frame ?? "unspecified")].filter((part) => part !== "").join(": ");
   if (results?.learning) return results.learning.method;
   return error === undefined || error === null ? (results?.cohort?.groups ?? []).map(({ name }) => name).join(", ") : "";
 }

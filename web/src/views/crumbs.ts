@@ -3,11 +3,11 @@ import { make } from "../dom.js";
 import { address } from "../route.js";
 import type { Words } from "../words/en.js";
 
-export type Tab = "overview" | "plan" | "inverse" | "result" | "comparison";
+export type Tab = "overview" | "plan" | "plans" | "inverse" | "result" | "comparison";
 
 export function crumbs(words: Words, id: string | undefined, name: string, tab: Tab): HTMLElement {
   const tabs: [Tab, string[]][] = id === undefined ? [] : [
-    ["overview", ["case", id]], ["plan", ["case", id, "plan"]], ["inverse", ["case", id, "inverse"]], ["comparison", ["case", id, "compare"]],
+    ["overview", ["case", id]], ["plan", ["case", id, "plan"]], ["plans", ["case", id, "plans"]], ["inverse", ["case", id, "inverse"]], ["comparison", ["case", id, "compare"]],
   ];
   const links = tabs.map(([of, path]) => {
     const link = make("a", { href: address(path) }, words[of]);

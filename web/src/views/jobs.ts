@@ -2,7 +2,8 @@
 import type { Case, Documents, Job } from "../api.js";
 import { refusal, type App, type Leave } from "../app.js";
 import { button, make, scrolling, table } from "../dom.js";
-import { address } from "../route.js";
+import { address, note } from "../route.js";
+import type { Words } from "../words/en.js";
 import { mm, when } from "../figures.js";
 import { aboutJob, tail } from "./called.js";
 import { kindOf, statusOf } from "./kinds.js";
@@ -67,6 +68,8 @@ export async function studies(app: App): Promise<Leave> {
     make("h2", {}, when(job.created)), about(job),
     make("p", {}, `${statusOf(words, job.status)}${job.results?.study === undefined ? "" : ` · ${words.verdict}: ${job.results.study.verdict.outcome}`}`),
     job.status === "successful" && button(words.chart, () => open(job)), " ", make("a", { className: "button", href: address(["job", job.id]) }, words.result));
+  const stated = list.find(({ id, status }) => id === app.route.state.get("study") && status === "successful");
+  if (stated !== undefined) open(stated);
   stage.replaceChildren(make("h1", {}, words.studies),
     list.length === 0 ? make("p", {}, words.noStudies) : make("ul", { className: "cards" }, ...list.map(row)), shown);
   return () => {};
@@ -75,17 +78,82 @@ export async function studies(app: App): Promise<Leave> {
 /** Each once. */
 const each = (names: string[]): string[] => [...new Set(names)];
 
+type StudyRow = Documents["ReportDocument"]["rows"][number];
+
 /** The chart of a study with the rows behind its marks. */
 async function report(app: App, job: Job, into: HTMLElement): Promise<void> {
   const { service, words } = app;
   const path = `/v1/jobs/${job.id}/report`;
-  const chart = await (await service.ask("GET", `${path}?format=svg`)).blob();
+  const chart = await (await service.ask("GET", `${path}?format=svg`)).text();
   const { rows, verdict } = await service.get<Documents["ReportDocument"]>(path);
+  const told = make("p", { className: "told", role: "status" });
+  const place = make("div");
+  const show = (mark: Mark | undefined) => {
+    const shown = mark === undefined ? rows : rows.filter((row) => row.label === mark.label && row.level === mark.level);
+    told.replaceChildren(...(mark === undefined ? [] : [words.rowsOfMark(`${mark.label}, ${words.level} ${mark.level}`, shown.length, rows.length), " ", button(words.allRows, () => choose(undefined))]));
+    place.replaceChildren(rowTable(words, shown));
+  };
+  const { drawing, choose } = clickable(chart, rows, words.chart, (mark) => {
+    note({ study: job.id, mark: mark === undefined ? undefined : `${mark.level},${mark.label}` });
+    show(mark);
+  });
+  into.replaceChildren(make("p", { className: "fine" }, words.clickMarks), drawing, reportLinks(app, job) ?? "",
+    ...verdict.reasons.map((reason) => make("p", { className: "warned" }, reason)), told, place);
+  const [level = "", ...label] = (app.route.state.get("study") === job.id ? app.route.state.get("mark") ?? "" : "").split(",");
+  choose(level === "" ? undefined : { level: Number(level), label: label.join(",") });
+}
+
+function rowTable(words: Words, rows: StudyRow[]): HTMLElement {
   const length = (value: number | null | undefined) => (value === undefined || value === null ? "–" : mm(value));
   const cells = rows.map((row) => [row.label, row.scene, row.plan, row.material, row.level, length(row.mean_mm), length(row.p95_mm), row.wall_s?.toPrecision(2) ?? "–", row.status]);
-  into.replaceChildren(
-    make("img", { className: "drawing", src: URL.createObjectURL(chart), alt: words.chart }),
-    reportLinks(app, job) ?? "",
-    ...verdict.reasons.map((reason) => make("p", { className: "warned" }, reason)),
-    table(words.rows, [words.variant, words.scene, words.plan, words.material, words.level, words.meanMm, words.p95mm, words.wall, words.state], cells));
+  return table(words.rows, [words.variant, words.scene, words.plan, words.material, words.level, words.meanMm, words.p95mm, words.wall, words.state], cells);
+}
+
+/** What a mark of the chart is of. */
+export interface Mark {
+  label: string;
+  level: number;
+}
+
+/** The rows of a group of the chart, by its words, which begin with the way of modelling and, where there are several, its mesh level. */
+export function markOf(title: string, rows: Mark[]): Mark | undefined {
+  const several = new Set(rows.map(({ level }) => level)).size > 1;
+  const called = ({ label, level }: Mark) => (several ? `${label}, level ${level}` : label);
+  const fitting = rows.filter((row) => title.startsWith(`${called(row)}: `));
+  const [longest] = fitting.sort((one, other) => called(other).length - called(one).length);
+  return longest === undefined ? undefined : { label: longest.label, level: longest.level };
+}
+
+/** The chart of the service as a part of the page, whose marks are buttons; its words are the service's, and the policy of the page lets none of them run. */
+function clickable(chart: string, rows: StudyRow[], label: string, chosen: (mark: Mark | undefined) => void) {
+  const root = document.importNode(new DOMParser().parseFromString(chart, "image/svg+xml").documentElement, true);
+  root.setAttribute("class", "drawing chart");
+  root.setAttribute("role", "group");
+  root.setAttribute("aria-label", label);
+  for (const size of ["width", "height"]) root.removeAttribute(size);
+  root.querySelector(":scope > title")?.remove();
+  const marks = [...root.querySelectorAll<SVGElement>("g.mark, g.failure")].flatMap((element) => {
+    const title = element.querySelector("title")?.textContent ?? "";
+    const mark = markOf(title, rows);
+    return mark === undefined ? [] : [{ element, mark, title }];
+  });
+  const is = (one: Mark | undefined, other: Mark) => one?.label === other.label && one.level === other.level;
+  const choose = (mark: Mark | undefined) => {
+    const found = marks.some((one) => is(mark, one.mark)) ? mark : undefined;
+    for (const one of marks) one.element.setAttribute("aria-pressed", String(is(found, one.mark)));
+    chosen(found);
+  };
+  for (const { element, mark, title } of marks) {
+    element.setAttribute("tabindex", "0");
+    element.setAttribute("role", "button");
+    element.setAttribute("aria-label", title);
+    const press = () => choose(element.getAttribute("aria-pressed") === "true" ? undefined : mark);
+    element.addEventListener("click", press);
+    element.addEventListener("keydown", (event) => {
+      if (event.key !== "Enter" && event.key !== " ") return;
+      event.preventDefault();
+      press();
+    });
+  }
+  return { drawing: root, choose };
 }

@@ -6,7 +6,7 @@ import { movement, still, type Motion, type MotionName } from "../frame.js";
 import { addBones, buildResponse, openCase, responseOf, showBoundary, type LoadedResponse, type Opened } from "../loading.js";
 import { matrix } from "../matrix.js";
 import { INNER_KINDS, innerFactors, type InnerKind } from "../columns.js";
-import { atRest, document as planDocument, fromDocument, History, planState, read, readPivots, withInner, written, type Pivots, type Plan } from "../plan.js";
+import { atRest, document as planDocument, fromDocument, History, PLAN_STATE, planState, read, readPivots, turningPivots, withInner, written, type Pivots, type Plan } from "../plan.js";
 import { coefficients, lengths, SkinSum } from "../response.js";
 import { address, note } from "../route.js";
 import { mm } from "../figures.js";
@@ -15,7 +15,7 @@ import { crumbs } from "./crumbs.js";
 import { Further } from "./further.js";
 import { innerSliders, type InnerSliders } from "./inner.js";
 import { movements, told, type Movements } from "./movements.js";
-import { savedPlans } from "./plans.js";
+import { SavedPlans, type Readable } from "./plans.js";
 import { placesOf } from "./places.js";
 import { drawTrust } from "./trust.js";
 import { appliedLines } from "./trusted.js";
@@ -77,11 +77,12 @@ class Planning {
       this.told, this.warned, this.segments, this.order);
     this.drawSegments();
     bench.section(words.predict, this.prediction());
-    const saved = bench.section(words.savedPlans);
-    saved.append(await savedPlans(app, opened, {
-      now: () => planDocument(this.plan, this.pivots, opened.frame), 
-      load: (plan) => this.set(plan), read: (stored) => this.readable(stored), called: (plan) => told(plan, words, opened.frame), compare: (plan) => this.differenceTo(plan),
-    }));
+    const saved = new SavedPlans(app, opened, {
+      now: () => planDocument(this.plan, this.pivots, opened.frame), load: (readable) => this.open(readable),
+      read: (stored) => this.readable(stored), compare: (readable) => this.differenceTo(readable),
+    });
+    bench.section(words.savedPlans, saved.element);
+    await saved.start(PLAN_STATE.some((name) => (app.route.state.get(name) ?? "") !== ""));
     bench.canvasKeys((event) => this.pressed(event));
     await bones;
     this.moveAll();
@@ -127,6 +128,7 @@ class Planning {
     this.order.replaceChildren(make("span", { className: "badge" }, second ? words.order2 : words.order1),
       inside ? make("span", { className: "fine" }, words.secondNotInside)
         : second ? "" : button(words.second, () => void this.rebuild({ order: 2 }), { title: words.secondWhy }),
+      second ? "" : make("p", { className: "fine" }, words.leftOutNowhere),
       second || this.loaded.columns.inner.some(({ kind }) => kind === "growth") ? ""
         : button(words.addGrowth, () => void this.rebuild({ growth: this.regions() }), { title: words.addGrowthWhy }));
   }
@@ -189,10 +191,18 @@ class Planning {
       .filter((name) => !columns.inner.some((column) => column.kind === kind && column.name === name)).map((name) => [kind, name] as const));
   }
 
-  /** What the sliders can show of a plan of the service. */
-  private readable(stored: Documents["PlanDocument"]): Plan | undefined {
-    const plan = fromDocument(stored, this.pivots, this.opened.frame);
-    return plan !== undefined && this.missing(plan).length === 0 ? plan : undefined;
+  /** What the sliders can show of a plan of the service, about the points that it names. */
+  private readable(stored: Documents["PlanDocument"]): Readable | undefined {
+    const pivots = { ...this.pivots, ...turningPivots(stored, this.opened.frame) };
+    const plan = fromDocument(stored, pivots, this.opened.frame);
+    return plan !== undefined && this.missing(plan).length === 0 ? { plan, pivots } : undefined;
+  }
+
+  private open({ plan, pivots }: Readable): void {
+    this.pivots = pivots;
+    this.plan = plan;
+    this.drawSegments();
+    this.set(plan);
   }
 
   /** A muscle or growth is at another amount. */
@@ -332,12 +342,13 @@ class Planning {
   }
 
   /** The skin of another plan as an overlay, and how far it is from this one. */
-  private differenceTo(plan: Plan | undefined): string {
-    if (plan === undefined) { this.bench.scene.overlay(undefined); return ""; }
+  private differenceTo(readable: Readable | undefined): string {
+    if (readable === undefined) { this.bench.scene.overlay(undefined); return ""; }
+    const { plan, pivots } = readable;
     const other = new SkinSum(this.loaded.columns);
     this.names.forEach((name, at) => {
       const centre_mm = this.loaded.description.segments[at]!.centre_mm as Triple;
-      other.move(at, coefficients({ ...movement(plan.segments[name] ?? still(), this.opened.frame), pivot_mm: this.pivots[name]!, centre_mm }));
+      other.move(at, coefficients({ ...movement(plan.segments[name] ?? still(), this.opened.frame), pivot_mm: pivots[name]!, centre_mm }));
     });
     other.pull(innerFactors(this.loaded.columns.inner, plan.inner));
     const { rest } = this.loaded;

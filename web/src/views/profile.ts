@@ -25,7 +25,7 @@ export function profile(words: Words, frame: FrameName, before: Shape, after: Sh
     const [forward, up] = inWords(point as Triple, frame === "unspecified" ? "LPS" : frame);
     return [forward, -up] as const;
   };
-  const pieces = [before, after].map((shape) => section(shape.points_mm, shape.triangles, 0, at + 1e-4)
+  const pieces = [before, after].map((shape) => section(shape.points_mm, shape.triangles, [1, 0, 0], at + 1e-4)
     .map((piece) => [flat(piece.slice(0, 3)), flat(piece.slice(3))] as const));
   const all = pieces.flat(2);
   const [left, top] = [0, 1].map((axis) => all.reduce((least, point) => Math.min(least, point[axis]!), Infinity)) as [number, number];

@@ -4,3 +4,5 @@ export { comparePage } from "./compare.js";
 export { inversePage } from "./inverse.js";
 export { planPage } from "./plan.js";
 export { resultPage } from "./result.js";
+export { plansPage } from "./stored.js";
+export { boneOfScan, boneOfSurface, cutEditor } from "./cuts.js";

@@ -25,19 +25,23 @@ function heeded(words: Words, line: TrustLine, topic: keyof typeof TOPICS, warni
 const warned = (words: Words, count: number): TrustLine =>
   ({ name: words.warnings, value: count === 0 ? words.none : String(count), trusted: count === 0 ? "good" : "heed" });
 
+/** What the answer leaves out, as far as that is estimated: a mean over the skin. */
+export function leftOutLine(words: Words, answer: Documents["AppliedDocument"]): TrustLine {
+  const left = answer.nonlinearity_estimate_mm ?? undefined;
+  if (left === undefined) return { name: words.leftOutName, value: words.notKnown, trusted: "unknown", why: words.leftOutUnknown };
+  const line: TrustLine = { name: words.leftOutName, value: words.leftOut(mm(left)), trusted: answer.within_linear_range ? "good" : "heed",
+    ...(answer.within_linear_range ? {} : { why: words.outside }) };
+  return heeded(words, line, "leftOut", answer.warnings, left);
+}
+
 /** Of a plan on a response; `apart` is how far the page is from the service, and `most` how far it may be, in mm. */
 export function appliedLines(words: Words, answer: Documents["AppliedDocument"], { apart, most }: { apart: number; most: number }): TrustLine[] {
-  const left = answer.nonlinearity_estimate_mm ?? undefined;
   const second = answer.second_order_mm ?? undefined;
-  const leftOut: TrustLine = left === undefined
-    ? { name: words.leftOutName, value: words.notKnown, trusted: "unknown", why: words.leftOutUnknown }
-    : { name: words.leftOutName, value: words.leftOut(mm(left)), trusted: answer.within_linear_range ? "good" : "heed",
-      ...(answer.within_linear_range ? {} : { why: words.outside }) };
   const model: TrustLine = { name: words.method, value: answer.order === 2 ? words.methodOrder2 : words.methodOrder1, trusted: "good",
     ...(second === undefined ? {} : { why: words.secondAdds(mm(second)) }) };
   return [
     heeded(words, model, "model", answer.warnings),
-    heeded(words, leftOut, "leftOut", answer.warnings, left),
+    leftOutLine(words, answer),
     { name: words.numericalError, value: words.notKnown, trusted: "unknown", why: words.errorWithPredict },
     { name: words.sameAsService, value: (apart <= most ? words.agrees : words.disagrees)(apart.toExponential(0)), trusted: apart <= most ? "good" : "heed" },
     warned(words, answer.warnings.length),

@@ -59,7 +59,7 @@ async function taken(app: App, files: File[], said: HTMLElement, next: HTMLEleme
   }
   const parts = Object.fromEntries(meshes.map((file) => [stem(file.name), file]));
   if (meshes.every(({ name }) => SURFACES.test(name))) {
-    next.replaceChildren(surfacesEditor(app, Object.keys(parts), (document, into) => send(app, document, parts, into)));
+    next.replaceChildren(surfacesEditor(app, parts, (document, some, into) => send(app, document, some, into)));
     return;
   }
   const volume = meshes.find(({ name }) => !SURFACES.test(name))!;
@@ -69,7 +69,7 @@ async function taken(app: App, files: File[], said: HTMLElement, next: HTMLEleme
   const mesh = await app.service.get<Documents["MeshDocument"]>(`/v1/meshes/${id}`);
   said.replaceChildren();
   if (mesh.report.kind === "image") {
-    next.replaceChildren(scanEditor(app, stem(volume.name), id, (document, into) => send(app, document, {}, into)));
+    next.replaceChildren(scanEditor(app, stem(volume.name), mesh, (document, some, into) => send(app, document, some, into)));
     return;
   }
   next.replaceChildren(editor(app, mesh, volume.name, meshes.filter((file) => file !== volume)));

@@ -165,9 +165,9 @@ test("a surface is read from binary PLY", () => {
 });
 
 test("a triangle is cut where it crosses the plane", () => {
-  const pieces = section([-1, 0, 0, 1, 0, 0, 1, 2, 0], [0, 1, 2], 0, 0);
+  const pieces = section([-1, 0, 0, 1, 0, 0, 1, 2, 0], [0, 1, 2], [1, 0, 0], 0);
   assert.deepEqual(pieces, [[0, 0, 0, 0, 1, 0]]);
-  assert.deepEqual(section([1, 0, 0, 2, 0, 0, 1, 2, 0], [0, 1, 2], 0, 0), []);
+  assert.deepEqual(section([1, 0, 0, 2, 0, 0, 1, 2, 0], [0, 1, 2], [1, 0, 0], 0), []);
 });
 
 test("a step of a slider is summed in far less than a frame takes", (context) => {

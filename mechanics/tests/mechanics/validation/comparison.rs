@@ -284,6 +284,25 @@ fn a_mirrored_scan_is_suspected() {
     assert!(found.warnings.iter().any(|w| w.code == "mirrored?"), "{:?}", found.warnings);
 }
 
+/// As a scan of a face that is nearly its own mirror image, beside which it lies turned.
+#[test]
+fn the_mirror_image_of_a_nearly_symmetric_head_is_suspected() {
+    let lopsided = |point: Vector| {
+        let bump =
+            |middle: [f64; 3]| (-(point - Vector::from(middle)).norm_squared() / 800.0).exp();
+        point * (1.0 + 0.02 * bump([60.0, -40.0, 20.0]) + 0.03 * bump([-50.0, 20.0, -60.0]))
+    };
+    let prediction = map(&head(4), |point| lopsided(*point));
+    let turn = movement([4.0, -6.0, 9.0], [3.0, 2.0, -4.0]);
+    let actual = map(&prediction, |point| turn.apply(&Vector::new(-point.x, point.y, point.z)));
+    let suspected = |actual: &TriangleSurface| {
+        let found = compare(&prediction, actual, &icp(None), &Unobserved).unwrap();
+        found.warnings.iter().any(|warning| warning.code == "mirrored?")
+    };
+    assert!(suspected(&actual));
+    assert!(!suspected(&map(&prediction, |point| turn.apply(point))));
+}
+
 #[test]
 fn the_number_of_threads_does_not_change_a_bit() {
     let prediction = head(4);

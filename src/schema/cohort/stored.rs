@@ -1,0 +1,193 @@
+//! Cohorts that are kept: operated cases, what was measured of them, and what may be learned from whom.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+use crate::schema::Matrix4x4;
+use crate::schema::code::ErrorCode;
+use crate::schema::learn::document::{LearnCaseDocument, check_registration};
+use crate::schema::wire::fault::{Faults, Pointer};
+use crate::schema::wire::limits::Limits;
+use mechanics::learning::cohort::LEAST_CASES;
+
+/// Characters of a statement of consent.
+const LONGEST_STATEMENT: usize = 2000;
+
+/// Operated cases to learn from.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct StoredCohortDocument {
+    pub name: String,
+    /// Of every member that states none of its own.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub consent: Option<ConsentDocument>,
+    /// At least 3, each of another patient, all in one frame.
+    pub members: Vec<MemberDocument>,
+}
+
+/// What may be learned from whom.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ConsentDocument {
+    /// By which right, such as the number of a form or of an approval; no names of patients.
+    #[schema(min_length = 1, max_length = 2000)]
+    pub statement: String,
+    /// What for; empty: nothing.
+    pub uses: BTreeSet<CohortUse>,
+}
+
+/// What a cohort is used for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum CohortUse {
+    /// A model that corrects predictions of other patients, by a job of kind `learn`.
+    Learn,
+    /// The errors of methods against each other, by a job of kind `cohort`.
+    Compare,
+}
+
+impl CohortUse {
+    pub fn name(self) -> &'static str {
+        match self {
+            CohortUse::Learn => "learn",
+            CohortUse::Compare => "compare",
+        }
+    }
+}
+
+/// An operated case: what was predicted of it, and what came of it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct MemberDocument {
+    /// The id of a job of kind `predict`, whose case, plan and method are taken.
+    pub prediction: String,
+    /// The id of a mesh after the operation: a volume with the nodes of the case's, or a surface with the points of its skin, in
+    /// their order.
+    pub actual: String,
+    /// The registration of `actual` onto the case: row-major, x' = R x + t in mm. Absent: it lies in the frame of the case.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub matrix4x4: Option<Matrix4x4>,
+    /// A pseudonym. Absent: its number from 1.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub name: Option<String>,
+    /// Of surgery, such as `two_jaw`, for which one `theta` is fitted. Absent: how many segments the plan moves.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub class: Option<String>,
+    /// By the name of a method: the id of a job on the case that compared, for jobs of kind `cohort`. All members have the same
+    /// methods.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub comparisons: BTreeMap<String, String>,
+    /// In place of that of the cohort.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub consent: Option<ConsentDocument>,
+}
+
+/// A version of a cohort.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct CohortVersionDocument {
+    pub id: String,
+    pub version: i64,
+}
+
+impl MemberDocument {
+    /// The member as a case to learn from.
+    pub fn to_case(&self, number: i64) -> LearnCaseDocument {
+        LearnCaseDocument {
+            prediction: self.prediction.clone(),
+            actual: self.actual.clone(),
+            matrix4x4: self.matrix4x4,
+            name: Some(self.called(number)),
+            class: self.class.clone(),
+        }
+    }
+
+    /// Its name, or its number.
+    pub fn called(&self, number: i64) -> String {
+        self.name.clone().unwrap_or_else(|| number.to_string())
+    }
+
+    fn check(&self, at: &Pointer, limits: &Limits, faults: &mut Faults) {
+        let longest = limits.name_characters as usize;
+        for (member, named) in [("name", &self.name), ("class", &self.class)] {
+            if let Some(named) = named {
+                faults.check_name(&at.key(member), named, longest);
+            }
+        }
+        check_registration(self.matrix4x4.as_ref(), at, faults);
+        let place = at.key("comparisons");
+        faults.check_length(&place, self.comparisons.len(), limits.map_entries as usize);
+        for method in self.comparisons.keys() {
+            faults.check_name(&place.key(method), method, longest);
+        }
+    }
+}
+
+impl ConsentDocument {
+    fn check(&self, at: &Pointer, faults: &mut Faults) {
+        faults.check_name(&at.key("statement"), &self.statement, LONGEST_STATEMENT);
+    }
+}
+
+impl StoredCohortDocument {
+    /// Adds what is wrong with it; pointers start at its root.
+    pub fn check(&self, limits: &Limits, faults: &mut Faults) {
+        let root = Pointer::root();
+        faults.check_name(&root.key("name"), &self.name, limits.name_characters as usize);
+        if let Some(consent) = &self.consent {
+            consent.check(&root.key("consent"), faults);
+        }
+        let at = root.key("members");
+        let count = self.members.len();
+        faults.check_length(&at, count, limits.list_entries as usize);
+        if count < LEAST_CASES {
+            let detail = format!(
+                "a cohort of {count} is too small: with one left out, two are to learn from; at least {LEAST_CASES} are needed"
+            );
+            faults.add(&at, ErrorCode::OutOfRange, detail);
+        }
+        let mut seen: [BTreeSet<String>; 3] = Default::default();
+        for (index, member) in self.members.iter().enumerate() {
+            let place = at.index(index);
+            member.check(&place, limits, faults);
+            self.check_consent(member, &place, faults);
+            self.check_methods(member, &place, faults);
+            let name = member.called(index as i64 + 1);
+            let own =
+                [("prediction", &member.prediction), ("actual", &member.actual), ("name", &name)];
+            for ((key, value), seen) in own.into_iter().zip(&mut seen) {
+                if !seen.insert(value.clone()) {
+                    let detail =
+                        format!("{value:?} is there twice, and every member is another patient");
+                    faults.add(&place.key(key), ErrorCode::DuplicateName, detail);
+                }
+            }
+        }
+    }
+
+    fn check_consent(&self, member: &MemberDocument, at: &Pointer, faults: &mut Faults) {
+        match (&member.consent, &self.consent) {
+            (Some(own), _) => own.check(&at.key("consent"), faults),
+            (None, Some(_)) => {}
+            (None, None) => {
+                let detail = "neither the member nor the cohort states what may be learned from it";
+                faults.add(&at.key("consent"), ErrorCode::MissingField, detail);
+            }
+        }
+    }
+
+    /// Tests are in pairs: every member has what the first one has.
+    fn check_methods(&self, member: &MemberDocument, at: &Pointer, faults: &mut Faults) {
+        let first = self.members.first().map(|first| first.comparisons.keys());
+        if first.is_some_and(|first| !first.eq(member.comparisons.keys())) {
+            let detail = "every member has comparisons of the same methods as the first";
+            faults.add(&at.key("comparisons"), ErrorCode::OutOfRange, detail);
+        }
+    }
+}
