@@ -47,7 +47,7 @@ pub struct MeshingDocument {
     /// Beside a scan: a surface scan of the face, which takes the place of the skin of the CT.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
-    pub skin_scan: Option<SkinScanDocument>,
+    pub skin_scan: Option<Box<SkinScanDocument>>,
     /// Instead of a scan: a label map, whose regions of tissue are those of the mesh.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
