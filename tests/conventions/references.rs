@@ -145,6 +145,23 @@ fn every_page_and_heading_that_another_page_links_to_is_there() {
 }
 
 #[test]
+fn every_file_that_a_page_links_to_is_there() {
+    let mut linked = 0;
+    for name in Pages::read().0.keys() {
+        for link in text_of(name).split("](").skip(1).filter_map(|rest| rest.split(')').next()) {
+            if link.contains("://") || link.starts_with('#') {
+                continue;
+            }
+            let file = from_root(name, link);
+            let file = file.split('#').next().unwrap();
+            assert!(root().join(file).exists(), "{name} links to {file}, which is not there");
+            linked += 1;
+        }
+    }
+    assert!(linked > 100, "only {linked} links were found");
+}
+
+#[test]
 fn every_test_that_the_verification_page_names_is_there() {
     let tests: BTreeMap<PathBuf, String> = sources().collect();
     let page = text_of(CASES);
