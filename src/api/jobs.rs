@@ -253,10 +253,14 @@ async fn list(service: Service, Parameters(parameters): Parameters<ListParameter
         cursor: page.after.clone(),
         limit: page.rows(),
     };
+    let turn = service.list_turn().await?;
     let mut rows = service.store.jobs(&filter).await?;
     let next = page.cut(&mut rows, |row| &row.id);
-    let items = rows.iter().map(|row| status_info(row, false)).collect::<ApiResult<_>>()?;
-    Ok(json(StatusCode::OK, &JobList { items, next }))
+    let written = turn.compute(move || {
+        let items = rows.iter().map(|row| status_info(row, false)).collect::<ApiResult<_>>()?;
+        Ok(json(StatusCode::OK, &JobList { items, next }))
+    });
+    written.await?
 }
 
 /// Dismisses a job that has not ended; removes one that has, with its results.
@@ -280,5 +284,37 @@ async fn dismiss(service: Service, Id(id): Id) -> ApiResult<Response> {
             Ok(StatusCode::NO_CONTENT.into_response())
         }
         Dismissal::NotFound => Err(no_such_job()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use futures::FutureExt as _;
+    use futures::future::BoxFuture;
+
+    use super::*;
+    use crate::config::Config;
+    use crate::library::meshes::Library;
+    use crate::store::Store;
+
+    fn listed(service: &Service) -> BoxFuture<'static, ApiResult> {
+        let (status, kind, tag, case, cursor, limit) = (None, None, None, None, None, None);
+        let parameters = ListParameters { status, kind, tag, case, cursor, limit };
+        list(service.clone(), Parameters(parameters)).boxed()
+    }
+
+    #[tokio::test]
+    async fn a_list_waits_for_the_turn_of_its_tenant_and_no_more_wait_than_may() {
+        let folder = tempfile::tempdir().unwrap();
+        let store = Store::open(folder.path()).await.unwrap();
+        let config = Config::new(|name| (name == "waiting-requests").then(|| "1".into())).unwrap();
+        let service = Service::new(config, store.clone(), Library::new(store, 0));
+        let held = [service.list_turn().await.unwrap(), service.list_turn().await.unwrap()];
+        let mut first = listed(&service);
+        assert!((&mut first).now_or_never().is_none());
+        let refused = listed(&service).now_or_never().expect("it is told at once");
+        assert_eq!(refused.unwrap_err().into_response().status(), StatusCode::SERVICE_UNAVAILABLE);
+        drop(held);
+        assert_eq!(first.await.unwrap().status(), StatusCode::OK);
     }
 }

@@ -18,6 +18,8 @@ use std::sync::Arc;
 /// Meshes that are parsed at the same time, and jobs that are checked.
 const PARSED_AT_ONCE: usize = 2;
 const CHECKED_AT_ONCE: usize = 2;
+/// Pages of jobs that are read and written out at the same time.
+const LISTED_AT_ONCE: usize = 2;
 
 /// What every request may use.
 #[derive(Clone)]
@@ -30,6 +32,7 @@ pub struct Service {
     pub pictures: Pictures,
     parsing: Turns,
     checking: Turns,
+    listing: Turns,
     budget: Budget,
     /// Who asks, for what is counted for each client.
     client: Client,
@@ -75,6 +78,7 @@ impl Service {
             streams: super::streams::Streams::new(limits.event_streams),
             parsing: Turns::new("parse", PARSED_AT_ONCE, waiting),
             checking: Turns::new("check", CHECKED_AT_ONCE, waiting),
+            listing: Turns::new("list", LISTED_AT_ONCE, waiting),
             budget: Budget::new(Most {
                 of_process: config.bodies_bytes.max(limits.client_bodies_bytes),
                 of_client: limits.client_bodies_bytes,
@@ -112,6 +116,12 @@ impl Service {
     /// The turn of this request to check a job or a case, which needs meshes that are parsed already, or small ones.
     pub(super) async fn check_turn(&self) -> ApiResult<Turn> {
         self.checking.turn(self.store.tenant()).await
+    }
+
+    /// The turn of this request to list jobs, whose places are counted among all that wait: those who list without a pause
+    /// leave the database and the processors to others.
+    pub(super) async fn list_turn(&self) -> ApiResult<Turn> {
+        self.listing.turn(self.store.tenant()).await
     }
 
     /// Until the client of a request has gone for which something was changed. Any other ends with its client.

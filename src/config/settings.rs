@@ -147,7 +147,7 @@ pub const SETTINGS: &[Setting] = &[
     setting(
         "waiting-requests",
         "256",
-        "requests of one tenant that may wait for their turn at the parser, as many for the check of jobs, and as many to write; 1 to 100000",
+        "requests of one tenant that may wait for their turn at the parser, as many for the check of jobs, as many to list jobs, and as many to write; 1 to 100000",
     ),
     setting(
         "body-idle-s",

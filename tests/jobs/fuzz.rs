@@ -1,13 +1,18 @@
 //! Bytes changed at random in many places at once: every reader answers. A few seconds by default;
 //! `FACIES_FUZZ_S=3600 cargo test --release --test jobs fuzz -- --nocapture` goes on for an hour and says how far it came.
 
+use std::path::Path;
 use std::time::{Duration, Instant};
+
+use facies::schema::job_document::JobKind;
+use serde_json::Value;
 
 use crate::answers;
 use crate::samples::one_of_each;
 
-/// Changed inputs of each kind where no time is asked for.
-const USUAL: usize = 20_000;
+/// Changed inputs where no time is asked for.
+const USUAL_OF_FILES: usize = 400_000;
+const USUAL_OF_DOCUMENTS: usize = 200_000;
 
 /// No input of a few kB may take longer.
 const LONGEST: Duration = Duration::from_secs(10);
@@ -75,12 +80,12 @@ fn changed(bytes: &[u8], other: &[u8], random: &mut Random) -> Vec<u8> {
 }
 
 /// Calls `check` with changed inputs, for as many or as long as is wanted.
-fn fuzz(seeds: &[(&str, Vec<u8>)], mut check: impl FnMut(&str, &[u8])) {
+fn fuzz(seeds: &[(&str, Vec<u8>)], usual: usize, mut check: impl FnMut(&str, &[u8])) {
     let seconds = std::env::var("FACIES_FUZZ_S").ok().map(|text| text.parse().unwrap());
     let until = seconds.map(|seconds| Instant::now() + Duration::from_secs(seconds));
     let mut random = Random(0x9e37_79b9_7f4a_7c15);
     let mut count = 0;
-    while until.map_or(count < USUAL * seeds.len(), |until| Instant::now() < until) {
+    while until.map_or(count < usual, |until| Instant::now() < until) {
         let (name, seed) = &seeds[count % seeds.len()];
         let (_, other) = &seeds[random.below(seeds.len())];
         let input = changed(seed, other, &mut random);
@@ -95,55 +100,80 @@ fn fuzz(seeds: &[(&str, Vec<u8>)], mut check: impl FnMut(&str, &[u8])) {
 #[test]
 fn any_file_is_answered() {
     let mut read_well = 0;
-    fuzz(&one_of_each(), |_, input| read_well += usize::from(answers::file(input)));
+    fuzz(&one_of_each(), USUAL_OF_FILES, |_, input| read_well += usize::from(answers::file(input)));
     assert!(read_well > 0, "inputs are changed beyond recognition");
 }
 
-const CASE: &str = r#"{"schema":1,"name":"a","units":"mm","frame":"LPS","volume":"m","tags":["t"],
-    "regions":{"array":"layer","names":{"1":"fat"}},"skin":{"node_set":"skin"},
-    "segments":[{"name":"jaw","nodes":{"array":"tag","value":2}}],"fixed":[{"any":[{"node_set":"skull"},{"surface":"b","within_mm":2.5}]}],
-    "materials":{"*":{"young_modulus_kpa":15,"poisson_ratio":0.46}},"landmarks":{"chin":[1,2.5e1,-3]}}"#;
-const PLAN: &str = r#"{"segments":[{"name":"jaw","translation_mm":[1,0,0],"rotation_deg":[0,0,3],
-    "pivot_mm":[0,40,-50]}],"loads":[{"gravity_m_per_s2":[0,0,-9.81]}],
-    "osteotomy":{"cuts":[{"name":"a","point_mm":[1,2,3],"normal":[0,0,1]}],"segments":[{"name":"jaw","below":["a"]}]}}"#;
-const PREDICT: &str = r#"{"kind":"predict","case":"c","method":"fem_linear","element":"auto",
-    "materials":{"*":{"young_modulus_kpa":15,"poisson_ratio":0.46}},"outputs":["skin.vtp"],
-    "budget":{"wall_s":60,"memory_mb":4000},"tags":["t"]}"#;
-const STUDY: &str = r#"{"kind":"study","scenes":["slab",{"case":"c","name":"a"}],"plans":["patch 4 mm"],
-    "methods":["fem_linear",{"method":"msm","label":"x"}],"elements":["plain"],"levels":[0,1],
-    "sweep":{"*":{"poisson_ratio":[0.3,0.46]}},"truth":{"refine":1,"element":"quadratic"},
-    "thresholds":{"p95_mm":1.0},"repeats":1}"#;
-const BATCH: &str = r#"{"kind":"batch","items":[{"case":"c","plan":{"segments":[{"name":"jaw","translation_mm":[1,0,0]}]},
-    "method":"msm","label":"x"}],"levels":[0]}"#;
-const OPTIMISE: &str = r#"{"kind":"optimise","case":"c","targets":[{"landmark":"chin","position_mm":[1,2,3],
-    "sigma_mm":0.5}],"bounds":{"jaw":{"translation_mm":[[-5,5],[0,0],[-1,1]]}},"verify":true}"#;
-const COMPARE: &str =
-    r#"{"kind":"compare","prediction":{"job":"j"},"actual":{"mesh":"m"},"samples_per_mm2":1}"#;
-const RESPONSE: &str = r#"{"kind":"response","case":"c","segments":["jaw"]}"#;
-const MESH: &str = r#"{"kind":"mesh","scan":"s","thresholds_hu":{"skin":-300,"bone":250},"frame":"RAS",
-    "osteotomy":{"cuts":[{"name":"a","point_mm":[1,2,3],"normal":[0,-0.2,1]},
-    {"name":"b","point_mm":[0,0,0],"normal":[0,0,1],"corners_mm":[[0,0,0],[9,0,0],[0,9,0]],"kerf_mm":1}],
-    "segments":[{"name":"jaw","below":["a"],"above":["b"],"seeds_mm":[[1,2,4]]}],"free_band_mm":3},
-    "size":{"finest_mm":2,"coarsening":4},"scan_ends_fixed":false,"budget":{"wall_s":60},"tags":["t"]}"#;
+/// The inputs in `fuzz/corpus/documents`, each with the name of its document.
+fn kept() -> Vec<(&'static str, Vec<u8>)> {
+    let corpus = Path::new(env!("CARGO_MANIFEST_DIR")).join("fuzz/corpus/documents");
+    let of_one = |&(name, _): &(&'static str, _)| {
+        let mut files: Vec<_> = corpus.join(name).read_dir().unwrap().collect();
+        files.sort_by_key(|file| file.as_ref().unwrap().file_name());
+        files.into_iter().map(move |file| (name, std::fs::read(file.unwrap().path()).unwrap()))
+    };
+    answers::DOCUMENTS.iter().flat_map(of_one).collect()
+}
 
 #[test]
 fn any_document_is_answered() {
-    let seeds = [
-        ("case", CASE),
-        ("plan", PLAN),
-        ("predict", PREDICT),
-        ("study", STUDY),
-        ("batch", BATCH),
-        ("optimise", OPTIMISE),
-        ("compare", COMPARE),
-        ("response", RESPONSE),
-        ("mesh", MESH),
-    ];
-    for (name, seed) in seeds {
-        assert!(answers::document(name, seed.as_bytes()), "{name} is no document");
+    let mut seeds = kept();
+    seeds.retain(|(name, seed)| answers::document(name, seed));
+    for (name, _) in answers::DOCUMENTS {
+        assert!(seeds.iter().any(|(known, _)| known == name), "no input is a document `{name}`");
     }
-    let seeds = seeds.map(|(name, text)| (name, text.as_bytes().to_vec()));
     let mut read_well = 0;
-    fuzz(&seeds, |name, input| read_well += usize::from(answers::document(name, input)));
+    fuzz(&seeds, USUAL_OF_DOCUMENTS, |name, input| {
+        read_well += usize::from(answers::document(name, input));
+    });
     assert!(read_well > 0, "inputs are changed beyond recognition");
+}
+
+/// The document that an operation is sent; those of jobs are told apart by their kind.
+fn sent(operation: &str) -> Option<&'static str> {
+    Some(match operation {
+        "create_case" => "case",
+        "check_case" => "predict",
+        "create_plan" | "replace_plan" => "plan",
+        "create_cohort" => "stored-cohort",
+        "apply_response" => "apply",
+        "create_job" => "job",
+        "change_job" => "job-change",
+        "create_key" => "key",
+        "rotate_key" => "rotation",
+        _ => return None,
+    })
+}
+
+#[test]
+fn every_document_that_clients_send_is_fuzzed() {
+    for kind in JobKind::ALL {
+        let name = kind.name();
+        assert!(
+            answers::DOCUMENTS.iter().any(|(known, _)| *known == name),
+            "jobs of kind `{name}`"
+        );
+    }
+    let description: Value =
+        serde_json::from_str(include_str!("../../openapi/openapi.json")).unwrap();
+    let items = description["paths"].as_object().unwrap().values();
+    let operations = items.flat_map(|item| item.as_object().unwrap().values());
+    let mut count = 0;
+    for operation in operations.filter(|operation| operation.get("requestBody").is_some()) {
+        let Some(body) = operation.pointer("/requestBody/content/application~1json") else {
+            continue;
+        };
+        let id = operation["operationId"].as_str().unwrap();
+        let name = sent(id).unwrap_or_else(|| panic!("the document of {id} is not fuzzed"));
+        for example in body["examples"].as_object().unwrap().values() {
+            let text = example["value"].to_string();
+            assert!(answers::document(name, text.as_bytes()), "{id}: {text}");
+            if name == "job" {
+                let kind = example["value"]["kind"].as_str().unwrap();
+                assert!(answers::document(kind, text.as_bytes()), "{id}: {text}");
+            }
+            count += 1;
+        }
+    }
+    assert!(count > JobKind::ALL.len());
 }

@@ -1,11 +1,19 @@
 //! What any file and any document has to be answered with, whatever is in it: a reading or one error.
 
+use facies::schema::applied::ApplyDocument;
+use facies::schema::case::meshed::CaseBody;
+use facies::schema::cohort::stored::StoredCohortDocument;
+use facies::schema::job_change::JobChangeDocument;
+use facies::schema::job_document::JobDocument;
+use facies::schema::key::{KeyDocument, RotationDocument};
 use facies::schema::wire::strict;
 use facies::schema::{
-    CaseDocument, CompareDocument, Limits, MeshingDocument, OptimiseDocument, PlanDocument,
-    PredictDocument, ResponseDocument, StudyDocument,
+    CohortDocument, CompareDocument, ConformDocument, Faults, LearnDocument, Limits,
+    MeshingDocument, OptimiseDocument, PlanDocument, PredictDocument, Problem, ReproduceDocument,
+    ResponseDocument, StudyDocument,
 };
 use mechanics::format::{FormatError, ReadLimits, read};
+use mechanics::plan::RigidMovement;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
@@ -31,27 +39,71 @@ pub fn file(bytes: &[u8]) -> bool {
 }
 
 /// True where the text was read as a document of that name.
+type Reader = fn(&[u8]) -> bool;
+
+/// Every document that clients send, by the name of its folder in `fuzz/corpus/documents`: those of jobs by their kinds, `job`
+/// what tells these apart; and the texts of rigid movements.
+pub const DOCUMENTS: &[(&str, Reader)] = &[
+    ("apply", |text| parsed::<ApplyDocument>(text, |_, _, _| {})),
+    ("batch", |text| parsed(text, StudyDocument::check)),
+    ("case", |text| read_again(text, CaseBody::parse)),
+    ("cohort", |text| parsed(text, CohortDocument::check)),
+    ("compare", |text| parsed(text, CompareDocument::check)),
+    ("conform", |text| parsed(text, ConformDocument::check)),
+    ("job", |text| read_again(text, JobDocument::parse)),
+    ("job-change", |text| parsed(text, JobChangeDocument::check)),
+    ("key", |text| parsed(text, |key: &KeyDocument, _, faults| join(faults, key.check()))),
+    ("learn", |text| parsed(text, LearnDocument::check)),
+    ("mesh", |text| parsed::<MeshingDocument>(text, |_, _, _| {})),
+    ("optimise", |text| parsed::<OptimiseDocument>(text, |_, _, _| {})),
+    ("plan", |text| parsed::<PlanDocument>(text, |_, _, _| {})),
+    ("predict", |text| {
+        parsed(text, |spec: &PredictDocument, _, faults| spec.check_for_service(faults))
+    }),
+    ("reproduce", |text| parsed(text, ReproduceDocument::check)),
+    ("response", |text| parsed(text, ResponseDocument::check)),
+    ("rotation", |text| {
+        parsed(text, |new: &RotationDocument, _, faults| join(faults, new.check()))
+    }),
+    ("stored-cohort", |text| parsed(text, StoredCohortDocument::check)),
+    ("study", |text| parsed(text, StudyDocument::check)),
+    ("transform-itk", itk),
+    ("transform-matrix", matrix),
+];
+
+/// True where the text was read as a document of that name.
 pub fn document(name: &str, text: &[u8]) -> bool {
-    match name {
-        "case" => parsed::<CaseDocument>(text),
-        "plan" => parsed::<PlanDocument>(text),
-        "predict" => parsed::<PredictDocument>(text),
-        "study" | "batch" => parsed::<StudyDocument>(text),
-        "optimise" => parsed::<OptimiseDocument>(text),
-        "compare" => parsed::<CompareDocument>(text),
-        "response" => parsed::<ResponseDocument>(text),
-        "mesh" => parsed::<MeshingDocument>(text),
-        _ => panic!("no document is called {name}"),
+    let reader = DOCUMENTS.iter().find(|(known, _)| *known == name);
+    reader.unwrap_or_else(|| panic!("no document is called {name}")).1(text)
+}
+
+fn join(faults: &mut Faults, checked: Result<(), Problem>) {
+    if let Err(problem) = checked {
+        faults.join(problem);
     }
 }
 
-/// A document that is read says the same when it is written and read again.
-fn parsed<T: DeserializeOwned + Serialize>(input: &[u8]) -> bool {
+/// A document that is read is checked, and says the same when it is written and read again.
+fn parsed<T: DeserializeOwned + Serialize>(
+    input: &[u8],
+    check: fn(&T, &Limits, &mut Faults),
+) -> bool {
+    read_again(input, |text, limits| {
+        let document = strict::parse(text, limits)?;
+        check(&document, limits, &mut Faults::default());
+        Ok(document)
+    })
+}
+
+fn read_again<T: Serialize>(
+    input: &[u8],
+    parse: impl Fn(&[u8], &Limits) -> Result<T, Problem>,
+) -> bool {
     let limits = Limits::default();
-    match strict::parse::<T>(input, &limits) {
+    match parse(input, &limits) {
         Ok(document) => {
             let text = serde_json::to_string(&document).unwrap();
-            let again = strict::parse::<T>(text.as_bytes(), &limits)
+            let again = parse(text.as_bytes(), &limits)
                 .unwrap_or_else(|problem| panic!("{text}: {}", problem.detail));
             assert_eq!(serde_json::to_string(&again).unwrap(), text);
             true
@@ -61,4 +113,29 @@ fn parsed<T: DeserializeOwned + Serialize>(input: &[u8]) -> bool {
             false
         }
     }
+}
+
+/// A matrix that is read is finite, and the same to the bit when it is written and read again.
+fn matrix(input: &[u8]) -> bool {
+    let Ok(movement) = RigidMovement::from_matrix_text(&String::from_utf8_lossy(input)) else {
+        return false;
+    };
+    assert!(movement.matrix4().iter().all(|entry| entry.is_finite()));
+    let again = RigidMovement::from_matrix_text(&movement.to_matrix_text("again")).unwrap();
+    assert_eq!(again, movement);
+    true
+}
+
+/// A transform that is read is finite, and so is what is written of it.
+fn itk(input: &[u8]) -> bool {
+    let Ok(movement) = RigidMovement::from_itk_text(&String::from_utf8_lossy(input)) else {
+        return false;
+    };
+    assert!(movement.matrix4().iter().all(|entry| entry.is_finite()));
+    // Turned back, a movement to the border of what is read may end beyond it.
+    if movement.translation().norm() < 1e8 {
+        let again = RigidMovement::from_itk_text(&movement.to_itk_text("again")).unwrap();
+        assert_eq!(again.rotation(), movement.rotation());
+    }
+    true
 }

@@ -19,7 +19,7 @@ use super::{TriangleSurface, Vector};
 const KEPT_FOR_A_TRIANGLE: usize = 16;
 
 /// Triangles that one triangle is tried against. A triangle of a sound surface is near some dozens.
-const TRIED_FOR_A_TRIANGLE: usize = 4096;
+const TRIED_FOR_A_TRIANGLE: u64 = 4096;
 
 /// Two triangles by their numbers, the smaller first.
 pub type TrianglePair = [u32; 2];
@@ -33,12 +33,15 @@ pub struct Crossings {
     pub count: u64,
     /// Triangles that are near more than 4096 others and were not tried against all of them.
     pub untried: u64,
+    /// Pairs that were tried, which is what a search takes: those whose boxes meet.
+    pub tried: u64,
 }
 
 /// The crossings of one triangle with those of higher numbers.
 struct OfTriangle {
     others: Vec<u32>,
     count: u64,
+    tried: u64,
     is_untried: bool,
 }
 
@@ -50,13 +53,14 @@ pub fn self_crossings(
     let boxes: Vec<Aabb> = (0..surface.triangles.len()).map(|one| box_of(surface, one)).collect();
     let tree = Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes);
     let of_triangle = |one: usize| {
-        let mut found = OfTriangle { others: Vec::new(), count: 0, is_untried: false };
+        let mut found = OfTriangle { others: Vec::new(), count: 0, tried: 0, is_untried: false };
         let near = tree.intersect_aabb(&boxes[one]).filter(|&other| other as usize > one);
-        for (tried, other) in near.enumerate() {
-            if tried == TRIED_FOR_A_TRIANGLE {
+        for other in near {
+            if found.tried == TRIED_FOR_A_TRIANGLE {
                 found.is_untried = true;
                 break;
             }
+            found.tried += 1;
             let pair = [one as u32, other];
             if cross(surface, &pair) && counts(&pair) {
                 found.count += 1;
@@ -65,12 +69,13 @@ pub fn self_crossings(
         }
         found.others.sort_unstable();
         found.others.truncate(KEPT_FOR_A_TRIANGLE);
-        (found.count > 0 || found.is_untried).then_some((one as u32, found))
+        (found.tried > 0).then_some((one as u32, found))
     };
     let numbers = (0..surface.triangles.len()).into_par_iter();
     let found: Vec<(u32, OfTriangle)> = numbers.filter_map(of_triangle).collect();
     Crossings {
         count: found.iter().map(|(_, found)| found.count).sum(),
+        tried: found.iter().map(|(_, found)| found.tried).sum(),
         untried: found.iter().filter(|(_, found)| found.is_untried).count() as u64,
         pairs: found
             .iter()
@@ -285,7 +290,7 @@ mod tests {
         let tried: Vec<TrianglePair> = all.filter(|pair| cross(&surface, pair)).collect();
         assert!(tried.len() > 50, "{}", tried.len());
         let found = self_crossings(&surface, |_| true);
-        assert_eq!(found, Crossings { count: tried.len() as u64, pairs: tried, untried: 0 });
+        assert_eq!((found.count, &found.pairs, found.untried), (tried.len() as u64, &tried, 0));
         let some = self_crossings(&surface, |pair| pair[0] % 2 == 0);
         assert_eq!(
             some.pairs,

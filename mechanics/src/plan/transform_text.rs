@@ -13,6 +13,9 @@ use crate::mesh::Vector;
 
 const HEADER: &str = "#Insight Transform File V1.0";
 
+/// No head is that far from anything, and what is within it can be turned about any centre.
+const FARTHEST_MM: f64 = 1e9;
+
 /// Why a text is no rigid movement.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum TransformTextError {
@@ -20,9 +23,11 @@ pub enum TransformTextError {
     Header { found: String },
     #[error("the line of {what} is missing")]
     Missing { what: &'static str },
+    #[error("the file holds {found} transforms, and has to hold one")]
+    Several { found: usize },
     #[error("{what} are {wanted} numbers, here are {found}")]
     Count { what: &'static str, wanted: usize, found: usize },
-    #[error("{text:?} is no number")]
+    #[error("{text:?} is no number from -{FARTHEST_MM:e} to {FARTHEST_MM:e}")]
     Number { text: String },
     #[error(transparent)]
     Movement(#[from] MovementError),
@@ -81,6 +86,10 @@ impl RigidMovement {
         if first.trim() != HEADER {
             return Err(TransformTextError::Header { found: first.to_owned() });
         }
+        let found = text.lines().filter(|line| line.trim().starts_with("Transform:")).count();
+        if found > 1 {
+            return Err(TransformTextError::Several { found });
+        }
         let parameters = itk_numbers(text, "Parameters:", 12)?;
         let centre = itk_numbers(text, "FixedParameters:", 3)?;
         let rotation = Matrix3::from_fn(|row, column| parameters[3 * row + column]);
@@ -110,7 +119,8 @@ fn itk_numbers(
 
 fn numbers(text: &str) -> Result<Vec<f64>, TransformTextError> {
     let number = |word: &str| {
-        word.parse::<f64>().map_err(|_| TransformTextError::Number { text: word.to_owned() })
+        let number = word.parse().ok().filter(|number: &f64| number.abs() <= FARTHEST_MM);
+        number.ok_or_else(|| TransformTextError::Number { text: word.to_owned() })
     };
     text.split_whitespace().map(number).collect()
 }

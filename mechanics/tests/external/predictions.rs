@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use mechanics::boundary::{NodeSelection, connected_parts};
 use mechanics::mesh::connectivity::Faces;
@@ -34,9 +34,9 @@ trials! {
     a_jaw_raised_into_the_lips_of_a_real_face_is_told
     lips_of_real_faces_press_on_each_other_with_contact
     the_second_order_of_a_face_like_shell_is_stored_to_a_thousandth_of_a_millimetre
-    the_search_for_crossings_takes_little_of_a_prediction
+    the_search_for_crossings_tries_few_pairs_for_each_triangle
     swapped_sets_and_the_inside_of_a_real_face_are_told
-    whether_tissue_goes_along_as_one_is_known_in_milliseconds
+    tissue_of_a_face_and_of_a_shell_is_one_part_that_moves_as_planned
 }
 
 fn shared_mesh(file: &str) -> Result<VolumeMesh, Missing> {
@@ -159,8 +159,9 @@ fn crossings_in_contact(case: &Case, by: f64, settings: &Settings, name: &str) -
     new
 }
 
-/// What the search takes of the face and of the shell of 302 265 tetrahedra, printed. One prediction of the shell takes seconds.
-fn the_search_for_crossings_takes_little_of_a_prediction() -> Result<(), Missing> {
+/// What the search takes of the face and of the shell of 302 265 tetrahedra: pairs of triangles that are tried, and time, printed.
+/// One prediction of the shell takes seconds.
+fn the_search_for_crossings_tries_few_pairs_for_each_triangle() -> Result<(), Missing> {
     let label = |value| NodeSelection::Label { array: "tag".to_owned(), value };
     let shell = Case {
         skin: Some(label(5)),
@@ -173,23 +174,19 @@ fn the_search_for_crossings_takes_little_of_a_prediction() -> Result<(), Missing
         for point in &mut moved.points {
             point.x += 0.1 * (0.1 * point.z).sin();
         }
-        let timed = || {
-            let begun = Instant::now();
-            let told = skin_overlap(&scene.skin, &moved);
-            (begun.elapsed(), told)
-        };
-        timed();
-        let (took, told) = timed();
-        println!("{} triangles: {took:?}, {told:?}", moved.triangles.len());
-        // A bound that a busy machine keeps too.
-        assert!(took < Duration::from_secs(2), "{took:?}");
+        let begun = Instant::now();
+        let told = skin_overlap(&scene.skin, &moved);
+        let (took, triangles) = (begun.elapsed(), moved.triangles.len() as u64);
+        let tried = self_crossings(&moved, |_| true).tried;
+        println!("{triangles} triangles: {tried} pairs tried, {took:?}, {told:?}");
+        assert!((triangles..20 * triangles).contains(&tried), "{tried} of {triangles}");
     }
     Ok(())
 }
 
 /// The parts of the face and of the shell of 302 265 tetrahedra, and the movement that would carry them, printed: milliseconds,
 /// where one prediction of the shell takes seconds.
-fn whether_tissue_goes_along_as_one_is_known_in_milliseconds() -> Result<(), Missing> {
+fn tissue_of_a_face_and_of_a_shell_is_one_part_that_moves_as_planned() -> Result<(), Missing> {
     let label = |value| NodeSelection::Label { array: "tag".to_owned(), value };
     let bone = |name: &str, value| CaseSegment { name: name.to_owned(), nodes: label(value) };
     let shell = Case {
@@ -218,8 +215,6 @@ fn whether_tissue_goes_along_as_one_is_known_in_milliseconds() -> Result<(), Mis
         predict(&scene, &Unobserved).unwrap();
         println!("prediction {:?}", begun.elapsed());
         assert_eq!((parts, told.refused.len(), told.told.len()), (1, 0, 0));
-        // A bound that a busy machine keeps too.
-        assert!(took < Duration::from_millis(500), "{took:?}");
     }
     Ok(())
 }

@@ -64,6 +64,12 @@ fn what_is_no_rigid_movement_is_refused_by_name() {
     assert!(refused(&text.replace("FixedParameters", "Fixed")).contains("missing"));
     let wrong = RigidMovement::from_matrix_text("1 0 0 0 0 1 0 0 0 0 x 0 0 0 0 1").unwrap_err();
     assert!(wrong.to_string().contains("\"x\""), "{wrong}");
+    for beyond in ["nan", "-inf", "1e10"] {
+        let text = format!("1 0 0 {beyond} 0 1 0 0 0 0 1 0 0 0 0 1");
+        let wrong = RigidMovement::from_matrix_text(&text).unwrap_err();
+        assert!(wrong.to_string().contains(beyond), "{wrong}");
+    }
+    assert!(refused(&format!("{text}{text}")).contains("2 transforms"));
     let mirrored = RigidMovement::from_matrix_text("-1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1").unwrap_err();
     assert!(mirrored.to_string().contains("mirrors"), "{mirrored}");
 }

@@ -60,8 +60,8 @@ pub struct Limits {
     pub event_streams: u32,
     /// Keys in force that a tenant may have.
     pub keys: u32,
-    /// Requests of one tenant that may wait for their turn at the parser, as many for their turn at the check of jobs, and as
-    /// many for theirs to write.
+    /// Requests of one tenant that may wait for their turn at the parser, as many for their turn at the check of jobs, as
+    /// many for theirs to list jobs, and as many for theirs to write.
     pub waiting_requests: u32,
     /// Bytes of bodies that one client may have under way at the same time.
     pub client_bodies_bytes: u64,
