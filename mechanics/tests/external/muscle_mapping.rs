@@ -18,6 +18,7 @@ use crate::support::external::{Missing, shared_data, trials};
 trials! {
     muscles_of_the_template_lie_on_the_subject_along_the_fibres_of_its_cells
     cells_near_the_fibres_of_the_subject_are_those_that_were_counted
+    lengths_of_the_left_fibres_of_the_subject_are_those_that_were_measured
 }
 
 /// From lines within which a cell belongs to a muscle, in mm.
@@ -79,10 +80,32 @@ fn cells_near_the_fibres_of_the_subject_are_those_that_were_counted() -> Result<
         assert!(name == muscle && (own.distance - distance).abs() < 1e-4, "{element}: {own:?}");
         assert!(angle_between(&own.axis, &axis.into()) < 0.01, "{element}: {own:?}");
     }
+    // Where muscles lie together: the lines of one pull along, those of the others are near too.
+    let several = [2, 3].map(|most| near.iter().filter(|own| own.muscles >= most).count());
+    assert_eq!(several, [496, 90], "of {} cells", near.len());
     // A muscle of few cells is looked for as far as its cells are large.
     let reach = widened(&mesh, &muscles, NEAR);
     for (name, reach) in names.iter().zip(reach) {
         assert!(reach == NEAR || *name == "BUC", "{name}: {reach}");
+    }
+    Ok(())
+}
+
+fn lengths_of_the_left_fibres_of_the_subject_are_those_that_were_measured() -> Result<(), Missing> {
+    let fibres = fibres("subject")?;
+    let length = |line: &Vec<Vector>| line.windows(2).map(|pair| (pair[1] - pair[0]).norm()).sum();
+    for (muscle, known) in [
+        ("ZYG", vec![55.694]),
+        ("RIS", vec![52.975]),
+        ("LAO", vec![34.903]),
+        ("LLS", vec![35.147]),
+        ("BUC", vec![43.224, 30.793]),
+    ] {
+        let found: Vec<f64> = fibres[&format!("{muscle}_left")].iter().map(length).collect();
+        assert_eq!(found.len(), known.len(), "{muscle}: {found:?}");
+        for (found, known) in found.iter().zip(&known) {
+            assert!((found - known).abs() < 6e-4, "{muscle}: {found} mm, known {known}");
+        }
     }
     Ok(())
 }
