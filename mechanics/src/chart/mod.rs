@@ -3,6 +3,7 @@
 //! Knows nothing of meshes or jobs: it takes points, triangles, values and names.
 
 mod axis;
+mod boxes;
 mod callout;
 mod cell_sizes;
 mod classes;
@@ -14,6 +15,7 @@ pub mod drawing;
 mod facet;
 mod gaps;
 pub mod helvetica;
+mod histogram;
 mod ladder;
 mod ladder_legend;
 mod learning;
@@ -28,12 +30,14 @@ mod symbol;
 pub mod view;
 mod views;
 
+pub use boxes::{BoxesGroup, BoxesPicture};
 pub use cell_sizes::{CellSizesPicture, CellSizesSeries};
 pub use classes::{ClassKind, ClassesPicture, NodeClasses};
 pub use contour_grid::ContourAxis;
 pub use contours::ContourPicture;
 pub use displacement::DisplacementPicture;
 pub use gaps::{GapsOfBone, GapsPicture};
+pub use histogram::HistogramPicture;
 pub use ladder::{LadderFailure, LadderMark, LadderPicture};
 pub use learning::{LearningPicture, LearningSeries};
 pub use raster::{Image, PngError};

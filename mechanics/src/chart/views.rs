@@ -131,7 +131,7 @@ impl ViewsPicture<'_> {
 
 impl ViewValues<'_> {
     /// The colour of the band in which a value lies.
-    fn colour(&self, value: f64) -> Rgb {
+    pub(super) fn colour(&self, value: f64) -> Rgb {
         let share = value / self.range_mm;
         let share = if self.is_signed { (share + 1.0) / 2.0 } else { share };
         let band = (share * BANDS as f64).floor().clamp(0.0, (BANDS - 1) as f64);

@@ -97,6 +97,8 @@ pub struct Cut {
     plane: Plane,
     reach: Reach,
     kerf: f64,
+    /// The chain of polygons that it is a piece of, by its number.
+    chain: Option<usize>,
 }
 
 /// An extent in the axes of its plane.
@@ -110,7 +112,7 @@ enum Reach {
 impl Cut {
     /// All of a plane, by a saw without width.
     pub fn unbounded(name: &str, plane: Plane) -> Cut {
-        Cut { name: name.to_owned(), plane, reach: Reach::Everywhere, kerf: 0.0 }
+        Cut { name: name.to_owned(), plane, reach: Reach::Everywhere, kerf: 0.0, chain: None }
     }
 
     /// As much of a plane as is given, by a saw of that width in mm.
@@ -127,7 +129,65 @@ impl Cut {
             None => Reach::Everywhere,
             Some(extent) => extent.on(&plane)?,
         };
-        Ok(Cut { name: name.to_owned(), plane, reach, kerf })
+        Ok(Cut { name: name.to_owned(), plane, reach, kerf, chain: None })
+    }
+
+    /// What a line of points saws that goes into the bone by `depth`, a way in mm: a parallelogram for each piece of the line, which
+    /// meet without a gap. Above each is where (its way along the line) x `depth` points. `chain` is the number of the line.
+    pub fn chained(
+        name: &str,
+        line: &[Vector],
+        depth: Vector,
+        kerf: f64,
+        chain: usize,
+    ) -> Result<Vec<Cut>, CutError> {
+        let piece = |(number, ends): (usize, &[Vector])| {
+            let (from, to) = (ends[0], ends[1]);
+            let plane = Plane::new(from, (to - from).cross(&depth))?;
+            let corners = vec![from, to, to + depth, from + depth];
+            let name = format!("{name}, piece {}", number + 1);
+            let cut = Cut::new(&name, plane, Some(Extent::Polygon { corners }), kerf)?;
+            Ok(Cut { chain: Some(chain), ..cut })
+        };
+        line.windows(2).enumerate().map(piece).collect()
+    }
+
+    /// The number of the line that it is a piece of. Such a piece has no sides far from itself: bone of a step lies on both
+    /// sides of the plane of each of its pieces.
+    pub fn chain(&self) -> Option<usize> {
+        self.chain
+    }
+
+    /// As much of a closed path on the plane as the saw reaches; `None` where its extent is no convex polygon. Where the path falls
+    /// apart the pieces hang together along the outline of the extent, which adds no area.
+    pub fn clipped(&self, path: &[Vector]) -> Option<Vec<Vector>> {
+        let Reach::Polygon(corners) = &self.reach else { return None };
+        let turn = area(corners).signum();
+        let is_convex = (0..corners.len()).all(|at| {
+            let [a, b, c] = [0, 1, 2].map(|next| corners[(at + next) % corners.len()]);
+            turn * side_of(a, b, c) >= 0.0
+        });
+        if !is_convex {
+            return None;
+        }
+        let clip = |path: Vec<Vector>, (a, b): ([f64; 2], [f64; 2])| {
+            let depths: Vec<f64> =
+                path.iter().map(|p| turn * side_of(a, b, flat(&self.plane, p))).collect();
+            let mut kept = Vec::new();
+            for (at, point) in path.iter().enumerate() {
+                let next = (at + 1) % path.len();
+                if depths[at] >= 0.0 {
+                    kept.push(*point);
+                }
+                if (depths[at] >= 0.0) != (depths[next] >= 0.0) {
+                    let share = depths[at] / (depths[at] - depths[next]);
+                    kept.push(point + (path[next] - point) * share);
+                }
+            }
+            kept
+        };
+        // Source: Sutherland and Hodgman, Reentrant polygon clipping, Communications of the ACM 17 (1974).
+        Some(sides(corners).fold(path.to_vec(), clip))
     }
 
     pub fn plane(&self) -> &Plane {
@@ -214,6 +274,11 @@ fn area(corners: &[[f64; 2]]) -> f64 {
     sides(corners).map(|(a, b)| (a[0] * b[1] - a[1] * b[0]) / 2.0).sum()
 }
 
+/// Twice the area of a triangle, negative where it turns the other way.
+fn side_of(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> f64 {
+    (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+}
+
 /// Whether a polygon holds a point, by the parity of the sides to its right.
 fn holds(corners: &[[f64; 2]], [x, y]: &[f64; 2]) -> bool {
     let to_the_right = |(a, b): &([f64; 2], [f64; 2])| {
@@ -245,6 +310,50 @@ mod tests {
             assert_eq!(cut.parts(&above, &below), parted, "{x} {y}");
             assert!(!cut.parts(&below, &Vector::new(x, y, 2.9)));
         }
+    }
+
+    #[test]
+    fn a_path_is_clipped_to_what_the_saw_reaches() {
+        let cut = square(0.0);
+        let path = |corners: &[[f64; 2]]| {
+            corners.iter().map(|&[x, y]| Vector::new(x, y, 3.0)).collect::<Vec<_>>()
+        };
+        let area_of = |path: &[Vector]| {
+            let corners: Vec<_> = path.iter().map(|p| flat(cut.plane(), p)).collect();
+            area(&corners).abs()
+        };
+        // A larger square, one that sticks out on one side, and one beside.
+        let clipped = |corners: &[[f64; 2]]| cut.clipped(&path(corners)).unwrap();
+        let all = clipped(&[[-9.0, -9.0], [9.0, -9.0], [9.0, 9.0], [-9.0, 9.0]]);
+        assert!((area_of(&all) - 16.0).abs() < 1e-12);
+        let half = clipped(&[[1.0, 1.0], [9.0, 1.0], [9.0, 3.0], [1.0, 3.0]]);
+        assert!((area_of(&half) - 6.0).abs() < 1e-12, "{half:?}");
+        assert!(clipped(&[[5.0, 5.0], [9.0, 5.0], [9.0, 9.0]]).is_empty());
+        let within = [[1.0, 1.0], [3.0, 1.0], [3.0, 3.0]];
+        assert_eq!(clipped(&within), path(&within));
+    }
+
+    #[test]
+    fn a_line_saws_parallelograms_that_meet_and_have_the_same_side_above() {
+        let line = [[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [4.0, 0.0, 2.0], [9.0, 0.0, 2.0]];
+        let line = line.map(Vector::from);
+        let cuts = Cut::chained("step", &line, Vector::y() * -5.0, 0.5, 7).unwrap();
+        let names: Vec<&str> = cuts.iter().map(|cut| cut.name.as_str()).collect();
+        assert_eq!(names, ["step, piece 1", "step, piece 2", "step, piece 3"]);
+        let normals: Vec<Vector> = cuts.iter().map(|cut| cut.plane().normal()).collect();
+        assert_eq!(normals, [-Vector::z(), Vector::x(), -Vector::z()]);
+        assert!(cuts.iter().all(|cut| cut.chain() == Some(7) && cut.kerf() == 0.5));
+        let parts = |from: [f64; 3], to: [f64; 3]| {
+            let (from, to) = (Vector::from(from), Vector::from(to));
+            cuts.iter().filter(|cut| cut.parts(&from, &to)).count()
+        };
+        assert_eq!(parts([2.0, -1.0, -1.0], [2.0, -1.0, 1.0]), 1);
+        assert_eq!(parts([6.0, -1.0, -1.0], [6.0, -1.0, 1.0]), 0, "below the step");
+        assert_eq!(parts([6.0, -1.0, 1.0], [6.0, -1.0, 3.0]), 1);
+        assert_eq!(parts([3.0, -1.0, 1.0], [5.0, -1.0, 1.0]), 1, "through the riser");
+        assert_eq!(parts([2.0, -6.0, -1.0], [2.0, -6.0, 1.0]), 0, "deeper than it is sawn");
+        let along = Cut::chained("cut", &line, Vector::x(), 0.0, 0).unwrap_err();
+        assert_eq!(along, CutError::Normal);
     }
 
     #[test]

@@ -48,11 +48,13 @@ fn paths(surface: &TriangleSurface, cut: &Cut, side: Side, inside: f64) -> Vec<V
     let sliced = slices(surface, &cut.plane().raised(height)).into_iter();
     let onto = sliced.map(|path| path.into_iter().map(on_plane).collect::<Vec<_>>());
     // Beside the extent of a cut lies bone that was not sawn, and what spans nothing was only touched.
-    let is_sawn = |path: &Vec<Vector>| {
-        path.iter().any(|point| cut.reaches(point))
-            && area(cut.plane(), path).abs() > inside * inside
+    let sawn = |path: Vec<Vector>| match cut.clipped(&path) {
+        Some(clipped) => clipped,
+        None if path.iter().any(|point| cut.reaches(point)) => path,
+        None => Vec::new(),
     };
-    onto.filter(is_sawn).collect()
+    let spans = |path: &Vec<Vector>| area(cut.plane(), path).abs() > inside * inside;
+    onto.map(sawn).filter(spans).collect()
 }
 
 /// The closed paths along which a plane meets a surface.

@@ -100,7 +100,7 @@ impl Seed {
         let rule = &osteotomy.segments()[self.segment];
         for side in &rule.sides {
             let cut = &osteotomy.cuts()[side.cut];
-            if !cut.leaves(&self.at, side.side) {
+            if cut.chain().is_none() && !cut.leaves(&self.at, side.side) {
                 let (segment, seed) = (rule.name.clone(), self.number);
                 let cut = cut.name.clone();
                 return Err(LabelError::SeedAcross { segment, seed, cut });

@@ -93,3 +93,54 @@ impl Scene {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+    use std::sync::Arc;
+
+    use crate::boundary::NodeSelection;
+    use crate::material::LinearElastic;
+    use crate::mesh::sample::block;
+    use crate::mesh::{CellShape, Vector};
+    use crate::prediction::answer::{self, Answer, Linear};
+    use crate::prediction::{Case, Plan, Prescribed, Scene, Settings};
+    use crate::progress::Unobserved;
+
+    /// A block of 72 cells of which all outer nodes go along x by so many times their x: F = diag(1 + share, 1, 1), to every order.
+    fn stretched(share: f64) -> Answer {
+        let mut mesh = block(Vector::new(6.0, 4.0, 2.0), [6, 4, 3], CellShape::Hex8);
+        let mut boundary: Vec<u32> =
+            mesh.boundary_faces().iter().flat_map(|face| face.nodes().to_vec()).collect();
+        boundary.sort_unstable();
+        boundary.dedup();
+        mesh.node_sets.insert("boundary".to_owned(), boundary);
+        let field = mesh.nodes.iter().map(|x| Vector::x() * (share * x.x)).collect();
+        mesh.node_vectors.insert("field".to_owned(), field);
+        let tissue = LinearElastic::new(15.0, 0.3, 1.0).unwrap();
+        let materials = BTreeMap::from([("*".to_owned(), tissue)]);
+        let case = Case { volume: Arc::new(mesh), materials, ..Case::default() };
+        let nodes = NodeSelection::NodeSet("boundary".to_owned());
+        let prescribed = vec![Prescribed::FromArray { nodes, array: "field".to_owned() }];
+        let plan = Plan { prescribed, ..Plan::default() };
+        let settings = Settings { states: true, relative_residual: 1e-12, ..Settings::default() };
+        let scene = Scene::new(&case, &plan, &settings).unwrap();
+        let Linear::Solved(known) = answer::linear(&scene, &Unobserved).unwrap() else {
+            panic!("a linear answer has its matrix")
+        };
+        known.to_second_order(&scene, &Unobserved).unwrap()
+    }
+
+    #[test]
+    fn cells_that_the_second_order_turns_inside_out_are_told_to_have_no_stress() {
+        let is_told = |own: &&crate::mesh::Warning| own.code == "stress-unknown";
+        let found = stretched(-1.5).equilibrium;
+        let told = found.warnings.iter().find(is_told).unwrap();
+        assert_eq!(told.numbers, [("cells", 72.0)]);
+        assert!(found.states.cells.iter().all(|state| state.stress.amax() == 0.0));
+        let found = stretched(-0.1).equilibrium;
+        assert!(found.warnings.iter().find(is_told).is_none());
+        assert!(found.states.is_green && found.states.cells.len() == 72);
+        assert!(found.states.cells.iter().all(|state| state.stress[(0, 0)] < -1.0));
+    }
+}

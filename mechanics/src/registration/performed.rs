@@ -6,9 +6,11 @@
 //! partner. Source: Kim et al. 2012, section 2.6: each segment by itself, after the skull base
 //! (docs/methods.md#registration).
 
-use super::closest_point::SurfaceAlignment;
+use rayon::prelude::*;
+
+use super::closest_point::{SurfaceAlignment, points_in_mask};
 use super::{AlignmentError, IterativeClosestPoint, Place, RigidTransform, Start};
-use crate::mesh::{TriangleSurface, Vector};
+use crate::mesh::{SurfaceSearch, TriangleSurface, Vector};
 use crate::progress::Progress;
 
 /// Bone before the operation that decides, and where its search starts.
@@ -55,6 +57,24 @@ pub fn performed(
     let fit = fit(&BoneBefore { start, ..segment.clone() }, after, progress)?;
     let movement = fit.transform.inverse().then(base);
     Ok(Performed { movement, fit, centre: centre(segment) })
+}
+
+/// Points on bone that tell how far it lies from another.
+const POINTS: usize = 1000;
+
+/// The median distance in mm of bone from a surface, where `from` takes the bone to that surface; nothing is aligned.
+/// Cut faces of a segment, which lie in bone that was whole, do not decide a median.
+pub fn median_distance(
+    bone: &BoneBefore,
+    surface: &TriangleSurface,
+    from: &RigidTransform,
+) -> Result<f64, AlignmentError> {
+    let points = points_in_mask(bone.surface, bone.mask.as_ref(), POINTS)?;
+    let search = SurfaceSearch::new(surface)?;
+    let mut distances: Vec<f64> =
+        points.par_iter().map(|point| search.closest(&from.apply(point)).distance).collect();
+    distances.sort_unstable_by(f64::total_cmp);
+    Ok(distances[distances.len() / 2])
 }
 
 fn fit(

@@ -15,6 +15,7 @@ pub mod pareto;
 pub mod report;
 mod run;
 mod scan;
+mod scan_points;
 pub mod scenes;
 pub mod stability;
 pub mod sweep;
@@ -29,7 +30,7 @@ pub use levels::{MOST_CELLS, cells_at};
 pub use report::{Errors, Outcome, Report, Row, SceneReport, Skipped, Solved};
 pub use run::{NOT_RUN, run};
 pub use truth_cost::{TruthCost, TruthMesh, truth_cost};
-pub use variant::{ClosedForm, Materials, Scan, Study, StudyScene, Truth, Variant};
+pub use variant::{ClosedForm, Materials, Scan, ScanMetric, Study, StudyScene, Truth, Variant};
 
 /// What the caller measures while the study computes: numerics know neither clock nor memory.
 pub trait Stopwatch: Sync {

@@ -2,14 +2,16 @@
 //!
 //! D = (∫_P d(x, S) + ∫_S d(x, P)) / (|P| + |S|) over the parts of the prediction P and the scan S that belong to
 //! triangles of the skin which any of the answers moves by more than a stated length, and that have something
-//! opposite: a closest point off every open border. What stays where it is says nothing of the tissue (Zachow et al.
+//! opposite: a closest point off every open border. By points (`scan_points.rs`) D is the mean over the points of the skin in
+//! such triangles, each by its area there. What stays where it is says nothing of the tissue (Zachow et al.
 //! 2006, section 3.5, leave out 60 % of the face), and a hole of the scan is no distance.
 
 use std::collections::BTreeMap;
 
 use super::answer::Refusal;
-use super::error::{Measured, moved};
+use super::error::{Measured, errors as errors_of, moved};
 use super::report::{Errors, Outcome, Row};
+use super::scan_points::Partners;
 use super::variant::Scan;
 use crate::mesh::{SurfaceSearch, TriangleSurface, Vector, Warning};
 use crate::prediction::Skin;
@@ -37,6 +39,9 @@ pub(super) struct ScannedSkin<'a> {
     pub warnings: Vec<Warning>,
     /// For each triangle of the skin, whether it counts.
     moves: Vec<bool>,
+    /// Of each point of the skin, what lies in triangles that count, in mm².
+    moving_areas: Vec<f64>,
+    partners: Partners,
     progress: &'a dyn Progress,
 }
 
@@ -70,10 +75,27 @@ impl<'a> ScannedSkin<'a> {
             return Err(failed(detail));
         }
         let areas = skin.surface.point_areas();
+        let mut moving = skin.surface.clone();
+        let kept = moving.triangles.iter().zip(&moves).filter(|(_, moves)| **moves);
+        moving.triangles = kept.map(|(corners, _)| *corners).collect();
+        let moving_areas = moving.point_areas();
+        let partners = Partners::of(&scan.metric, &skin.surface, &surface, &report)?;
         let noise = scan.noise.or(report.rms);
         let triangles = surface.triangles.len();
         let about = format!("a scan of {triangles} triangles, aligned by {}", report.method);
-        Ok(ScannedSkin { skin, areas, surface, search, noise, about, warnings, moves, progress })
+        Ok(ScannedSkin {
+            skin,
+            areas,
+            surface,
+            search,
+            noise,
+            about,
+            warnings,
+            moves,
+            moving_areas,
+            partners,
+            progress,
+        })
     }
 
     /// Of a displacement of the points of the skin.
@@ -92,10 +114,32 @@ impl<'a> ScannedSkin<'a> {
         }
         let failed = |error: StatisticsError| refused(error.to_string());
         let length: Vec<f64> = found.iter().map(|u| u.norm()).collect();
+        let by_points = self.partners.distances(&predicted, &self.surface, &self.search)?;
+        let (error, regions) = match by_points {
+            None => {
+                let regions = self.regions([&to_scan, &to_prediction]);
+                (errors(&there.pooled(&back)).map_err(failed)?, regions.map_err(failed)?)
+            }
+            Some(distances) => {
+                let of = |areas: &[f64], counts: &dyn Fn(u32) -> bool| {
+                    let known = (0_u32..).zip(&distances).zip(areas);
+                    let known = known.filter(|((point, _), _)| counts(*point));
+                    let known = known.filter_map(|((_, own), area)| Some(((*own)?, *area)));
+                    let (values, areas): (Vec<f64>, Vec<f64>) = known.unzip();
+                    errors_of(&values, &areas)
+                };
+                let named = self.skin.regions.iter();
+                let regions = named.filter_map(|(name, points)| {
+                    let holds = |point: u32| points.binary_search(&point).is_ok();
+                    Some((name.clone(), of(&self.areas, &holds).ok()?))
+                });
+                (of(&self.moving_areas, &|_| true).map_err(failed)?, regions.collect())
+            }
+        };
         Ok(Measured {
-            error: errors(&there.pooled(&back)).map_err(failed)?,
+            error,
             closest_point: errors(&there).map_err(failed)?,
-            regions: self.regions([&to_scan, &to_prediction]).map_err(failed)?,
+            regions,
             skin_mean_mm: Statistics::weighted(&length, &self.areas).map_err(failed)?.mean,
             covered_share: Some(covered_share),
         })

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use crate::material::LinearElastic;
 use crate::mesh::{TriangleSurface, Vector, VolumeMesh};
 use crate::prediction::{Case, ElementChoice, FibreDirection, Plan, Settings};
-use crate::validation::Alignment;
+use crate::validation::{Alignment, LandmarkPair};
 
 /// Every scene with every variant, or with its own, and with every material, plan and level.
 pub struct Study {
@@ -93,6 +93,20 @@ pub struct Scan {
     pub moved_by_more_than: f64,
     /// Root of the mean squared distance that the registration left, in mm. Default: what the alignment leaves.
     pub noise: Option<f64>,
+    pub metric: ScanMetric,
+}
+
+/// How the distance of an answer from a scan is measured.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum ScanMetric {
+    /// Closest points, both ways.
+    #[default]
+    BothWays,
+    /// Of points of the same number: the scan has the points of the skin.
+    NodeWise,
+    /// By thin-plate spline and closest point ([`crate::validation::warped_distances`]): landmarks at rest on the skin of the case, which go
+    /// with each answer, and where the scan has them before it is aligned, in mm.
+    Landmarks(Vec<LandmarkPair>),
 }
 
 /// A formula, and the walls between which it holds.

@@ -25,4 +25,4 @@ pub use histogram::{Histogram, Histograms};
 pub use landmark_errors::LandmarkError;
 pub use region::Region;
 pub use statistics::{Statistics, StatisticsError};
-pub use warped::WarpedStatistics;
+pub use warped::{WarpedStatistics, warped_distances};

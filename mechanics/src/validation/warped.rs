@@ -13,7 +13,7 @@ use super::alignment::LandmarkPair;
 use super::both_ways::Pair;
 use super::error::ComparisonError;
 use super::statistics::Statistics;
-use crate::mesh::{SurfaceSearch, Vector, Warning};
+use crate::mesh::{ClosestPoint, SurfaceSearch, Vector, Warning};
 use crate::registration::thin_plate_spline::FEWEST;
 use crate::registration::{AlignmentError, RigidTransform, ThinPlateSpline};
 
@@ -67,8 +67,29 @@ pub(super) fn warped(
     }))
 }
 
+/// The same for points of a prediction, without a sign: `pairs` has their landmarks, the actual ones where the actual surface
+/// lies. `None` of a point whose partner lies on an open border of that.
+pub fn warped_distances(
+    points: &[Vector],
+    pairs: &[LandmarkPair],
+    actual: &SurfaceSearch,
+) -> Result<Vec<Option<f64>>, AlignmentError> {
+    let from: Vec<Vector> = pairs.iter().map(|pair| pair.prediction).collect();
+    let to: Vec<Vector> = pairs.iter().map(|pair| pair.actual).collect();
+    let spline = ThinPlateSpline::new(&from, &to, 0.0)?;
+    let distance = |point: &Vector| {
+        let partner = partner(point, &spline, actual);
+        (!actual.is_on_open_border(&partner)).then(|| (point - partner.point).norm())
+    };
+    Ok(points.par_iter().with_min_len(256).map(distance).collect())
+}
+
+fn partner(point: &Vector, spline: &ThinPlateSpline, actual: &SurfaceSearch) -> ClosestPoint {
+    actual.closest(&spline.apply(point))
+}
+
 fn error(point: &Vector, spline: &ThinPlateSpline, actual: &SurfaceSearch) -> f64 {
-    let closest = actual.closest(&spline.apply(point));
+    let closest = partner(point, spline, actual);
     let between = point - closest.point;
     let length = between.norm();
     if between.dot(&actual.pseudo_normal(&closest)) < 0.0 { -length } else { length }

@@ -18,6 +18,7 @@ use crate::support::external::{Missing, shared_data, trials};
 trials! {
     muscles_of_the_template_lie_on_the_subject_along_the_fibres_of_its_cells
     cells_near_the_fibres_of_the_subject_are_those_that_were_counted
+    lengths_of_the_left_fibres_of_the_subject_are_those_that_were_measured
 }
 
 /// From lines within which a cell belongs to a muscle, in mm.
@@ -50,6 +51,18 @@ fn lines_of(fibres: &BTreeMap<String, Vec<Vec<Vector>>>) -> (Vec<MuscleLines>, V
     (fibres.iter().map(muscle).collect(), names.collect())
 }
 
+/// Each muscle with the lines of both sides.
+fn without_sides(fibres: &BTreeMap<String, Vec<Vec<Vector>>>) -> Vec<MuscleLines> {
+    let mut muscles: BTreeMap<&str, Vec<Vec<Vector>>> = BTreeMap::new();
+    for (name, lines) in fibres {
+        let muscle = name.split('_').next().unwrap();
+        muscles.entry(muscle).or_default().extend(lines.clone());
+    }
+    let muscle =
+        |(name, lines): (&str, Vec<Vec<Vector>>)| MuscleLines { name: name.to_owned(), lines };
+    muscles.into_iter().map(muscle).collect()
+}
+
 fn near_lines(mesh: &VolumeMesh, muscles: &[MuscleLines]) -> Vec<CellFibre> {
     fibre_cells(mesh, muscles, &vec![NEAR; muscles.len()])
 }
@@ -79,10 +92,33 @@ fn cells_near_the_fibres_of_the_subject_are_those_that_were_counted() -> Result<
         assert!(name == muscle && (own.distance - distance).abs() < 1e-4, "{element}: {own:?}");
         assert!(angle_between(&own.axis, &axis.into()) < 0.01, "{element}: {own:?}");
     }
+    // Where muscles lie together, both sides of one as one muscle.
+    let both = near_lines(&mesh, &without_sides(&fibres));
+    let several = [2, 3].map(|least| both.iter().filter(|own| own.muscles >= least).count());
+    assert_eq!((both.len(), several), (1440, [364, 60]));
     // A muscle of few cells is looked for as far as its cells are large.
     let reach = widened(&mesh, &muscles, NEAR);
     for (name, reach) in names.iter().zip(reach) {
         assert!(reach == NEAR || *name == "BUC", "{name}: {reach}");
+    }
+    Ok(())
+}
+
+fn lengths_of_the_left_fibres_of_the_subject_are_those_that_were_measured() -> Result<(), Missing> {
+    let fibres = fibres("subject")?;
+    let length = |line: &Vec<Vector>| line.windows(2).map(|pair| (pair[1] - pair[0]).norm()).sum();
+    for (muscle, known) in [
+        ("ZYG", vec![55.694]),
+        ("RIS", vec![52.975]),
+        ("LAO", vec![34.903]),
+        ("LLS", vec![35.147]),
+        ("BUC", vec![43.224, 30.793]),
+    ] {
+        let found: Vec<f64> = fibres[&format!("{muscle}_left")].iter().map(length).collect();
+        assert_eq!(found.len(), known.len(), "{muscle}: {found:?}");
+        for (found, known) in found.iter().zip(&known) {
+            assert!((found - known).abs() < 6e-4, "{muscle}: {found} mm, known {known}");
+        }
     }
     Ok(())
 }

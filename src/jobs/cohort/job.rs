@@ -1,5 +1,6 @@
 //! The job of a cohort.
 
+use super::files::{PICTURE, TABLE, picture, table};
 use super::groups::{Groups, group};
 use super::input::CohortInput;
 use super::subjects::doubts;
@@ -64,6 +65,10 @@ pub fn cohort_job(
         queue_s: input.queue_s,
     };
     let mut folder = ResultFolder::open(place.out)?;
+    let files = [(PICTURE, picture(&cohort)), (TABLE, table(&cohort))];
+    for ((name, media_type), text) in &files {
+        folder.add_file(name, media_type, text.as_bytes())?;
+    }
     let provenance = origin.provenance(&clock);
     let warnings = warning_documents(doubts(input).iter());
     let result = ResultDocument {

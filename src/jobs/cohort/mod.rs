@@ -1,5 +1,6 @@
 //! Cohorts: comparisons of the same subjects by several methods.
 
+mod files;
 mod groups;
 mod input;
 mod job;

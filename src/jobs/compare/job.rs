@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use super::input::CompareInput;
 use super::meshes::ComparedMeshes;
+use super::picture::{DISTANCE_MEDIA_TYPE, DISTANCE_PICTURE, distance_picture};
 use super::surfaces::{Compared, Pair};
 use crate::jobs::clock::Observed;
 use crate::jobs::failure::JobError;
@@ -48,7 +49,11 @@ pub fn compare_job(
         queue_s: input.queue_s,
     };
     let mut folder = ResultFolder::open(place.out)?;
-    write_maps(&mut folder, &surface, &compared, (origin.frame, input.spec.range_mm))?;
+    let shown = (origin.frame, input.spec.range_mm);
+    write_maps(&mut folder, &surface, &compared, shown)?;
+    let distances = &compared.signed_distance;
+    let picture = distance_picture(&surface, distances, shown, &compared.document)?;
+    folder.add_file(DISTANCE_PICTURE, DISTANCE_MEDIA_TYPE, picture.as_bytes())?;
     let warnings =
         prediction.warnings.iter().chain(&meshes.actual.warnings).chain(&compared.warnings);
     let provenance = origin.provenance(&clock);

@@ -3,6 +3,7 @@
 mod input;
 mod job;
 mod meshes;
+mod picture;
 mod surfaces;
 
 pub use input::CompareInput;

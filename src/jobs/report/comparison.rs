@@ -12,7 +12,7 @@ use crate::schema::compare::result::{ComparisonDocument, DistanceDocument};
 use crate::schema::predict::result::ResultDocument;
 
 /// Where colours of signed distances end, in mm, unless the spec says.
-const RANGE_MM: f64 = 2.0;
+pub const SIGNED_RANGE_MM: f64 = 2.0;
 
 /// Two surfaces and how far one is from the other.
 pub struct ComparisonFacts<'a> {
@@ -47,7 +47,7 @@ pub fn comparison_report(facts: &ComparisonFacts, language: Language) -> Result<
 }
 
 fn views(facts: &ComparisonFacts, words: &Words) -> Result<Section, PngError> {
-    let range_mm = facts.range_mm.unwrap_or(RANGE_MM);
+    let range_mm = facts.range_mm.unwrap_or(SIGNED_RANGE_MM);
     let values = ViewValues {
         values: facts.signed_distance,
         range_mm,

@@ -12,7 +12,7 @@ mod study;
 mod tables;
 mod words;
 
-pub use comparison::{ComparisonFacts, comparison_report};
+pub use comparison::{ComparisonFacts, SIGNED_RANGE_MM, comparison_report};
 pub use content::Report;
 pub use form::ReportForm;
 pub use prediction::{PredictionFacts, prediction_report, write_reports};

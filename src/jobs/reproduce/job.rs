@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use super::doubts::{base_warnings, lies_on_the_other_scan, misfit, undoes_the_plan, unmasked};
 use super::input::ReproduceInput;
 use crate::jobs::clock::Observed;
 use crate::jobs::compare::{by_landmarks, place_of, surface_of};
@@ -17,9 +18,7 @@ use crate::schema::compare::document::StartName;
 use crate::schema::plan::document::{PlanContext, PlanSegmentDocument};
 use crate::schema::predict::document::OutputName;
 use crate::schema::predict::result::ResultDocument;
-use crate::schema::reproduce::document::{
-    BoneLandmarkDocument, ReproduceDocument, ReproducedSegmentDocument,
-};
+use crate::schema::reproduce::document::{BoneLandmarkDocument, ReproducedSegmentDocument};
 use crate::schema::reproduce::result::{
     BaseFitDocument, DeviationDocument, FitDocument, PerformedDocument, ReproductionDocument,
 };
@@ -27,19 +26,12 @@ use crate::schema::{Faults, Limits, Matrix4x4, PlanDocument, Pointer};
 use mechanics::mesh::{Frame, TriangleSurface, Vector, Warning};
 use mechanics::plan::{PlannedSegment, RigidMovement};
 use mechanics::progress::{Phase, Progress};
-use mechanics::registration::mirror::check_mirror;
 use mechanics::registration::performed::{BoneBefore, Performed, align_base, performed};
-use mechanics::registration::{AlignmentError, RigidTransform, Start, SurfaceAlignment};
+use mechanics::registration::{AlignmentError, RigidTransform, Start};
 use mechanics::validation::LandmarkPair;
 
 /// Time a reproduction may take, in seconds.
 const WALL_S: f64 = 600.0;
-
-/// Bone that was not operated on fits to 0.1 to 0.25 mm, 0.5 % of it beyond 1 mm (Zachow et al. 2006, section 3.2).
-const MISFIT: f64 = 0.25;
-
-/// More of it than that is left where bone was moved.
-const MOVED: f64 = 0.02;
 
 /// Below this angle in radians a turn has no axis.
 const NO_TURN: f64 = 1e-9;
@@ -182,6 +174,12 @@ impl Scans<'_> {
             let found = performed(&bone, &later, &base.transform, self.clock)
                 .map_err(|error| self.failed(&error))?;
             warnings.extend(misfit(segment, &found));
+            let plan = self.planned_of(segment).map(|planned| &planned.movement);
+            let swapped = match segment.before {
+                Some(_) => lies_on_the_other_scan(segment, &bone, [&before, &after], &base),
+                None => plan.and_then(|plan| undoes_the_plan(segment, &found, plan)),
+            };
+            warnings.extend(swapped);
             segments.push(self.document(segment, &found));
         }
         let plan = PlanDocument {
@@ -199,6 +197,10 @@ impl Scans<'_> {
         surface_of(self.stored.get(id).ok_or_else(missing)?, &at.key("mesh"))
     }
 
+    fn planned_of(&self, segment: &ReproducedSegmentDocument) -> Option<&PlannedSegment> {
+        self.planned.iter().find(|planned| planned.name == segment.name.trim())
+    }
+
     fn document(
         &self,
         segment: &ReproducedSegmentDocument,
@@ -206,7 +208,7 @@ impl Scans<'_> {
     ) -> PerformedDocument {
         let (movement, centre) = (&found.movement, &found.centre);
         let name = segment.name.trim().to_owned();
-        let plan = self.planned.iter().find(|planned| planned.name == name);
+        let plan = self.planned_of(segment);
         PerformedDocument {
             matrix4x4: Matrix4x4(movement.matrix4()),
             rotation_deg: movement.angle().to_degrees(),
@@ -267,60 +269,4 @@ fn plan_segment(segment: &PerformedDocument) -> PlanSegmentDocument {
         matrix4x4: Some(segment.matrix4x4),
         ..PlanSegmentDocument::default()
     }
-}
-
-/// Doubts that both scans are of one person, the right way round.
-fn base_warnings(
-    bone: &BoneBefore,
-    after: &TriangleSurface,
-    found: &SurfaceAlignment,
-) -> Vec<Warning> {
-    let mut warnings = Vec::new();
-    if found.share_far > MISFIT {
-        let detail = format!(
-            "{:.0} % of the base is left more than 1 mm from the bone after the operation, rms {:.2} mm: is it somebody else's, or was the base moved?",
-            100.0 * found.share_far,
-            found.rms
-        );
-        let warning = Warning::new("another-person-suspect", detail);
-        warnings.push(warning.with("share_above_1_mm", found.share_far).with("rms_mm", found.rms));
-    }
-    let mirrored = check_mirror(bone.surface, after, bone.mask.as_ref(), &found.transform).ok();
-    if let Some(check) = mirrored.filter(|check| check.looks_mirrored()) {
-        let detail = format!(
-            "a mirror image of the bone after the operation fits to {:.2} mm, itself only to {:.2} mm",
-            check.mirrored_rms, check.rms
-        );
-        let warning = Warning::new("mirrored?", detail).with("rms_mm", check.rms);
-        warnings.push(warning.with("mirrored_rms_mm", check.mirrored_rms));
-    }
-    warnings
-}
-
-/// A base that may hold the bone that was moved: it lies between where both say that the head is.
-fn unmasked(spec: &ReproduceDocument, found: &SurfaceAlignment) -> Option<Warning> {
-    let holds_segments = spec.segments.iter().any(|segment| segment.before.is_none());
-    if spec.base.mask.is_some() || !(holds_segments || found.share_far > MOVED) {
-        return None;
-    }
-    let detail = format!(
-        "the base has no `mask`, so that bone which was moved decides too where the head is: {:.1} % of it is left more than 1 mm from \
-         the bone after the operation. State a `mask` that holds only bone that nothing was done to",
-        100.0 * found.share_far
-    );
-    let warning = Warning::new("base-unmasked", detail);
-    Some(warning.with("share_above_1_mm", found.share_far).with("rms_mm", found.rms))
-}
-
-fn misfit(segment: &ReproducedSegmentDocument, found: &Performed) -> Option<Warning> {
-    let share = found.fit.share_far;
-    (share > MISFIT).then(|| {
-        let detail = format!(
-            "{:.0} % of segment `{}` is left more than 1 mm from the bone after the operation: its movement is not to be trusted without landmarks to start from",
-            100.0 * share,
-            segment.name.trim()
-        );
-        let warning = Warning::new("segment-misfit", detail);
-        warning.with("share_above_1_mm", share).with("rms_mm", found.fit.rms)
-    })
 }

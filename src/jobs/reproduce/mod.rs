@@ -1,5 +1,6 @@
 //! Reproductions: the movements that an operation performed.
 
+mod doubts;
 mod input;
 mod job;
 

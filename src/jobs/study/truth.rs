@@ -8,12 +8,13 @@ use crate::jobs::predict::Prepared;
 use crate::jobs::source::StoredMesh;
 use crate::schema::compare::document::{CompareToDocument, MeshReference};
 use crate::schema::methods::ElementName;
-use crate::schema::study::document::TruthDocument;
-use crate::schema::{ErrorCode, Faults, Pointer, Problem};
-use mechanics::mesh::{Frame, Vector};
+use crate::schema::study::truth::{TruthDocument, TruthMetric};
+use crate::schema::{ErrorCode, Faults, Pointer, Problem, Triple};
+use mechanics::mesh::{Frame, TriangleSurface, Vector};
 use mechanics::prediction::ElementChoice;
 use mechanics::study::scenes::usual_truth_element;
-use mechanics::study::{MOST_CELLS, Scan, StudyScene, Truth, cells_at};
+use mechanics::study::{MOST_CELLS, Scan, ScanMetric, StudyScene, Truth, cells_at};
+use mechanics::validation::LandmarkPair;
 
 impl Documents<'_> {
     /// What the spec holds for true, if it says so.
@@ -104,7 +105,46 @@ impl Documents<'_> {
         }
         found.warnings.extend(meshes.actual.warnings.iter().cloned());
         let moved_by_more_than = truth.moved_by_more_than_mm.unwrap_or(USUAL_MOVED_MM);
-        Ok(Scan { surface, alignment, moved_by_more_than, noise: truth.noise_mm })
+        let metric = metric(truth, first, &surface, &at)?;
+        Ok(Scan { surface, alignment, moved_by_more_than, noise: truth.noise_mm, metric })
+    }
+}
+
+/// How answers are measured to a scan that has the points or the landmarks which that needs.
+fn metric(
+    truth: &TruthDocument,
+    first: &Prepared,
+    scan: &TriangleSurface,
+    at: &Pointer,
+) -> Result<ScanMetric, JobError> {
+    let refused = |at: Pointer, code: ErrorCode, detail: String| Problem::at(&at, code, detail);
+    match truth.metric {
+        TruthMetric::Both => Ok(ScanMetric::BothWays),
+        TruthMetric::NodeWise => {
+            let skin = &first.scene.skin;
+            let (own, other) = (skin.surface.points.len(), scan.points.len());
+            let numbers = scan.node_ids.as_deref();
+            if own == other && numbers.is_none_or(|numbers| numbers == skin.nodes()) {
+                return Ok(ScanMetric::NodeWise);
+            }
+            let detail = format!(
+                "the scan has {other} points and the skin of the case {own}, and they have to be the same ones"
+            );
+            Err(refused(at.key("metric"), ErrorCode::NotCorresponding, detail).into())
+        }
+        TruthMetric::TpsCp => {
+            let pair = |(name, actual): (&String, &Triple)| {
+                let missing = || {
+                    let detail = format!("the case has no landmark called {name:?}");
+                    refused(at.key("landmarks_mm").key(name), ErrorCode::UnknownField, detail)
+                };
+                let prediction = first.scene.landmarks.get(name).copied().ok_or_else(missing)?;
+                Ok(LandmarkPair { prediction, actual: (*actual).into() })
+            };
+            let pairs: Result<Vec<LandmarkPair>, Problem> =
+                truth.landmarks_mm.iter().map(pair).collect();
+            Ok(ScanMetric::Landmarks(pairs?))
+        }
     }
 }
 

@@ -1,10 +1,11 @@
 //! Cuts and segments of a document as those of the numerics, and what is wrong with them.
 
+use std::ops::Range;
+
 use mechanics::mesh::Vector;
 use mechanics::osteotomy::contact::Bridge;
 use mechanics::osteotomy::{
-    Cut, CutError, CutSide, Extent, LabelError, Osteotomy, Plane, Risk, RuleError, SegmentRule,
-    Side,
+    Cut, CutError, CutSide, Extent, LabelError, Osteotomy, Plane, RuleError, SegmentRule, Side,
 };
 
 use super::document::{CutDocument, CutSegmentDocument, OsteotomyDocument};
@@ -17,9 +18,6 @@ use crate::schema::wire::problem::Problem;
 
 /// Beside an osteotomy tissue is lifted; with cells of 4 mm this frees one row of nodes on either side.
 const FREE_BAND_MM: f64 = 3.0;
-
-/// No head is farther from the origin of its scan.
-const FARTHEST_MM: f64 = 1e5;
 
 /// What the document is read in.
 pub struct OsteotomyContext<'a> {
@@ -36,7 +34,7 @@ pub struct PlannedOsteotomy {
 }
 
 impl OsteotomyContext<'_> {
-    fn vector(&self, Triple([x, y, z]): Triple) -> Vector {
+    pub(super) fn vector(&self, Triple([x, y, z]): Triple) -> Vector {
         let sign = if self.mirrored_axes { -1.0 } else { 1.0 };
         Vector::new(sign * x, sign * y, z)
     }
@@ -60,16 +58,15 @@ impl OsteotomyDocument {
         let free_band_mm = self.free_band_mm.unwrap_or(FREE_BAND_MM);
         let has_band = faults.check_range(&at.key("free_band_mm"), free_band_mm, 0.0..=30.0, "mm");
         let risks = self.to_risks(&at.key("risks"), context, faults);
-        let cuts: Vec<_> = (self.cuts.iter().enumerate())
-            .map(|(number, cut)| cut.to_cut(&at.key("cuts").index(number), context, faults))
-            .collect();
+        let cuts = self.to_cuts(at, context, faults);
+        let named = self.pieces();
         let segments: Vec<_> = (self.segments.iter().enumerate())
             .map(|(number, segment)| {
                 let at = at.key("segments").index(number);
-                segment.to_rule(&self.cuts, &at, context, faults)
+                segment.to_rule(&named, &at, context, faults)
             })
             .collect();
-        let cuts = cuts.into_iter().collect::<Option<Vec<_>>>()?;
+        let cuts = cuts?;
         let segments = segments.into_iter().collect::<Option<Vec<_>>>()?;
         let osteotomy = Osteotomy::new(cuts, segments)
             .map_err(|error| faults.add(at, code_of(&error), error.to_string()))
@@ -81,38 +78,46 @@ impl OsteotomyDocument {
 }
 
 impl OsteotomyDocument {
-    fn to_risks(&self, at: &Pointer, context: &OsteotomyContext, faults: &mut Faults) -> Vec<Risk> {
-        let most = context.limits.list_entries as usize;
-        faults.check_length(at, self.risks.len(), most);
-        check_distinct(self.risks.iter().map(|risk| risk.name.as_str()), at, faults);
-        let mut risks = Vec::new();
-        for (number, risk) in self.risks.iter().enumerate() {
-            let at = at.index(number);
-            let name = risk.name.trim();
-            faults.check_name(&at.key("name"), name, context.limits.name_characters as usize);
-            let (place, count) = (at.key("points_mm"), risk.points_mm.len());
-            faults.check_length(&place, count, most);
-            if count < 2 {
-                let detail = format!("a line has two points or more, here are {count}");
-                faults.add(&place, ErrorCode::OutOfRange, detail);
-            }
-            for (number, point) in risk.points_mm.iter().enumerate() {
-                for (axis, &value) in point.0.iter().enumerate() {
-                    let place = place.index(number).index(axis);
-                    faults.check_range(&place, value, -FARTHEST_MM..=FARTHEST_MM, "mm");
+    /// The planes, then the pieces of each polyline.
+    fn to_cuts(
+        &self,
+        at: &Pointer,
+        context: &OsteotomyContext,
+        faults: &mut Faults,
+    ) -> Option<Vec<Cut>> {
+        let place = at.key("polylines");
+        faults.check_length(&place, self.polylines.len(), context.limits.list_entries as usize);
+        let names = self.polylines.iter().map(|line| line.name.as_str());
+        check_distinct(names, &place, faults);
+        let cuts: Vec<Option<Cut>> = (self.cuts.iter().enumerate())
+            .map(|(number, cut)| cut.to_cut(&at.key("cuts").index(number), context, faults))
+            .collect();
+        let lines: Vec<Option<Vec<Cut>>> = (self.polylines.iter().enumerate())
+            .map(|(number, line)| {
+                let at = place.index(number);
+                if self.cuts.iter().any(|cut| cut.name.trim() == line.name.trim()) {
+                    let detail = format!("`{}` is the name of a cut too", line.name.trim());
+                    faults.add(&at.key("name"), ErrorCode::DuplicateName, detail);
                 }
-            }
-            let radius = risk.radius_mm.unwrap_or(0.0);
-            faults.check_range(&at.key("radius_mm"), radius, 0.0..=20.0, "mm");
-            faults.check_range(&at.key("clearance_mm"), risk.clearance_mm, 0.0..=50.0, "mm");
-            risks.push(Risk {
-                name: name.to_owned(),
-                points: risk.points_mm.iter().map(|&point| context.vector(point)).collect(),
-                radius,
-                clearance: risk.clearance_mm,
-            });
-        }
-        risks
+                line.to_cuts(&at, number, context, faults)
+            })
+            .collect();
+        let cuts = cuts.into_iter().map(|cut| cut.map(|cut| vec![cut]));
+        let all: Option<Vec<Vec<Cut>>> = cuts.chain(lines).collect();
+        all.map(|all| all.concat())
+    }
+
+    /// The name of each plane and polyline, and the numbers of its cuts.
+    fn pieces(&self) -> Vec<(&str, Range<usize>)> {
+        let planes = self.cuts.iter().map(|cut| (cut.name.trim(), 1));
+        let lines = self.polylines.iter();
+        let lines = lines.map(|line| (line.name.trim(), line.polyline_mm.len().max(1) - 1));
+        let mut first = 0;
+        let numbered = planes.chain(lines).map(|(name, count)| {
+            first += count;
+            (name, first - count..first)
+        });
+        numbered.collect()
     }
 }
 
@@ -179,7 +184,11 @@ pub fn refuse_bridges(
                 bridge.area_mm2
             ),
         };
-        faults.add(&at.key("cuts").index(bridge.cut), ErrorCode::CutLeavesBridge, detail);
+        let place = match osteotomy.cuts()[bridge.cut].chain() {
+            Some(line) => at.key("polylines").index(line),
+            None => at.key("cuts").index(bridge.cut),
+        };
+        faults.add(&place, ErrorCode::CutLeavesBridge, detail);
     }
 }
 
@@ -220,7 +229,7 @@ fn member_of(error: &CutError) -> Option<&'static str> {
 impl CutSegmentDocument {
     fn to_rule(
         &self,
-        cuts: &[CutDocument],
+        cuts: &[(&str, Range<usize>)],
         at: &Pointer,
         context: &OsteotomyContext,
         faults: &mut Faults,
@@ -235,9 +244,11 @@ impl CutSegmentDocument {
             [("below", &self.below, Side::Below), ("above", &self.above, Side::Above)]
         {
             for (number, wanted) in names.iter().enumerate() {
-                let known = cuts.iter().position(|cut| cut.name.trim() == wanted.trim());
+                let known = cuts.iter().find(|(name, _)| *name == wanted.trim());
                 match known {
-                    Some(cut) => sides.push(CutSide { cut, side }),
+                    Some((_, pieces)) => {
+                        sides.extend(pieces.clone().map(|cut| CutSide { cut, side }));
+                    }
                     None => {
                         all_known = false;
                         let detail = format!("no cut is called `{}`", wanted.trim());

@@ -12,6 +12,9 @@ pub struct OsteotomyDocument {
     /// Planes that are sawn; each is named by a segment.
     #[serde(default)]
     pub cuts: Vec<CutDocument>,
+    /// Lines that are sawn into bone; each is named by a segment, which has a seed.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub polylines: Vec<PolylineCutDocument>,
     /// Pieces of bone; the plan says by the same names how they move, and those that it does not name stay.
     pub segments: Vec<CutSegmentDocument>,
     /// Structures that the cuts have to keep clear of, such as the nerve of the lower jaw.
@@ -45,15 +48,38 @@ pub struct CutDocument {
     pub kerf_mm: Option<f64>,
 }
 
-/// A structure that must not be sawn, as a line of points.
+/// A line of points that is sawn into bone: a chain of parallelograms, such as the steps of a cut.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PolylineCutDocument {
+    /// As segments name it, in place of all its pieces.
+    pub name: String,
+    /// Two or more, in their order, where the saw enters the bone.
+    #[schema(min_items = 2)]
+    pub polyline_mm: Vec<Triple>,
+    /// Into the bone; of any length, along no piece of the line. Above a piece is where (its way along the line) x `direction` points.
+    pub direction: Triple,
+    /// How far the saw goes along `direction`, 0.1 to 300 mm.
+    #[schema(minimum = 0.1, maximum = 300.0)]
+    pub depth_mm: f64,
+    /// The width of the saw, 0 to 10 mm. Default: 0.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub kerf_mm: Option<f64>,
+}
+
+/// A structure that must not be sawn, as a line of points or as a surface.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RiskDocument {
     pub name: String,
-    /// Two or more, in their order along the line.
+    /// Two or more, in their order along the line; with `triangles` the corners of a surface.
     #[schema(min_items = 2)]
     pub points_mm: Vec<Triple>,
-    /// How thick it is around its line, 0 to 20 mm. Default: 0.
+    /// Triangles of a surface, each three of the points, counted from 0. Absent: a line.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub triangles: Vec<[u32; 3]>,
+    /// How thick it is around its line or surface, 0 to 20 mm. Default: 0.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false, minimum = 0.0, maximum = 20.0)]
     pub radius_mm: Option<f64>,

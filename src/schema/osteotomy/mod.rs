@@ -2,5 +2,7 @@
 
 pub mod conversion;
 pub mod document;
+mod polyline;
+mod risks;
 
 pub use document::{CutDocument, CutSegmentDocument, OsteotomyDocument};

@@ -1,8 +1,11 @@
 //! What a study holds for true.
 
+use std::collections::BTreeMap;
+
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
+use crate::schema::Triple;
 use crate::schema::code::ErrorCode;
 use crate::schema::compare::align::{AlignDocument, AlignMethod, AlignReference, align};
 use crate::schema::methods::ElementName;
@@ -12,11 +15,14 @@ use crate::schema::wire::limits::Limits;
 /// Halving every edge once more makes eight cells of one.
 const MOST_LEVEL: u32 = 4;
 
+/// Of a spline.
+const FEWEST_LANDMARKS: usize = 4;
+
 /// No skin moves farther, in mm.
 const FARTHEST_MM: f64 = 100.0;
 
 /// What is held for true: exactly one of `refine` with `element`, `closed_form`, `job`, and `mesh` with `align`,
-/// `moved_by_more_than_mm` and `noise_mm`.
+/// `moved_by_more_than_mm`, `metric` with `landmarks_mm`, and `noise_mm`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TruthDocument {
@@ -49,11 +55,35 @@ pub struct TruthDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false, minimum = 0.0, maximum = 100.0)]
     pub moved_by_more_than_mm: Option<f64>,
+    /// Of `mesh`: how far an answer is from it. Default: `both`.
+    #[serde(default, skip_serializing_if = "is_both")]
+    pub metric: TruthMetric,
+    /// Of `mesh` with a `metric` of `tps_cp`, by their names in the case: where the scan has them, before it is aligned.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub landmarks_mm: BTreeMap<String, Triple>,
     /// Of `mesh`: root of the mean squared distance that its registration left. Default: what `align` leaves where it
     /// fits `surfaces` or `landmarks`, else not known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false, minimum = 0.0, maximum = 100.0)]
     pub noise_mm: Option<f64>,
+}
+
+/// How far an answer is from a scan.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum TruthMetric {
+    /// Closest points, from the skin to the scan and back.
+    #[default]
+    Both,
+    /// Points of the same number: the scan has the points of the skin, in their order.
+    NodeWise,
+    /// Thin-plate spline of landmarks and closest point: from a point of the skin to that of the scan which is closest to where the
+    /// spline takes it.
+    TpsCp,
+}
+
+fn is_both(metric: &TruthMetric) -> bool {
+    *metric == TruthMetric::Both
 }
 
 fn is_false(value: &bool) -> bool {
@@ -80,10 +110,28 @@ impl TruthDocument {
             ("align", !is_usual(&self.align)),
             ("moved_by_more_than_mm", self.moved_by_more_than_mm.is_some()),
             ("noise_mm", self.noise_mm.is_some()),
+            ("metric", !is_both(&self.metric)),
+            ("landmarks_mm", !self.landmarks_mm.is_empty()),
         ];
         for (name, _) in of_mesh.into_iter().filter(|(_, given)| *given && self.mesh.is_none()) {
             let detail = format!("`{name}` belongs to `mesh`");
             faults.add(&at.key(name), ErrorCode::WrongType, detail);
+        }
+        let (place, count) = (at.key("landmarks_mm"), self.landmarks_mm.len());
+        faults.check_length(&place, count, limits.map_entries as usize);
+        match (self.metric, count) {
+            (TruthMetric::TpsCp, 0..FEWEST_LANDMARKS) => {
+                let detail = format!(
+                    "a thin-plate spline needs {FEWEST_LANDMARKS} landmarks that lie in no plane, here are {count}; four of them give an \
+                     affine map only"
+                );
+                faults.add(&place, ErrorCode::AlignmentFailed, detail);
+            }
+            (TruthMetric::TpsCp, _) | (_, 0) => {}
+            (TruthMetric::Both | TruthMetric::NodeWise, _) => {
+                let detail = "landmarks are read where `metric` is `tps_cp`";
+                faults.add(&place, ErrorCode::UnknownField, detail);
+            }
         }
         self.align.check(&at.key("align"), limits, faults);
         if self.align.method == AlignMethod::Icp {

@@ -1,6 +1,8 @@
 //! Methods over a cohort of twins: the table, the boxes and the test that a paper shows.
 
 use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
 
 use facies::jobs::{CohortInput, CompareInput, JobInput, StoredMesh, StoredShape, Workplace, work};
 use facies::schema::Limits;
@@ -44,14 +46,21 @@ fn cohort(
     spec: Value,
     comparisons: &BTreeMap<String, ComparisonDocument>,
 ) -> Result<CohortResultDocument, String> {
+    cohort_in(tempfile::tempdir().unwrap().path(), spec, comparisons)
+}
+
+fn cohort_in(
+    out: &Path,
+    spec: Value,
+    comparisons: &BTreeMap<String, ComparisonDocument>,
+) -> Result<CohortResultDocument, String> {
     let spec = serde_json::from_value(spec).unwrap();
     let comparisons = comparisons.clone();
     let actuals = BTreeMap::new();
     let input = CohortInput { job: None, queue_s: None, spec, cohort: None, comparisons, actuals };
     let input = JobInput::Cohort(input);
-    let out = tempfile::tempdir().unwrap();
     let sources = Meshes(BTreeMap::new());
-    let place = Workplace { sources: &sources, limits: &Limits::default(), out: out.path() };
+    let place = Workplace { sources: &sources, limits: &Limits::default(), out };
     let done = work(&input, &place, &Unobserved).map_err(|error| format!("{error:?}"))?;
     Ok(done.result.cohort.unwrap())
 }
@@ -126,6 +135,33 @@ fn ten_twins_give_a_table_boxes_and_an_exact_test() {
     assert!((pair.p.unwrap() - exact).abs() < 1e-12 && pair.is_exact, "{pair:?} {exact}");
     assert_eq!(pair.smallest_p, 2.0 / 1024.0);
     assert!((pair.median_difference_mm + 0.08).abs() < 0.021, "{pair:?}");
+}
+
+#[test]
+fn a_cohort_is_drawn_and_tabled_for_a_paper() {
+    let groups = json!({"mtm": ids("mtm"), "with, fibres": ids("fibres")});
+    let out = tempfile::tempdir().unwrap();
+    let found = cohort_in(out.path(), json!({"groups": groups}), &twins()).unwrap();
+    let table = fs::read_to_string(out.path().join("cohort.csv")).unwrap();
+    let rows: Vec<&str> = table.lines().collect();
+    assert_eq!(rows.len(), 1 + 2 * TWINS);
+    assert!(rows[0].starts_with("group,subject,points,mean_mm,sd_mm"), "{}", rows[0]);
+    // The same numbers as the result, to the bit.
+    let numbers: Vec<f64> = rows[1].split(',').skip(3).map(|own| own.parse().unwrap()).collect();
+    let row = &found.groups[0].rows[0].distances;
+    assert_eq!((numbers[0], numbers[1], numbers[10]), (row.mean, row.sd, row.max));
+    assert!(rows[11].starts_with("\"with, fibres\",1,"), "{}", rows[11]);
+    let picture = fs::read_to_string(out.path().join("cohort.svg")).unwrap();
+    assert_eq!(picture.matches("class=\"group\"").count(), 2);
+    assert_eq!(picture.matches("class=\"subject\"").count(), 2 * TWINS);
+    for words in
+        ["p = 0.43", "W 36 and 19 of 10 that differ", "mtm less with, fibres", "10 subjects"]
+    {
+        assert!(picture.contains(words), "{words}");
+    }
+    if let Ok(kept) = std::env::var("FACIES_TEST_PICTURES") {
+        fs::write(Path::new(&kept).join("cohort.svg"), &picture).unwrap();
+    }
 }
 
 #[test]

@@ -208,6 +208,15 @@ fn errors_of_nodes_and_of_landmarks_are_maps_over_the_skin() {
     let head = String::from_utf8_lossy(&ply[..1500]).into_owned();
     assert!(head.contains("-5") && head.contains("signed_distance_mm"), "{head}");
     assert!(folder.path().join("skin.glb").exists());
+    let picture = fs::read_to_string(folder.path().join("distance.svg")).unwrap();
+    assert_eq!(picture.matches("data:image/png;base64,").count(), 3);
+    assert_eq!(picture.matches("class=\"bin\"").count(), 20);
+    for words in ["distance, mm", ">-5<", ">5<", "below the range", "Both ways, by area"] {
+        assert!(picture.contains(words), "{words}");
+    }
+    if let Ok(kept) = std::env::var("FACIES_TEST_PICTURES") {
+        fs::write(Path::new(&kept).join("distance.svg"), &picture).unwrap();
+    }
     let plain =
         json!({"prediction": {"mesh": "skin"}, "actual": {"mesh": "scan"}, "node_wise": "off"});
     comparison(&sources, &plain, folder.path());

@@ -19,14 +19,18 @@ use crate::sources::Meshes;
 
 /// A ball of bone of 30 mm around (60, 55, 60) mm in a scan with voxels of 4 mm, cut 12 mm below its middle.
 fn meshed(risks: Value) -> Result<(ResultDocument, TempDir), String> {
+    meshed_by(json!({
+        "cuts": [{"name": "low", "point_mm": [0, 0, 48], "normal": [0, 0, 2], "kerf_mm": 1}],
+        "segments": [{"name": "jaw, lower", "below": ["low"]}], "risks": risks}))
+}
+
+fn meshed_by(osteotomy: Value) -> Result<(ResultDocument, TempDir), String> {
     let read = format::read(&ball_ct(), &ReadLimits::default()).unwrap();
     let scan = StoredMesh::new(read, None, "scan".to_owned());
     let sources = Meshes(BTreeMap::from([("scan".to_owned(), scan)]));
     let spec = json!({
         "kind": "mesh", "scan": "scan", "thresholds_hu": {"skin": -480, "bone": 620}, "size": {"tetrahedra": 8000},
-        "osteotomy": {
-            "cuts": [{"name": "low", "point_mm": [0, 0, 48], "normal": [0, 0, 2], "kerf_mm": 1}],
-            "segments": [{"name": "jaw, lower", "below": ["low"]}], "risks": risks}
+        "osteotomy": osteotomy
     });
     let spec = serde_json::from_value(spec).unwrap();
     let input = JobInput::Meshing(MeshingInput { job: None, queue_s: None, spec, case: None });
@@ -74,6 +78,78 @@ fn a_cut_has_the_outline_of_the_bone_and_its_distance_from_a_nerve() {
     read_again(&folder, cut);
 }
 
+/// Steps along x at 46 mm and, beyond the middle of the ball, at 54 mm, so deep into the bone from before it.
+fn steps(depth_mm: f64) -> Value {
+    json!({
+        "polylines": [{
+            "name": "steps", "polyline_mm": [[20, 15, 46], [60, 15, 46], [60, 15, 54], [100, 15, 54]],
+            "direction": [0, 2, 0], "depth_mm": depth_mm
+        }],
+        "segments": [{"name": "jaw", "below": ["steps"], "seeds_mm": [[60, 55, 36]]}]
+    })
+}
+
+#[test]
+fn a_stepped_cut_is_meshed_and_each_of_its_pieces_has_the_area_of_the_bone_there() {
+    let (result, _folder) = meshed_by(steps(80.0)).unwrap();
+    let meshing = result.meshing.as_ref().unwrap();
+    let named: Vec<&str> = meshing.cuts.iter().map(|cut| cut.cut.as_str()).collect();
+    assert_eq!(named, ["steps, piece 1", "steps, piece 2", "steps, piece 3"]);
+    // Half a disc on each tread; on the riser the chords of the ball around x = 60 from 46 to 54 mm.
+    let half = |height: f64| 0.5 * PI * (900.0 - (60.0 - height).powi(2));
+    let chord = |z: f64| 2.0 * (900.0 - (60.0 - z).powi(2)).sqrt();
+    let riser = 8.0 / 6.0 * (chord(46.0) + 4.0 * chord(50.0) + chord(54.0));
+    for (cut, wanted) in meshing.cuts.iter().zip([half(46.0), riser, half(54.0)]) {
+        assert!((cut.area_mm2 / wanted - 1.0).abs() < 0.2, "{} {wanted}", cut.area_mm2);
+        let [x, y, z] = cut.normal.0;
+        let along_x = cut.cut.ends_with('2');
+        assert!(if along_x { (x.abs() - 1.0).abs() < 1e-12 } else { (z - 1.0).abs() < 1e-12 });
+        assert_eq!(y, 0.0);
+    }
+    // A cap of the ball below 46 mm, and half of the slice from there to 54 mm.
+    let cap = |h: f64| PI * h * h * (30.0 - h / 3.0);
+    let (low, high) = (cap(16.0), cap(24.0));
+    let [segment] = &meshing.segments[..] else { panic!("{:?}", meshing.segments) };
+    let wanted = (low + 0.5 * (high - low)) / 1000.0;
+    assert!((segment.volume_ml / wanted - 1.0).abs() < 0.08, "{segment:?} {wanted}");
+}
+
+#[test]
+fn a_root_as_a_surface_has_its_distance_from_the_saw() {
+    // A tetrahedron with its tip 4 mm below the cut.
+    let root = json!({"name": "root", "points_mm": [[60, 55, 44], [56, 51, 38], [64, 51, 38], [60, 61, 38]],
+        "triangles": [[0, 1, 2], [0, 2, 3], [0, 3, 1], [1, 3, 2]], "clearance_mm": 4});
+    let (result, _folder) = meshed(json!([root])).unwrap();
+    let [clearance] = &result.meshing.as_ref().unwrap().cuts[0].clearances[..] else { panic!() };
+    assert!((clearance.distance_mm - 3.5).abs() < 1e-9, "{clearance:?}");
+    assert_eq!(clearance.at_mm.0, [60.0, 55.0, 44.0]);
+    assert!(result.warnings.iter().any(|warning| warning.code == "cut-near-risk"));
+}
+
+#[test]
+fn a_line_that_saws_nothing_is_refused_where_it_stands() {
+    let changed = |change: &dyn Fn(&mut Value)| {
+        let mut asked = steps(80.0);
+        change(&mut asked);
+        meshed_by(asked).map(|_| ()).unwrap_err()
+    };
+    let line = "/polylines/0";
+    for (change, place) in [
+        (&|a: &mut Value| a["polylines"][0]["depth_mm"] = json!(0), "/depth_mm"),
+        (&|a: &mut Value| a["polylines"][0]["direction"] = json!([0, 0, 0]), "/direction"),
+        (&|a: &mut Value| a["polylines"][0]["direction"] = json!([1, 0, 0]), "/polyline_mm"),
+        (&|a: &mut Value| a["polylines"][0]["polyline_mm"] = json!([[1, 2, 3]]), "/polyline_mm"),
+        (&|a: &mut Value| a["polylines"][0]["kerf_mm"] = json!(11), "/kerf_mm"),
+    ] as [(&dyn Fn(&mut Value), &str); 5]
+    {
+        let told = changed(change);
+        assert!(told.contains(&format!("/spec/osteotomy{line}{place}")), "{place}: {told}");
+    }
+    let shallow = meshed_by(steps(40.0)).map(|_| ()).unwrap_err();
+    let told = ["cut-leaves-bridge", "CutLeavesBridge"].iter().any(|code| shallow.contains(code));
+    assert!(told && shallow.contains("/spec/osteotomy/polylines/0"), "{shallow}");
+}
+
 /// The table has the same bits.
 fn read_again(folder: &TempDir, cut: &CutPathDocument) {
     let table = fs::read_to_string(folder.path().join("cut-paths.csv")).unwrap();
@@ -102,7 +178,10 @@ fn a_structure_that_is_no_line_is_refused_where_it_stands() {
     clearance["clearance_mm"] = json!(51);
     let mut beyond = good();
     beyond["points_mm"][1][2] = json!(1e9);
+    let mut beyond_points = good();
+    beyond_points["triangles"] = json!([[0, 1, 2]]);
     for (risks, place) in [
+        (json!([beyond_points]), "risks/0/triangles/0"),
         (json!([short]), "risks/0/points_mm"),
         (json!([good(), thick]), "risks/1/radius_mm"),
         (json!([clearance]), "risks/0/clearance_mm"),

@@ -11,6 +11,7 @@ mod optimise;
 mod own_iterations;
 mod planning;
 mod refined;
+mod reproduce_damage;
 mod results;
 mod stress;
 mod study_report;

@@ -9,6 +9,7 @@ use facies::jobs::{JobInput, PredictInput, StoredMesh, StudyInput, Workplace, wo
 use facies::schema::reproduce::result::ReproductionDocument;
 use facies::schema::{Faults, Limits, Matrix4x4, ReportDocument, StudyDocument};
 use mechanics::format::{self, ReadLimits};
+use mechanics::image::{ImageVolume, Placement, Voxels};
 use mechanics::mesh::sample::block;
 use mechanics::mesh::{CellShape, TriangleSurface, Vector, VolumeMesh};
 use mechanics::plan::RigidMovement;
@@ -59,13 +60,44 @@ fn case((young_modulus, poisson_ratio): (f64, f64)) -> Value {
     })
 }
 
+/// The same layers as a scan shows them: 40 HU up to z = 6 mm and 120 HU above, in slices of 1 mm.
+fn ct() -> StoredMesh {
+    let placement = Placement {
+        origin: Vector::new(-5.0, -5.0, -0.5),
+        steps: [Vector::x() * 70.0, Vector::y() * 50.0, Vector::z()],
+    };
+    let (slices, per_slice) = (14, 4);
+    let value = |n: usize| if n / per_slice > 6 { 120 } else { 40 };
+    let values = (0..slices * per_slice).map(value).collect();
+    let image = ImageVolume::new([2, 2, slices], placement, Voxels::I16(values)).unwrap();
+    let image = stored(facies::jobs::StoredShape::Image(image.into()), None);
+    StoredMesh { frame: None, ..image }
+}
+
+/// The tissue by the values of the scan, and no regions.
+fn imaged_case((young_modulus, poisson_ratio): (f64, f64)) -> Value {
+    let mut case = case((15.0, 0.46));
+    case.as_object_mut().unwrap().remove("regions");
+    case["materials"] = json!({"*": {"young_modulus_kpa": 1, "poisson_ratio": 0.3}});
+    case["hounsfield"] = json!({"image": "ct", "samples": 64, "tissues": [
+        {"name": "deep", "from_hu": 0, "to_hu": 80,
+         "material": {"young_modulus_kpa": 15, "poisson_ratio": 0.46}},
+        {"name": "outer", "from_hu": 80, "to_hu": 200,
+         "material": {"young_modulus_kpa": young_modulus, "poisson_ratio": poisson_ratio}}]});
+    case
+}
+
 /// The predicted skin, as its file is read.
 fn predicted(sources: &Meshes, constants: (f64, f64), plan: &Value) -> StoredMesh {
+    predicted_of(case(constants), sources, plan)
+}
+
+fn predicted_of(case: Value, sources: &Meshes, plan: &Value) -> StoredMesh {
     let folder = tempfile::tempdir().unwrap();
     let input = PredictInput {
         job: None,
         queue_s: None,
-        case: serde_json::from_value(case(constants)).unwrap(),
+        case: serde_json::from_value(case.clone()).unwrap(),
         plan: serde_json::from_value(plan.clone()).unwrap(),
         spec: serde_json::from_value(
             json!({"method": "fem_linear", "estimate": "none", "outputs": ["skin.vtp"]}),
@@ -76,7 +108,7 @@ fn predicted(sources: &Meshes, constants: (f64, f64), plan: &Value) -> StoredMes
     work(&JobInput::Predict(input), &place, &Unobserved).unwrap();
     let bytes = fs::read(folder.path().join("skin.vtp")).unwrap();
     let read = format::read(&bytes, &ReadLimits::default()).unwrap();
-    StoredMesh::new(read, None, format!("skin {constants:?}"))
+    StoredMesh::new(read, None, format!("skin of {case}"))
 }
 
 /// The same surface of other triangles in another order, with a hole of 5 mm, and no numbers of nodes.
@@ -102,13 +134,22 @@ fn study(
     plan: &Value,
     truth: Value,
 ) -> Result<(ReportDocument, Vec<String>, TempDir), String> {
+    study_of(case((30.0, 0.4)), sources, plan, truth)
+}
+
+fn study_of(
+    case: Value,
+    sources: &Meshes,
+    plan: &Value,
+    truth: Value,
+) -> Result<(ReportDocument, Vec<String>, TempDir), String> {
     let folder = tempfile::tempdir().unwrap();
     let spec = json!({
         "kind": "study", "scenes": [{"case": "twin", "name": "twin", "plans": [plan]}],
         "methods": [{"method": "fem_linear", "label": "fem"}], "repeats": 1, "truth": truth,
         "sweep": {"outer": {"young_modulus_kpa": MODULI, "poisson_ratio": RATIOS}}
     });
-    let cases = [("twin".to_owned(), serde_json::from_value(case((30.0, 0.4))).unwrap())];
+    let cases = [("twin".to_owned(), serde_json::from_value(case).unwrap())];
     let input = StudyInput {
         job: None,
         queue_s: None,
@@ -184,6 +225,85 @@ fn transform_plan_and_constants_that_were_planted_come_back() {
     assert!(covered.into_iter().all(|share| (0.9..1.0).contains(&share)));
     let chart = fs::read_to_string(folder.path().join("constants-1-fem.svg")).unwrap();
     assert_eq!(chart.matches("class=\"cell\"").count(), grid.len());
+}
+
+#[test]
+fn constants_of_a_tissue_that_a_scan_shows_come_back() {
+    let (_, done, mut sources, _) = twin();
+    sources.0.insert("ct".to_owned(), ct());
+    let plan = json!({"segments": [{"name": "jaw", "matrix4x4": done.matrix4()}]});
+    let skin = predicted_of(imaged_case(PLANTED), &sources, &plan).surface().unwrap();
+    // The scan finds the same layers as the regions of the mesh.
+    let by_region = predicted(&sources, PLANTED, &plan).surface().unwrap();
+    let apart = skin.points.iter().zip(&by_region.points).map(|(a, b)| (a - b).norm());
+    assert!(apart.fold(0.0, f64::max) < 1e-6);
+    sources.0.insert("scan".to_owned(), surface(scanned(&skin)));
+    let (report, _, _) =
+        study_of(imaged_case((30.0, 0.4)), &sources, &plan, json!({"mesh": "scan"})).unwrap();
+    let [map] = &report.constant_maps[..] else { panic!("one map") };
+    let names: Vec<String> = map.axes.iter().map(|axis| axis.words()).collect();
+    assert!(names.iter().all(|name| name.contains("outer")), "{names:?}");
+    assert_eq!(map.best.values, [PLANTED.0, PLANTED.1], "{map:?}");
+    assert_eq!(map.cells.len(), MODULI.len() * RATIOS.len());
+    assert!(map.best.mean_mm < 0.02, "{map:?}");
+    let others = map.cells.iter().filter(|cell| cell.values != map.best.values);
+    let second = others.map(|cell| cell.mean_mm).fold(f64::INFINITY, f64::min);
+    assert!(second > 2.0 * map.best.mean_mm && second > 0.001, "{map:?}");
+}
+
+#[test]
+fn constants_come_back_by_points_and_by_landmarks_too() {
+    let (_, done, mut sources, _) = twin();
+    let plan = json!({"segments": [{"name": "jaw", "matrix4x4": done.matrix4()}]});
+    let [rest, planted] = [json!({}), plan.clone()]
+        .map(|plan| (*predicted(&sources, PLANTED, &plan).surface().unwrap()).clone());
+    // Landmarks at points of the skin and above it, since all of the skin at rest lies in one plane.
+    let points = rest.points.len();
+    let marks =
+        [(0, 0.0), (points / 5, 8.0), (points / 3, 0.0), (points / 2, 8.0), (points - 9, 0.0)];
+    let of = |skin: &TriangleSurface| -> Value {
+        let mark = |(number, (point, up)): (usize, (usize, f64))| {
+            let at = skin.points[point] + Vector::z() * up;
+            (format!("mark {number}"), json!([at.x, at.y, at.z]))
+        };
+        Value::Object(marks.into_iter().enumerate().map(mark).collect())
+    };
+    let mut case = case((30.0, 0.4));
+    case["landmarks"] = of(&rest);
+    sources.0.insert("same points".to_owned(), surface(planted.clone()));
+    sources.0.insert("other points".to_owned(), surface(scanned(&planted)));
+    let least = |truth: Value| -> f64 {
+        let (report, ..) = study_of(case.clone(), &sources, &plan, truth).unwrap();
+        let map = &report.constant_maps[0];
+        assert_eq!(map.best.values, [PLANTED.0, PLANTED.1], "{map:?}");
+        let others = map.cells.iter().filter(|cell| cell.values != map.best.values);
+        assert!(others.into_iter().all(|cell| cell.mean_mm > 2.0 * map.best.mean_mm + 0.001));
+        map.best.mean_mm
+    };
+    assert!(least(json!({"mesh": "same points", "metric": "node_wise"})) < 1e-6);
+    let by_landmarks =
+        json!({"mesh": "other points", "metric": "tps_cp", "landmarks_mm": of(&planted)});
+    assert!(least(by_landmarks.clone()) < 1e-6);
+
+    let refused =
+        |truth: Value| study_of(case.clone(), &sources, &plan, truth).map(|_| ()).unwrap_err();
+    let mut unknown = by_landmarks.clone();
+    unknown["landmarks_mm"]["nose"] = json!([0, 0, 0]);
+    let mut few = by_landmarks.clone();
+    few["landmarks_mm"] = json!({"mark 0": [0, 0, 0]});
+    for (truth, place) in [
+        (json!({"mesh": "other points", "metric": "node_wise"}), "/spec/truth/metric"),
+        (unknown, "/spec/truth/landmarks_mm/nose"),
+        (few, "/spec/truth/landmarks_mm"),
+        (
+            json!({"mesh": "same points", "landmarks_mm": {"a": [0, 0, 0]}}),
+            "/spec/truth/landmarks_mm",
+        ),
+        (json!({"refine": 0, "metric": "tps_cp"}), "/spec/truth/metric"),
+    ] {
+        let told = refused(truth);
+        assert!(told.contains(&format!("{place:?}")), "{place}: {told}");
+    }
 }
 
 #[test]

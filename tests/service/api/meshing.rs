@@ -182,6 +182,21 @@ async fn what_cannot_be_meshed_is_refused_with_its_place() {
     let job = ended(&server, &beside).await;
     let told = &job["error"]["errors"][0]["pointer"];
     assert_eq!(told, "/spec/osteotomy/segments/0/seeds_mm/1", "{job}");
+    // A disc in a ball of bone of 30 mm, around which the jaw hangs at the rest, and a line that is not sawn through.
+    let disc = json!({"cuts": [{"name": "middle", "point_mm": [60, 55, 60], "normal": [0, 0, 1], "radius_mm": 15}],
+        "segments": [{"name": "jaw", "below": ["middle"], "seeds_mm": [[60, 55, 50]]}]});
+    let line = json!({"polylines": [{"name": "step", "polyline_mm": [[20, 15, 60], [100, 15, 60]],
+            "direction": [0, 1, 0], "depth_mm": 40}],
+        "segments": [{"name": "jaw", "below": ["step"], "seeds_mm": [[60, 55, 50]]}]});
+    for (osteotomy, place) in [(disc, "cuts/0"), (line, "polylines/0")] {
+        let mut hanging = spec(&scan);
+        hanging["osteotomy"] = osteotomy;
+        let job = ended(&server, &hanging).await;
+        assert_eq!(job["error"]["type"], "cut-leaves-bridge", "{job}");
+        let error = &job["error"]["errors"][0];
+        assert_eq!(error["pointer"], format!("/spec/osteotomy/{place}"), "{job}");
+        assert!(error["detail"].as_str().unwrap().contains("still hangs at"), "{job}");
+    }
 }
 
 async fn surface(server: &Server, ball: SampleBall) -> String {

@@ -94,6 +94,42 @@ fn a_saw_of_a_width_leaves_sawdust_between_the_parts() {
     assert!(parts.iter().all(|(between, _)| *between != [Owner::Rest, Owner::Segment(0)]));
 }
 
+/// Steps along x, at z = 13 up to x = 9.5 and at z = 21 beyond, sawn from y = 0 as deep as is given.
+fn stepped(depth: f64) -> Vec<Cut> {
+    let line = [[0.0, 0.0, 13.0], [9.5, 0.0, 13.0], [9.5, 0.0, 21.0], [20.0, 0.0, 21.0]];
+    let line = line.map(Vector::from);
+    Cut::chained("step", &line, Vector::y() * depth, 0.0, 0).unwrap()
+}
+
+/// The bone below the steps. Above the normals of the pieces, along x (or z) times y, is where z grows and x falls.
+fn below_the_steps() -> SegmentRule {
+    let sides = [0, 1, 2].map(|piece| (piece, Side::Below));
+    segment("part", &sides, &[[4.0, 6.0, 6.0]])
+}
+
+#[test]
+fn a_stepped_cut_parts_what_lies_below_its_steps() {
+    let found = parted(&block(), stepped(14.0), vec![below_the_steps()]);
+    // 8 columns of voxels up to 12 mm, and 8 up to 20 mm.
+    assert_eq!(found.segments[0].voxels, 10 * (8 * 5 + 8 * 9));
+    assert_eq!(found.bridges, []);
+    for (cut, wanted) in [(0, 8.0 * 10.0), (1, 8.0 * 10.0), (2, 8.0 * 10.0)] {
+        let at = found.contacts.iter().find(|contact| contact.cut == Some(cut)).unwrap();
+        assert_eq!(at.area_mm2, wanted, "{cut}: {:?}", found.contacts);
+    }
+    assert!(found.contacts.iter().all(|contact| contact.cut.is_some()), "{:?}", found.contacts);
+}
+
+#[test]
+fn a_stepped_cut_that_is_not_deep_enough_leaves_a_bridge() {
+    let found = parted(&block(), stepped(8.0), vec![below_the_steps()]);
+    let bridged: Vec<usize> = found.bridges.iter().map(|bridge| bridge.cut).collect();
+    assert_eq!(bridged, [0, 1, 2]);
+    // Behind y = 8 three or four rows of voxels of eight columns hang together.
+    let tread = &found.bridges[0];
+    assert!(tread.faces >= 8 * 3 && tread.centre.y > 8.0, "{tread:?}");
+}
+
 /// Two blocks that touch at a neck of 2 x 2 voxels between x = 9 and x = 11, dimmer than the blocks.
 fn touching(neck: f64) -> ImageVolume {
     scan([21, 12, 8], |x| {

@@ -11,13 +11,13 @@ use mechanics::model::fem::inner_stress::InnerStress;
 use mechanics::model::fem::law_states::at_second_order;
 use mechanics::model::fem::strain::gradient_at_centre;
 use mechanics::prediction::{
-    Activation, Case, CellState, ContactKind, ElementChoice, FibreDirection, Growth, Method,
-    MethodKind, Muscle, MuscleCourse, Plan, Prediction, Prescribed, Scene, Settings, linear_strain,
-    node_states,
+    Activation, Case, CellState, ElementChoice, FibreDirection, Growth, Method, MethodKind, Muscle,
+    MuscleCourse, Plan, Prediction, Prescribed, Scene, Settings, linear_strain, node_states,
 };
 use mechanics::study::methods;
 use nalgebra::Matrix3;
 
+use super::contact::{PRESSING, bar, pushed, unilateral};
 use super::growth::between_walls;
 use crate::material::anisotropy::{ELEMENTS, MUSCLE, fibred, gradients, tight};
 use crate::material::hyperelastic::rows;
@@ -393,14 +393,38 @@ fn tissue_with_fibres_has_to_second_order_the_stress_of_its_tensor_where_strain_
     }
 }
 
+/// A bar of 20 mm that is pushed by 1.5 mm against a block half a millimetre away: a strain of -1/20 along it.
 #[test]
-fn contact_leaves_the_states_of_the_answer_that_presses() {
-    let (case, plan) = lifted(0.5, CellShape::Hex8, material(15.0, 0.46));
-    let free = solve(&case, &plan, &asked(ElementChoice::Auto));
-    let contact = ContactKind::Unilateral;
-    let settings = Settings { contact, estimate: false, ..asked(ElementChoice::Auto) };
-    let answer = solve(&case, &plan, &settings);
-    assert_eq!(answer.states, free.states);
+fn contact_that_presses_has_the_stress_of_what_is_pressed() {
+    for (shape, element) in PRESSING {
+        let case = bar(shape);
+        let linear = Settings { element, states: true, ..unilateral() };
+        let finite = Settings { method: Method::FemNonlinear, ..linear.clone() };
+        let l: f64 = 0.95;
+        // Hooke at nu 0, and mu (l - 1/l) of the neo-Hookean law with the Green strain (l² - 1) / 2.
+        for (settings, stress, strain) in [
+            (linear, 15.0 * (l - 1.0), l - 1.0),
+            (finite, 7.5 * (l - 1.0 / l), (l * l - 1.0) / 2.0),
+        ] {
+            let answer = solve(&case, &pushed(1.5), &settings);
+            assert!(answer.contact.is_some());
+            let along = |value: f64| Matrix3::from_diagonal(&Vector::new(value, 0.0, 0.0));
+            let in_bar = |cell: usize| case.volume.corners(cell).all(|x| x.x < 20.1);
+            assert_eq!(answer.states.cells.len(), case.volume.cells.len());
+            for (cell, state) in answer.states.cells.iter().enumerate() {
+                let [stress, strain] = match in_bar(cell) {
+                    true => [along(stress), along(strain)],
+                    false => [Matrix3::zeros(); 2],
+                };
+                let off = [(state.stress - stress).amax(), (state.strain - strain).amax()];
+                assert!(off[0] < 1e-6 && off[1] < 1e-7, "{shape:?} {element:?} {cell}: {state:?}");
+            }
+            // What does not reach the block is not pressed.
+            let free = solve(&case, &pushed(0.3), &settings);
+            assert!(free.contact.is_none() && free.states.cells.len() == case.volume.cells.len());
+            assert!(free.states.cells.iter().all(|state| state.stress.amax() < 1e-6));
+        }
+    }
 }
 
 #[test]

@@ -292,13 +292,13 @@ fn swapped_scans_are_named_with_their_numbers() {
 
 #[test]
 fn two_spheres_that_overlap_have_a_lens_in_common() {
-    let one = sphere(10.0, Vector::zeros(), 5);
-    let other = sphere(10.0, Vector::new(15.0, 0.0, 0.0), 5);
+    let one = sphere(10.0, Vector::zeros(), 6);
+    let other = sphere(10.0, Vector::new(15.0, 0.0, 0.0), 6);
     let found = overlap(&one, &other).unwrap();
-    // docs/verification.md#cuts; flat triangles of 0.4 mm lie up to 0.002 mm inside, and samples know no border.
-    assert_near(found.depth, 5.0, 0.01);
-    assert_near(found.volume, 359.974_158, 0.01 * 359.974_158);
-    assert_near(found.radius, 6.614_378, 0.15);
+    // docs/verification.md#cuts; flat triangles of 0.2 mm lie up to 0.0005 mm inside, and samples know no border.
+    assert_near(found.depth, 5.0, 0.002);
+    assert_near(found.volume, 359.974_158, 0.003 * 359.974_158);
+    assert_near(found.radius, 6.614_378, 0.03);
     assert!((found.middle - Vector::new(7.5, 0.0, 0.0)).norm() < 0.05, "{}", found.middle);
     assert_eq!(overlap(&one, &sphere(10.0, Vector::new(25.0, 0.0, 0.0), 4)), None);
 }

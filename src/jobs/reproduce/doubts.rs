@@ -1,0 +1,125 @@
+//! Doubts about a reproduction: that both scans are of one person, the right way round, in the order of time.
+
+use crate::schema::reproduce::document::{ReproduceDocument, ReproducedSegmentDocument};
+use mechanics::mesh::{TriangleSurface, Warning};
+use mechanics::plan::RigidMovement;
+use mechanics::registration::mirror::check_mirror;
+use mechanics::registration::performed::{BoneBefore, Performed, median_distance};
+use mechanics::registration::{RigidTransform, SurfaceAlignment};
+
+/// Bone that was not operated on fits to 0.1 to 0.25 mm, 0.5 % of it beyond 1 mm (Zachow et al. 2006, section 3.2).
+const MISFIT: f64 = 0.25;
+
+/// More of it than that is left where bone was moved.
+const MOVED: f64 = 0.02;
+
+/// In mm: bone nearer than that lies on a surface.
+const LIES: f64 = 0.25;
+
+/// Farther than that from one scan, as a multiple of how far from the other, it lies on the other only.
+const FARTHER: f64 = 3.0;
+
+/// Doubts that both scans are of one person, the right way round.
+pub(super) fn base_warnings(
+    bone: &BoneBefore,
+    after: &TriangleSurface,
+    found: &SurfaceAlignment,
+) -> Vec<Warning> {
+    let mut warnings = Vec::new();
+    if found.share_far > MISFIT {
+        let detail = format!(
+            "{:.0} % of the base is left more than 1 mm from the bone after the operation, rms {:.2} mm: is it somebody else's, or was the base moved?",
+            100.0 * found.share_far,
+            found.rms
+        );
+        let warning = Warning::new("another-person-suspect", detail);
+        warnings.push(warning.with("share_above_1_mm", found.share_far).with("rms_mm", found.rms));
+    }
+    let mirrored = check_mirror(bone.surface, after, bone.mask.as_ref(), &found.transform).ok();
+    if let Some(check) = mirrored.filter(|check| check.looks_mirrored()) {
+        let detail = format!(
+            "a mirror image of the bone after the operation fits to {:.2} mm, itself only to {:.2} mm",
+            check.mirrored_rms, check.rms
+        );
+        let warning = Warning::new("mirrored?", detail).with("rms_mm", check.rms);
+        warnings.push(warning.with("mirrored_rms_mm", check.mirrored_rms));
+    }
+    warnings
+}
+
+/// A base that may hold the bone that was moved: it lies between where both say that the head is.
+pub(super) fn unmasked(spec: &ReproduceDocument, found: &SurfaceAlignment) -> Option<Warning> {
+    let holds_segments = spec.segments.iter().any(|segment| segment.before.is_none());
+    if spec.base.mask.is_some() || !(holds_segments || found.share_far > MOVED) {
+        return None;
+    }
+    let detail = format!(
+        "the base has no `mask`, so that bone which was moved decides too where the head is: {:.1} % of it is left more than 1 mm from \
+         the bone after the operation. State a `mask` that holds only bone that nothing was done to",
+        100.0 * found.share_far
+    );
+    let warning = Warning::new("base-unmasked", detail);
+    Some(warning.with("share_above_1_mm", found.share_far).with("rms_mm", found.rms))
+}
+
+pub(super) fn misfit(segment: &ReproducedSegmentDocument, found: &Performed) -> Option<Warning> {
+    let share = found.fit.share_far;
+    (share > MISFIT).then(|| {
+        let detail = format!(
+            "{:.0} % of segment `{}` is left more than 1 mm from the bone after the operation: its movement is not to be trusted without landmarks to start from",
+            100.0 * share,
+            segment.name.trim()
+        );
+        let warning = Warning::new("segment-misfit", detail);
+        warning.with("share_above_1_mm", share).with("rms_mm", found.fit.rms)
+    })
+}
+
+/// A segment with a surface of its own, which is of the scan before the operation, lies on the other scan only: where that
+/// is as it stands, or where the base takes it. `scans` are those before and after the operation, as they are called.
+pub(super) fn lies_on_the_other_scan(
+    segment: &ReproducedSegmentDocument,
+    bone: &BoneBefore,
+    scans: [&TriangleSurface; 2],
+    base: &SurfaceAlignment,
+) -> Option<Warning> {
+    let [before, after] = scans;
+    let still = RigidTransform::identity();
+    let to_before = median_distance(bone, before, &still).ok()?;
+    let ways = [still, base.transform.inverse()];
+    let to_after = ways.iter().filter_map(|way| median_distance(bone, after, way).ok());
+    let to_after = to_after.min_by(f64::total_cmp)?;
+    if to_before <= LIES.max(FARTHER * to_after) {
+        return None;
+    }
+    let detail = format!(
+        "the surface of segment `{}` before the operation lies {to_before:.2} mm (median) from the bone of `before`, and {to_after:.2} mm \
+         from that of `after`: are the two scans swapped?",
+        segment.name.trim()
+    );
+    let warning = Warning::new("before-operation-suspect", detail);
+    Some(warning.with("to_before_mm", to_before).with("to_after_mm", to_after))
+}
+
+/// A movement that is nearer to the plan backwards than to the plan, by how far the middle of the segment goes.
+pub(super) fn undoes_the_plan(
+    segment: &ReproducedSegmentDocument,
+    found: &Performed,
+    planned: &RigidMovement,
+) -> Option<Warning> {
+    let planned =
+        RigidTransform { rotation: *planned.rotation(), translation: planned.translation() };
+    let done = found.movement.apply(&found.centre) - found.centre;
+    let gone = |way: &RigidTransform| (way.apply(&found.centre) - found.centre - done).norm();
+    let (to_plan, to_undone) = (gone(&planned), gone(&planned.inverse()));
+    if to_plan <= LIES.max(FARTHER * to_undone) {
+        return None;
+    }
+    let detail = format!(
+        "segment `{}` went {to_plan:.2} mm from where it was planned, and {to_undone:.2} mm from where the plan backwards takes it: are the \
+         scans before and after the operation swapped?",
+        segment.name.trim()
+    );
+    let warning = Warning::new("before-operation-suspect", detail);
+    Some(warning.with("to_planned_mm", to_plan).with("to_undone_mm", to_undone))
+}
