@@ -2,8 +2,9 @@
 
 use std::collections::BTreeMap;
 
+use super::given_landmarks::GivenLandmarks;
 use crate::landmarks::profile::ProfilePoint;
-use crate::landmarks::{FaceAxes, MidPlane, Profile, skin_regions};
+use crate::landmarks::{FaceAxes, MidPlane, Profile, ProfileLandmarks, skin_regions};
 use crate::mesh::{Frame, Vector, VolumeMesh, Warning};
 
 /// What was found of a face.
@@ -11,39 +12,52 @@ use crate::mesh::{Frame, Vector, VolumeMesh, Warning};
 pub(super) struct Face {
     pub landmarks: BTreeMap<String, Vector>,
     pub regions: BTreeMap<String, Vec<u32>>,
-    pub warning: Option<Warning>,
+    pub warnings: Vec<Warning>,
 }
 
-/// The face on the skin of a mesh; without a known frame or a profile that is one of a face, nothing and why.
-pub(super) fn face(mesh: &VolumeMesh, skin: &[u32], frame: Frame) -> Face {
-    match found(mesh, skin, frame) {
-        Ok(face) => face,
-        Err(why) => {
-            let detail = format!("no landmarks and no parts of the skin: {why}");
-            Face { warning: Some(Warning::new("no-landmarks", detail)), ..Face::default() }
-        }
+/// The face on the skin of a mesh by the landmarks that are given, or by those of its profile; without a known frame or a
+/// profile that is one of a face, nothing and why.
+pub(super) fn face(
+    mesh: &VolumeMesh,
+    skin: &[u32],
+    frame: Frame,
+    given: Option<&GivenLandmarks>,
+) -> Face {
+    let found = match (FaceAxes::of(frame), given) {
+        (None, _) => Err("the frame of the scan is not known".to_owned()),
+        (Some(axes), Some(given)) => Ok(with(given, mesh, skin, axes)),
+        (Some(axes), None) => found(mesh, skin, axes),
+    };
+    found.unwrap_or_else(|why| {
+        let detail = format!("no landmarks and no parts of the skin: {why}");
+        Face { warnings: vec![Warning::new("no-landmarks", detail)], ..Face::default() }
+    })
+}
+
+/// The parts of the face that given landmarks bound; those far from the skin are told of.
+fn with(given: &GivenLandmarks, mesh: &VolumeMesh, skin: &[u32], axes: FaceAxes) -> Face {
+    let (plane, at) = given.on_mid_plane(axes);
+    Face {
+        landmarks: given.named().map(|(name, at)| (name.to_owned(), at)).collect(),
+        regions: skin_regions(&mesh.nodes, skin, &plane, &at),
+        warnings: given.far_from(mesh, skin),
     }
 }
 
-fn found(mesh: &VolumeMesh, skin: &[u32], frame: Frame) -> Result<Face, String> {
-    let axes = FaceAxes::of(frame).ok_or("the frame of the scan is not known")?;
+fn found(mesh: &VolumeMesh, skin: &[u32], axes: FaceAxes) -> Result<Face, String> {
     let on_skin = |node: &u32| skin.binary_search(node).is_ok();
     let faces: Vec<_> =
         mesh.boundary_faces().into_iter().filter(|face| face.nodes().iter().all(on_skin)).collect();
     let surface = mesh.surface_of(&faces);
     let plane = MidPlane::of(&surface, axes).ok_or("the skin has no front")?;
     let at = Profile::of(&surface, &plane).landmarks().map_err(|error| error.to_string())?;
-    let named = [
-        ("pogonion", at.pogonion),
-        ("sublabiale", at.sublabiale),
-        ("subnasale", at.subnasale),
-        ("pronasale", at.pronasale),
-    ];
-    let landmarks = named.map(|(name, point)| (name.to_owned(), place(&plane, point)));
+    let ProfileLandmarks { pogonion, sublabiale, subnasale, pronasale } = at;
+    let named = [("pogonion", pogonion), ("sublabiale", sublabiale), ("subnasale", subnasale)];
+    let named = named.into_iter().chain(pronasale.map(|tip| ("pronasale", tip)));
     Ok(Face {
-        landmarks: landmarks.into(),
+        landmarks: named.map(|(name, point)| (name.to_owned(), place(&plane, point))).collect(),
         regions: skin_regions(&mesh.nodes, skin, &plane, &at),
-        warning: None,
+        warnings: Vec::new(),
     })
 }
 

@@ -23,7 +23,11 @@ pub fn without_loose(
     ImageVolume::new(scan.size(), *scan.placement(), voxels)
 }
 
-fn replaced<T: Copy>(values: &[T], places: impl Iterator<Item = usize>, value: T) -> Vec<T> {
+pub(super) fn replaced<T: Copy>(
+    values: &[T],
+    places: impl Iterator<Item = usize>,
+    value: T,
+) -> Vec<T> {
     let mut values = values.to_vec();
     places.for_each(|place| values[place] = value);
     values

@@ -8,6 +8,7 @@
 pub mod closed_jaw;
 mod closing;
 mod face;
+mod given_landmarks;
 pub mod label_bone;
 pub mod left_out;
 pub mod loose;
@@ -16,9 +17,12 @@ mod size;
 pub mod skin_scan;
 mod skin_scan_error;
 pub mod surfaces;
+pub mod whole_bone;
 
 pub use closing::Closing;
+pub use given_landmarks::GivenLandmarks;
 pub use skin_scan_error::SkinScanError;
+pub use whole_bone::WholeBone;
 
 use std::collections::BTreeMap;
 
@@ -47,6 +51,8 @@ const BEHIND: f64 = 1.5;
 pub struct AnatomyRules {
     /// Of scans.
     pub image: ImageOptions,
+    /// Of scans.
+    pub whole_bone: WholeBone,
     pub osteotomy: Osteotomy,
     /// A segment that is moved before anything is meshed, beside a skin that was scanned by itself.
     pub closing: Option<Closing>,
@@ -62,6 +68,8 @@ pub struct AnatomyRules {
     pub teeth_slide: bool,
     /// Says how the head stands; without it no landmarks are looked for.
     pub frame: Frame,
+    /// Landmarks that are not looked for, because they are known; cells are fine about them.
+    pub landmarks: Option<GivenLandmarks>,
 }
 
 /// Bone in its segments.
@@ -147,6 +155,9 @@ pub fn build(
     let PartedBone { labelled: bone, surfaces: bones, teeth } = bone;
     let mut settings = rules.meshing.clone();
     settings.size.regions.extend(size::around_segments(&bone, settings.size.finest));
+    let finest = settings.size.finest;
+    let about_landmarks = rules.landmarks.iter().flat_map(|given| given.fine(finest));
+    settings.size.regions.extend(about_landmarks);
     let tissue = mesh(domain, &settings, progress)?;
     let skin = tissue.nodes_on(Boundary::Skin);
     if skin.is_empty() {
@@ -161,8 +172,8 @@ pub fn build(
     warnings.extend(bone.segments.is_empty().then(uncut));
     warnings.extend(touching(&bone));
     warnings.extend(missed(&bone, &rules.osteotomy));
-    let face = face::face(&tissue.volume, &skin, rules.frame);
-    warnings.extend(face.warning);
+    let face = face::face(&tissue.volume, &skin, rules.frame, rules.landmarks.as_ref());
+    warnings.extend(face.warnings);
     let TissueMesh { mut volume, report, .. } = tissue;
     let names: Vec<String> = bone.segments.iter().map(|segment| segment.name.clone()).collect();
     volume.node_sets = classes.node_sets(&names);

@@ -65,7 +65,8 @@ pub struct ProfileLandmarks {
     /// The fold between chin and lower lip.
     pub sublabiale: ProfilePoint,
     pub subnasale: ProfilePoint,
-    pub pronasale: ProfilePoint,
+    /// The tip of the nose, where it is seen.
+    pub pronasale: Option<ProfilePoint>,
 }
 
 impl Profile {
@@ -122,6 +123,7 @@ impl Profile {
                     return Err(ProfileError::NoBase { behind_mm });
                 }
                 self.check_gaps(pogonion.height..=pronasale.height)?;
+                let pronasale = Some(pronasale);
                 Ok(ProfileLandmarks { pogonion, sublabiale, subnasale, pronasale })
             }
             _ => {

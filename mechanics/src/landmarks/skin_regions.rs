@@ -7,6 +7,8 @@
 //! | `chin` | as far below the pogonion as the sublabiale is above it, up to the sublabiale | 27 mm |
 //! | `cheeks` | pogonion to 20 mm above the pronasale | 27 mm (beside the nose 20 mm) to 65 mm |
 //!
+//! Without a pronasale there is no nose, and cheeks end at the subnasale.
+//!
 //! Only skin that is at most 30 mm, for the cheeks 60 mm, behind the subnasale counts. The widths are those of an adult:
 //! half of a mouth of 54 mm, of a nose of 40 mm.
 
@@ -46,7 +48,6 @@ fn region_of([lateral, height, advance]: [f64; 3], at: &ProfileLandmarks) -> Opt
     let aside = lateral.abs();
     let behind = at.subnasale.advance - advance;
     let lowest = 2.0 * at.pogonion.height - at.sublabiale.height;
-    let above_nose = at.pronasale.height + NOSE_HEIGHT;
     if behind <= FRONT && aside <= HALF_MOUTH {
         if (lowest..at.sublabiale.height).contains(&height) {
             return Some("chin");
@@ -54,13 +55,16 @@ fn region_of([lateral, height, advance]: [f64; 3], at: &ProfileLandmarks) -> Opt
         if (at.sublabiale.height..=at.subnasale.height).contains(&height) {
             return Some("lips");
         }
-        if aside <= HALF_NOSE && (at.subnasale.height..=above_nose).contains(&height) {
+        let above_nose = at.pronasale.map(|tip| tip.height + NOSE_HEIGHT);
+        let is_nose = |above: f64| (at.subnasale.height..=above).contains(&height);
+        if aside <= HALF_NOSE && above_nose.is_some_and(is_nose) {
             return Some("nose");
         }
     }
     let beside = if height > at.subnasale.height { HALF_NOSE } else { HALF_MOUTH };
+    let above_cheeks = at.pronasale.map_or(at.subnasale.height, |tip| tip.height + CHEEK_HEIGHT);
     let is_cheek = (beside..=HALF_FACE).contains(&aside)
         && behind <= CHEEK_FRONT
-        && (at.pogonion.height..=at.pronasale.height + CHEEK_HEIGHT).contains(&height);
+        && (at.pogonion.height..=above_cheeks).contains(&height);
     is_cheek.then_some("cheeks")
 }

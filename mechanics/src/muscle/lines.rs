@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use crate::mesh::{Vector, VolumeMesh};
 
-/// A muscle that finds fewer cells is looked for as far as its cells are large.
+/// A muscle with fewer cells is of few cells, which is told.
 pub const FEW_CELLS: usize = 20;
 
 /// The polylines of a muscle, in mm.
@@ -31,20 +31,6 @@ pub struct CellFibre {
 /// The cells whose centroid lies within a distance of a muscle's lines, ascending; `within` has that of each muscle in mm.
 pub fn fibre_cells(mesh: &VolumeMesh, muscles: &[MuscleLines], within: &[f64]) -> Vec<CellFibre> {
     taken(&near(mesh, muscles), within)
-}
-
-/// The distance for each muscle, in mm: `within`, or for one that is then the nearest of fewer than [`FEW_CELLS`] cells how large
-/// the cells about its lines are, if that is more.
-pub fn widened(mesh: &VolumeMesh, muscles: &[MuscleLines], within: f64) -> Vec<f64> {
-    let near = near(mesh, muscles);
-    let mut counts = vec![0; muscles.len()];
-    let plain = vec![within; muscles.len()];
-    taken(&near, &plain).iter().for_each(|own| counts[own.muscle] += 1);
-    let reach = |(muscle, count): (usize, usize)| match count < FEW_CELLS {
-        true => within.max(size_about(mesh, &near, muscle)),
-        false => within,
-    };
-    counts.into_iter().enumerate().map(reach).collect()
 }
 
 /// For each cell the distance to each muscle and its tangent there; nothing of one without a line that has a length.
@@ -91,20 +77,4 @@ fn taken(near: &[Vec<Option<(f64, Vector)>>], reach: &[f64]) -> Vec<CellFibre> {
         Some(CellFibre { cell: cell as u32, muscle, distance, axis, muscles: within.len() })
     };
     near.iter().enumerate().filter_map(of_cell).collect()
-}
-
-/// How large the cells are whose centroids lie nearest to a muscle: the mean of the cube roots of their boxes' volumes, of
-/// [`FEW_CELLS`] cells.
-fn size_about(mesh: &VolumeMesh, near: &[Vec<Option<(f64, Vector)>>], muscle: usize) -> f64 {
-    let mut cells: Vec<(f64, usize)> =
-        near.iter().enumerate().filter_map(|(cell, own)| Some((own[muscle]?.0, cell))).collect();
-    cells.sort_by(|a, b| a.0.total_cmp(&b.0));
-    cells.truncate(FEW_CELLS);
-    let size = |&(_, cell): &(f64, usize)| {
-        let mut corners = mesh.corners(cell);
-        let first = corners.next().unwrap_or_else(Vector::zeros);
-        let (low, high) = corners.fold((first, first), |(l, h), x| (l.inf(&x), h.sup(&x)));
-        (high - low).product().abs().cbrt()
-    };
-    cells.iter().map(size).sum::<f64>() / cells.len().max(1) as f64
 }

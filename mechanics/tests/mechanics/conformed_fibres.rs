@@ -100,7 +100,7 @@ fn muscles_of_the_generic_face_lie_on_its_twin_as_the_known_map_has_them() {
     let face = face();
     let found = of_face(&face);
     let [mean, largest, apart] = told("conformation", &found.deformation, &face.muscles);
-    assert!(mean < 2.0 && largest < 15.0 && apart < 0.5, "{mean} {largest} degrees, {apart} mm");
+    assert!(mean < 1.1 && largest < 4.5 && apart < 0.5, "{mean} {largest} degrees, {apart} mm");
     let spline = spline_of(&landmarks(&face)).unwrap();
     let [by_landmarks, _, farther] = told("landmarks", &spline, &face.muscles);
     assert!(by_landmarks < 5.0 && farther < 3.0, "{by_landmarks} degrees, {farther} mm");

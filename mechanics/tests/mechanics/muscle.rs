@@ -9,7 +9,7 @@ use mechanics::mesh::sample::block;
 use mechanics::mesh::{CellShape, TriangleSurface, Vector};
 use mechanics::muscle::axis::mean_axis;
 use mechanics::muscle::equivalent::{EquivalentTissue, decided_by_rule};
-use mechanics::muscle::lines::{MuscleLines, fibre_cells, widened};
+use mechanics::muscle::lines::{MuscleLines, fibre_cells};
 use mechanics::muscle::share::shares_inside;
 use mechanics::muscle::strap::{box_surface, strap_of};
 use nalgebra::Rotation3;
@@ -215,9 +215,6 @@ fn cells_near_lines_take_the_tangent_of_the_nearest() {
         let known = [Vector::x(), Vector::y()][own.muscle];
         assert!(angle_between(&own.axis, &known) < 1e-9 && own.distance <= 2.5, "{own:?}");
     }
-    // The short one is the nearest of 8 cells: it is looked for as far as cells are large, here 3 mm.
-    let reach = widened(&mesh, &muscles, 2.5);
-    assert!(reach[0] == 2.5 && (reach[1] - 3.0).abs() < 1e-9, "{reach:?}");
     let degenerate =
         MuscleLines { name: "point".to_owned(), lines: vec![vec![Vector::zeros(); 2]] };
     assert!(fibre_cells(&mesh, &[degenerate], &[100.0]).is_empty());

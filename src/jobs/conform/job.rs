@@ -164,7 +164,9 @@ fn refused_case(problem: &Problem) -> Warning {
 /// A mesh whose cells no repair made valid is refused where it is read.
 fn with_inverted_cells(after: &QualityReport) -> Warning {
     let why = format!(
-        "{} of {} cells are turned inside out at some point, and no repair within its bounds mended them; look at the distances          of skin and bone, state landmarks, leave out a bone surface that is open or not that of the template's nodes, or let          nodes move farther with `repair`",
+        "{} of {} cells are turned inside out at some point, and no repair within its bounds mended them; look at the distances of \
+         skin and bone, state landmarks, leave out a bone surface that is open or not that of the template's nodes, or let \
+         nodes move farther with `repair`",
         after.inverted, after.cells
     );
     made_case_refused(&why).with("cells", after.inverted as f64)

@@ -13,6 +13,7 @@ use mechanics::anatomy::left_out::left_out_of_scan;
 use mechanics::anatomy::loose::{loose_bone, without_loose};
 use mechanics::anatomy::region::around_segments;
 use mechanics::anatomy::skin_scan::{FittedScan, told};
+use mechanics::anatomy::whole_bone::made_whole;
 use mechanics::anatomy::{Anatomy, AnatomyError, build, part_bone};
 use mechanics::domain::{ImageDomain, ImageDomainError, ImageOptions, LabelBody};
 use mechanics::image::{ImageVolume, scan_report};
@@ -58,13 +59,18 @@ impl PreparedMeshing {
         scan: &ImageVolume,
         skin: Option<&FittedScan>,
     ) -> Result<PartedBody, AnatomyError> {
-        let (report, bone) =
-            rayon::join(|| scan_report(scan, self.frame), || part_bone(scan, &self.rules));
-        let bone = bone?;
         let mut options = self.rules.image.clone();
+        let whole = made_whole(scan, options.bone_threshold, &self.rules.whole_bone);
+        let (whole, closed) = whole.map_err(ImageDomainError::from)?.unzip();
+        let seen = scan;
+        let scan = whole.as_ref().unwrap_or(scan);
+        let (report, bone) =
+            rayon::join(|| scan_report(seen, self.frame), || part_bone(scan, &self.rules));
+        let bone = bone?;
         let tissue = without_loose(scan, &bone.labelled, &options);
         let tissue = tissue.map_err(ImageDomainError::from)?;
         let mut warnings = report.findings;
+        warnings.extend(closed);
         let closing = self.rules.closing.filter(|_| skin.is_some());
         let (tissue, bone, way) = match closing {
             Some(closing) => {

@@ -5,8 +5,11 @@ use serde_json::Value;
 use utoipa::ToSchema;
 
 use super::labels::LabelsDocument;
+use super::landmarks::SkinLandmarksDocument;
+use super::size::MeshSizeDocument;
 use super::skin_scan::SkinScanDocument;
 use super::surfaces::SurfacesDocument;
+use super::whole_bone::WholeBoneDocument;
 use crate::schema::case::document::FrameName;
 use crate::schema::code::ErrorCode;
 use crate::schema::osteotomy::OsteotomyDocument;
@@ -21,7 +24,7 @@ use crate::schema::wire::names::check_tags;
 use mechanics::anatomy::{AnatomyRules, Closing};
 use mechanics::domain::ImageOptions;
 use mechanics::mesh::Frame;
-use mechanics::meshing::{MeshingSettings, SizeField};
+use mechanics::meshing::MeshingSettings;
 use mechanics::osteotomy::Osteotomy;
 
 /// `mesh`.
@@ -58,6 +61,10 @@ pub struct MeshingDocument {
     /// Of a scan.
     #[serde(default)]
     pub thresholds_hu: HounsfieldThresholdsDocument,
+    /// Of a scan. Absent: bone is what lies above its threshold, and nothing else.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub whole_bone: Option<WholeBoneDocument>,
     /// Absent: no bone is cut, and all of it is fixed that is no segment already.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
@@ -69,6 +76,10 @@ pub struct MeshingDocument {
     pub frame: Option<FrameName>,
     #[serde(default)]
     pub size: MeshSizeDocument,
+    /// Landmarks of the skin that are known. Absent: they are looked for on its profile.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub landmarks: Option<SkinLandmarksDocument>,
     /// Absent: all of the head that the scan shows.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
@@ -105,9 +116,11 @@ impl Default for MeshingDocument {
             labels: None,
             surfaces: None,
             thresholds_hu: HounsfieldThresholdsDocument::default(),
+            whole_bone: None,
             osteotomy: None,
             frame: None,
             size: MeshSizeDocument::default(),
+            landmarks: None,
             region: None,
             coincident_nodes: yes(),
             scan_ends_fixed: yes(),
@@ -146,24 +159,6 @@ impl Default for HounsfieldThresholdsDocument {
     }
 }
 
-/// How fine the mesh is: about so many tetrahedra, or cells of a length; fine around segments, coarse far from them.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
-#[serde(deny_unknown_fields)]
-pub struct MeshSizeDocument {
-    /// Default: 300000, where no length is given.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false, minimum = 1000, maximum = 4000000)]
-    pub tetrahedra: Option<u64>,
-    /// The edge of the finest cubes of the lattice, in mm; each holds twelve tetrahedra.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false, minimum = 0.5, maximum = 50.0)]
-    pub finest_mm: Option<f64>,
-    /// How many times as large cells may be far from segments.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false, minimum = 1.0, maximum = 16.0)]
-    pub coarsening: Option<f64>,
-}
-
 /// The part of the head that is meshed. Tissue beyond it is left out, and what remains ends there as where the scan ends.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
@@ -172,11 +167,6 @@ pub struct RegionDocument {
     #[schema(minimum = 10.0, maximum = 300.0)]
     pub around_segments_mm: f64,
 }
-
-/// Where nothing else is said.
-const USUAL_TETRAHEDRA: u64 = 300_000;
-/// Uniform at first: the estimate of the size of a mesh is best there.
-const USUAL_COARSENING: f64 = 4.0;
 
 impl MeshingDocument {
     /// Every mesh that it names, with its place in the document that stands at a place.
@@ -227,11 +217,17 @@ impl MeshingDocument {
                 faults.add(&at, ErrorCode::UnknownSegment, detail);
             }
         }
-        let meshing = self.size.to_settings(&at.key("size"), limits, faults);
+        let mirrored = self.is_mirrored(scan);
+        let meshing = self.size.to_settings(&at.key("size"), mirrored, limits, faults);
+        let landmarks = self.landmarks.as_ref();
+        let landmarks = landmarks
+            .and_then(|given| given.to_given(&at.key("landmarks"), scan, mirrored, faults));
         let image =
             ImageOptions { skin_threshold: skin, bone_threshold: bone, ..ImageOptions::default() };
+        let whole_bone = self.whole_bone.unwrap_or_default();
         AnatomyRules {
             image,
+            whole_bone: whole_bone.to_rules(&at.key("whole_bone"), faults),
             band_mm: planned.as_ref().map_or(0.0, |planned| planned.free_band_mm),
             closing,
             osteotomy: planned.map(|planned| planned.osteotomy).unwrap_or_default(),
@@ -240,7 +236,13 @@ impl MeshingDocument {
             scan_ends_fixed: self.scan_ends_fixed,
             teeth_slide: self.teeth_slide,
             frame: scan,
+            landmarks,
         }
+    }
+
+    /// Whether x and y change sign between the document and what is meshed.
+    fn is_mirrored(&self, scan: Frame) -> bool {
+        self.frame.is_some_and(|frame| Frame::from(frame) != scan)
     }
 
     fn check_skin_scan(&self, at: &Pointer, limits: &Limits, faults: &mut Faults) {
@@ -262,8 +264,8 @@ impl MeshingDocument {
     ) -> Option<Closing> {
         let jaw = self.skin_scan.as_ref()?.jaw.as_ref()?;
         let none = Osteotomy::default();
-        let mirrored_axes = self.frame.is_some_and(|frame| Frame::from(frame) != scan);
-        let context = MovementContext { mirrored_axes, centre: None, limits };
+        let context =
+            MovementContext { mirrored_axes: self.is_mirrored(scan), centre: None, limits };
         let at = at.key("skin_scan").key("jaw");
         jaw.to_closing(&at, osteotomy.unwrap_or(&none), &context, faults)
     }
@@ -282,6 +284,10 @@ impl MeshingDocument {
     fn check_without_scan(&self, at: &Pointer, detail: &str, faults: &mut Faults) {
         if self.thresholds_hu != HounsfieldThresholdsDocument::default() {
             faults.add(&at.key("thresholds_hu"), ErrorCode::NoScan, detail);
+        }
+        if self.whole_bone.is_some() {
+            let detail = "only bone of a scan is made whole";
+            faults.add(&at.key("whole_bone"), ErrorCode::NoScan, detail);
         }
         if self.region.is_some() {
             let detail = "only what a scan shows is meshed in part";
@@ -329,33 +335,5 @@ impl MeshingDocument {
         plain.tags.clear();
         plain.budget = BudgetDocument::default();
         canonical::to_value(&plain)
-    }
-}
-
-impl MeshSizeDocument {
-    fn to_settings(self, at: &Pointer, limits: &Limits, faults: &mut Faults) -> MeshingSettings {
-        let coarsening = self.coarsening.unwrap_or(USUAL_COARSENING);
-        faults.check_range(&at.key("coarsening"), coarsening, 1.0..=16.0, "");
-        let finest = self.finest_mm.unwrap_or(2.0);
-        faults.check_range(&at.key("finest_mm"), finest, 0.5..=50.0, "mm");
-        let tetrahedra = match (self.tetrahedra, self.finest_mm) {
-            (None, None) => Some(USUAL_TETRAHEDRA),
-            (tetrahedra, _) => tetrahedra,
-        };
-        if let Some(tetrahedra) = tetrahedra {
-            let most = limits.mesh_cells as f64;
-            faults.check_range(&at.key("tetrahedra"), tetrahedra as f64, 1e3..=most, "");
-            faults.check_one_of(
-                at,
-                1 + usize::from(self.finest_mm.is_some()),
-                "`tetrahedra`, `finest_mm`",
-            );
-        }
-        MeshingSettings {
-            size: SizeField::graded(finest, finest * coarsening),
-            target: tetrahedra.map(|count| count as usize),
-            most_tetrahedra: limits.mesh_cells as usize,
-            ..MeshingSettings::default()
-        }
     }
 }

@@ -3,8 +3,11 @@
 pub mod cuts;
 pub mod document;
 pub mod labels;
+pub mod landmarks;
 pub mod result;
+pub mod size;
 pub mod skin_scan;
 pub mod surfaces;
+pub mod whole_bone;
 
 pub use document::MeshingDocument;
