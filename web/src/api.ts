@@ -18,12 +18,14 @@ export interface Call {
   path: string;
   headers: Record<string, string>;
   body: BodyInit | undefined;
+  /** The documents among the parts of a form, by their names. */
+  documents?: Record<string, string>;
 }
 
 export class Service extends Facies {
   readonly calls: Call[] = [];
-  /** Called after each call. */
-  noted: () => void = () => {};
+  /** Called with each call. */
+  noted: (call: Call) => void = () => {};
 
   constructor() {
     super(location.origin, sessionStorage.getItem(KEY) ?? undefined);
@@ -41,9 +43,17 @@ export class Service extends Facies {
     return sessionStorage.getItem(KEY) !== null;
   }
 
-  override ask(method: string, path: string, body?: BodyInit, headers: Record<string, string> = {}): Promise<Response> {
-    this.note({ method, path, body, headers });
+  override async ask(method: string, path: string, body?: BodyInit, headers: Record<string, string> = {}): Promise<Response> {
+    this.note({ method, path, body, headers, ...(body instanceof FormData ? { documents: await documentsOf(body) } : {}) });
     return super.ask(method, path, body, headers);
+  }
+
+  override upload(...[mesh, units = "mm", frame = "unspecified", uploading]: Parameters<Facies["upload"]>): Promise<string> {
+    // Without anybody to tell how far it is it goes by `ask`, which notes it.
+    if (uploading !== undefined) {
+      this.note({ method: "POST", path: `/v1/meshes?units=${units}&frame=${frame}`, body: mesh, headers: { "Content-Type": "application/octet-stream" } });
+    }
+    return super.upload(mesh, units, frame, uploading);
   }
 
   override events(job: string): ReturnType<Facies["events"]> {
@@ -76,20 +86,31 @@ export class Service extends Facies {
   private note(call: Call): void {
     this.calls.unshift(call);
     this.calls.length = Math.min(this.calls.length, MOST_CALLS);
-    this.noted();
+    this.noted(call);
   }
+}
+
+async function documentsOf(form: FormData): Promise<Record<string, string>> {
+  const parts = [...form.entries()].filter((part): part is [string, File] => part[1] instanceof File && part[1].type === "application/json");
+  return Object.fromEntries(await Promise.all(parts.map(async ([name, part]) => [name, await part.text()] as const)));
 }
 
 const quoted = (text: string) => `'${text.replaceAll("'", `'\\''`)}'`;
 
 /** A call as a person types it; the key is that of the variable FACIES_API_KEY. */
-export function asCurl({ method, path, headers, body }: Call): string {
+export function asCurl({ method, path, headers, body, documents = {} }: Call): string {
   const parts = ["curl -sS"];
   if (method !== "GET" && !(method === "POST" && body !== undefined)) parts.push(`-X ${method}`);
   for (const [name, value] of Object.entries(headers)) parts.push(`-H ${quoted(`${name}: ${value}`)}`);
   if (Service.hasKey) parts.push('-H "Authorization: Bearer $FACIES_API_KEY"');
   if (typeof body === "string") parts.push(`-d ${quoted(body)}`);
-  if (body instanceof FormData) parts.push(...[...body.keys()].map((name) => `-F ${quoted(`${name}=@${name === "case" ? "case.json;type=application/json" : name}`)}`));
-  if (body instanceof Blob) parts.push("--data-binary @FILE");
+  const part = (name: string, value: FormDataEntryValue) => {
+    const document = documents[name];
+    // Within quotes curl takes what is between parts as it is.
+    if (document !== undefined) return `${name}="${document.replaceAll(/["\\]/g, "\\$&")}";type=application/json`;
+    return `${name}=@${value instanceof File ? value.name : name}`;
+  };
+  if (body instanceof FormData) parts.push(...[...body.entries()].map(([name, value]) => `-F ${quoted(part(name, value))}`));
+  if (body instanceof Blob) parts.push(`--data-binary ${quoted(`@${body instanceof File ? body.name : "FILE"}`)}`);
   return [...parts, quoted(location.origin + path)].join(" ");
 }

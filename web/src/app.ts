@@ -66,11 +66,13 @@ export class ProgressLine {
   readonly element: HTMLElement;
   private readonly bar = make("progress", { max: 100, value: 0 });
   private readonly text = make("span");
+  /** What became of stopping it. */
+  private readonly said = make("div");
 
-  constructor(private readonly words: Words, label: string, stop?: { text: string; clicked: () => void }) {
+  constructor(private readonly words: Words, label: string, stop?: { text: string; clicked: () => Promise<unknown> }) {
     this.bar.setAttribute("aria-label", label);
     this.element = make("div", { className: "progress" }, make("span", {}, label), this.bar, this.text,
-      stop !== undefined && button(stop.text, stop.clicked));
+      stop !== undefined && button(stop.text, () => { stop.clicked().catch((error: unknown) => this.said.replaceChildren(refusal(error, words))); }), this.said);
   }
 
   tell(event: { status: string; phase?: string; progress: number; iteration?: number; residual?: number }): void {

@@ -27,6 +27,12 @@ export function share(value: number, range: number, scheme: Scheme): number {
   return scheme === "length" ? value / range : (value / range + 1) / 2;
 }
 
+/** The colour of the band in which a value lies. */
+export function bandOf(value: number, range: number, scheme: Scheme): Rgb {
+  const band = Math.min(Math.max(Math.floor(share(value, range, scheme) * BANDS), 0), BANDS - 1);
+  return at(scheme, band / (BANDS - 1));
+}
+
 /** The values at the lines between bands, from first to last. */
 export function ticks(range: number, scheme: Scheme): number[] {
   const first = scheme === "length" ? 0 : -range;

@@ -91,17 +91,28 @@ function calls({ service: { calls: list }, service: asked, words }: App): void {
   const drawer = find("#calls");
   const toggle = find<HTMLButtonElement>("#calls-button");
   toggle.textContent = words.calls;
+  // Beyond https and localhost browsers have none.
+  const clipboard = navigator.clipboard as Clipboard | undefined;
   const row = (call: (typeof list)[number]) => {
-    const copy = button(words.copyAsCurl, () => {
-      void navigator.clipboard.writeText(asCurl(call)).then(() => { copy.textContent = words.copied; });
+    const line = make("code", { tabIndex: 0 }, asCurl(call));
+    line.addEventListener("focus", () => getSelection()?.selectAllChildren(line));
+    const copy: HTMLButtonElement = button(words.copyAsCurl, () => {
+      clipboard?.writeText(asCurl(call)).then(() => { copy.textContent = words.copied; }, () => { copy.textContent = words.notCopied; });
     });
-    return make("li", {}, make("code", { title: asCurl(call) }, `${call.method} ${call.path}`), copy);
+    return make("li", {}, line, clipboard !== undefined && copy);
   };
+  const rows = make("ol", {});
   const draw = () => {
     if (drawer.hidden) return;
-    drawer.replaceChildren(make("h2", {}, words.calls), make("ol", {}, ...list.map(row)));
+    rows.replaceChildren(...list.map(row));
+    drawer.replaceChildren(make("h2", {}, words.calls), clipboard === undefined ? make("p", { className: "warned" }, words.noClipboard) : "", rows);
   };
-  asked.noted = draw;
+  // Those that are there stay: one of them may be chosen.
+  asked.noted = (call) => {
+    if (drawer.hidden) return;
+    rows.prepend(row(call));
+    while (rows.childElementCount > list.length) rows.lastElementChild!.remove();
+  };
   toggle.onclick = () => {
     drawer.hidden = !drawer.hidden;
     toggle.setAttribute("aria-expanded", String(!drawer.hidden));

@@ -20,7 +20,10 @@ export function normals(points: Float32Array, triangles: Uint32Array, into: Floa
     into[c]! += x; into[c + 1]! += y; into[c + 2]! += z;
   }
   for (let node = 0; node < into.length; node += 3) {
-    const length = Math.hypot(into[node]!, into[node + 1]!, into[node + 2]!) || 1;
+    const x = into[node]!;
+    const y = into[node + 1]!;
+    const z = into[node + 2]!;
+    const length = Math.sqrt(x * x + y * y + z * z) || 1;
     into[node]! /= length; into[node + 1]! /= length; into[node + 2]! /= length;
   }
 }

@@ -162,6 +162,12 @@ function add(into: Float32Array, parts: Float32Array[]): void {
 
 /** The length of each vector of xyz. */
 export function lengths(vectors: Float32Array): Float32Array {
-  return Float32Array.from({ length: vectors.length / 3 }, (_, node) =>
-    Math.hypot(vectors[3 * node]!, vectors[3 * node + 1]!, vectors[3 * node + 2]!));
+  const found = new Float32Array(vectors.length / 3);
+  for (let node = 0; node < found.length; node += 1) {
+    const x = vectors[3 * node]!;
+    const y = vectors[3 * node + 1]!;
+    const z = vectors[3 * node + 2]!;
+    found[node] = Math.sqrt(x * x + y * y + z * z);
+  }
+  return found;
 }

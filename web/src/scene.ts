@@ -11,6 +11,7 @@ import type { Triple } from "./api.js";
 import { share, type Rgb, type Scheme } from "./colours.js";
 import { coarse } from "./coarse.js";
 import { drawn, type FrameName } from "./frame.js";
+import type { Part } from "./glb.js";
 import { geometryOf, seenFrom, VIEWS, type Shape } from "./geometry.js";
 import { Marks, type Mark, type Sheet } from "./marks.js";
 import { normals } from "./normals.js";
@@ -24,6 +25,8 @@ export interface Hit {
   face: number;
   point_mm: Triple;
 }
+/** What surfaces are called that are no bones: the skin, another state laid over it, and that of the left half. */
+export const SEEN = { skin: "skin", over: "laid_over", left: "left_half" } as const;
 export type SkinLook = "solid" | "through" | "hidden";
 
 /** Around the head there is a little room, above all for what stands over it. */
@@ -85,6 +88,7 @@ export class Scene {
   private isMoving = false;
   private changed = -Infinity;
   private settling: ReturnType<typeof setTimeout> | undefined;
+  private readonly printed = () => { this.drawNow(); };
 
   constructor(private readonly host: HTMLElement, label: string) {
     this.renderer = new WebGLRenderer({ antialias: !isDrawnBySoftware(), alpha: true });
@@ -103,6 +107,8 @@ export class Scene {
     this.controls.addEventListener("end", () => this.turned());
     this.watcher = new ResizeObserver(() => this.resize());
     this.watcher.observe(host);
+    // What a browser prints is the last picture, which it may have thrown away.
+    addEventListener("beforeprint", this.printed);
     // For tests, and for whoever wants the numbers that are drawn.
     Object.assign(host, { scene: this });
   }
@@ -122,7 +128,7 @@ export class Scene {
     this.settle();
     for (const old of [this.skin, this.prepass]) if (old !== undefined) this.drop(old);
     const geometry = geometryOf(rest);
-    geometry.setAttribute("uv", new BufferAttribute(new Float32Array((rest.points_mm.length / 3) * 2), 2));
+    geometry.setAttribute("uv", new BufferAttribute(new Float32Array((rest.points_mm.length / 3) * 2).fill(0.5), 2));
     this.skin = new Mesh(geometry, this.skinMaterial);
     this.skin.renderOrder = 2;
     this.prepass = new Mesh(geometry, this.depth);
@@ -169,9 +175,8 @@ export class Scene {
       setBands(this.mapMaterial, scheme);
       const uv = this.skin.geometry.attributes.uv as BufferAttribute;
       // A texture has no bands beyond its ends.
-      for (let node = 0; node < uv.count; node += 1) {
-        uv.setXY(node, Math.min(Math.max(share(values[node]!, range_mm, scheme), 0.001), 0.999), 0.5);
-      }
+      const into = uv.array as Float32Array;
+      for (let node = 0; node < uv.count; node += 1) into[2 * node] = Math.min(Math.max(share(values[node]!, range_mm, scheme), 0.001), 0.999);
       uv.needsUpdate = true;
     }
     this.draw();
@@ -472,6 +477,32 @@ export class Scene {
     twin.visible = false;
   }
 
+  /** The surfaces that are seen, the skin first where it is: each in the frame of the case, bones with the matrices that bring them there. */
+  seen(): Part[] {
+    this.settle();
+    const { skin, ghost, twin, bones } = this;
+    const part = (name: string, mesh: Mesh, matrix?: ArrayLike<number>): Part => {
+      const { position, normal } = mesh.geometry.attributes as { position: BufferAttribute; normal: BufferAttribute };
+      const { r, g, b } = ("color" in mesh.material ? mesh.material.color as Color : new Color(hexOf(OUTLINE))).getRGB({ r: 0, g: 0, b: 0 }, SRGBColorSpace);
+      return {
+        name, points_mm: position.array as Float32Array, normals: normal.array as Float32Array, triangles: mesh.geometry.index!.array as Uint32Array,
+        colour: [r, g, b].map((share) => Math.round(255 * share)) as Rgb, ...(matrix === undefined ? {} : { matrix: Array.from(matrix) }),
+      };
+    };
+    return [
+      ...(skin?.visible ? [part(SEEN.skin, skin)] : []),
+      ...(ghost === undefined ? [] : [part(SEEN.over, ghost)]),
+      ...(twin === undefined || !(skin?.visible ?? true) ? [] : [part(SEEN.left, twin)]),
+      ...[...bones].filter(([, bone]) => bone.visible).map(([name, bone]) => part(name, bone, bone.matrix.clone().transpose().toArray())),
+    ];
+  }
+
+  /** The rows that turn the frame of the case to the patient's left, up and front. */
+  get axes(): Triple[] {
+    const { elements } = this.head.matrix;
+    return [0, 1, 2].map((row) => [elements[row]!, elements[row + 4]!, elements[row + 8]!]);
+  }
+
   /** At once, for a picture. */
   drawNow(): HTMLCanvasElement {
     this.settle();
@@ -481,6 +512,7 @@ export class Scene {
 
   leave(): void {
     clearTimeout(this.settling);
+    removeEventListener("beforeprint", this.printed);
     this.watcher.disconnect();
     this.controls.dispose();
     this.graph.traverse((object) => {

@@ -1,12 +1,13 @@
 // A head beside its controls: standard views, looks, colours with their legend, pictures.
 import type { App } from "./app.js";
-import { bands, BANDS, css, ticks, type Rgb, type Scheme } from "./colours.js";
+import { bandOf, bands, BANDS, css, ticks, type Rgb, type Scheme } from "./colours.js";
 import { button, choice, make, save, select } from "./dom.js";
 import { figure } from "./figures.js";
 import { VIEWS } from "./geometry.js";
+import { writeGlb } from "./glb.js";
 import { INK, PAPER } from "./palette.js";
 import { note, read } from "./route.js";
-import { Scene, type SkinLook, type Turned } from "./scene.js";
+import { Scene, SEEN, type SkinLook, type Turned } from "./scene.js";
 
 /** A map that may colour the skin. */
 export interface SkinMap {
@@ -167,7 +168,7 @@ export class Workbench {
       (this.app.route.state.get("look") ?? "solid") as SkinLook, (value) => this.setLook(value));
     return make("div", { className: "tools" },
       make("div", { className: "row views", role: "group", aria: { label: words.views } }, ...views), look, this.colours,
-      button(words.picture, () => void this.picture()));
+      button(words.picture, () => void this.picture()), button(words.glb, () => this.glb(), { title: words.glbHint }));
   }
 
   private setView(key: string): void {
@@ -187,6 +188,19 @@ export class Workbench {
     if (elsewhere || event.ctrlKey || event.metaKey || event.altKey) return;
     if (VIEWS[event.key] !== undefined) this.setView(event.key);
     else if (event.target === this.scene.canvas) this.scene.turnByKey(event);
+  }
+
+  /** The surfaces that are seen, with the chosen map, what it is and what it is not. */
+  private glb(): void {
+    const { map, scene, range_mm, app: { words } } = this;
+    const values = map?.values();
+    const colours = values !== undefined && map !== undefined ? Array.from(values, (value) => map.kinds?.[value]?.colour ?? bandOf(value, range_mm, map.scheme)) : undefined;
+    const parts = scene.seen().map((part) => (part.name !== SEEN.skin || map === undefined || values === undefined || colours === undefined ? part
+      : { ...part, colours, values: { name: `_${map.name.toUpperCase()}`, of: values } }));
+    const coloured = map === undefined || map.kinds !== undefined ? {} : { map: { label: map.label, unit: map.unit ?? "mm", range: [map.scheme === "signed" ? -range_mm : 0, range_mm] } };
+    save(writeGlb(parts, scene.axes, {
+      notice: words.notice, provenance: this.provenance, caption: this.caption.textContent ?? "", view: location.hash.split("?")[0], created: new Date().toISOString(), ...coloured,
+    }), "facies.glb");
   }
 
   /** What is seen, with its legend, what it is and what it is not. */

@@ -1,7 +1,7 @@
 // Frames of a large head, and the memory of dragging: what both take, for tests and by hand.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
-import { addressed, go, plan, planned, slider } from "./tools.mjs";
+import { addressed, go, json, opened, plan, planned, slider, address, caseId } from "./tools.mjs";
 
 /** Script may keep so much more after than before, in MB: what the browser keeps for itself. */
 const KEPT_MB = 1.5;
@@ -139,4 +139,124 @@ export async function dragged(page, seconds) {
   console.log(`   ${steps} steps of sliders in ${seconds} s: heap ${marks.map((mark) => mark.toFixed(2)).join(", ")} MB`);
   assert(marks.at(-1) - before < KEPT_MB, `${before} MB became ${marks.at(-1)} MB`);
   await addressed(page, /p=mandible/);
+}
+
+/** A slider's whole frame may take so much script, in ms: a picture of 60 a second. */
+const FRAME_MS = 16;
+const NODES = 14_200;
+
+/** The surface of a GLB file as the service writes it: a closed shell of so many nodes or a few less. */
+function shellOf(nodes) {
+  const sides = Math.round(Math.sqrt(nodes * 2));
+  const rings = Math.floor(nodes / sides) - 1;
+  const points = [];
+  const triangles = [];
+  for (let ring = 0; ring <= rings; ring += 1) {
+    for (let side = 0; side < sides; side += 1) {
+      const [down, about] = [(Math.PI * (ring + 0.01)) / (rings + 0.02), (2 * Math.PI * side) / sides];
+      points.push(70 * Math.sin(down) * Math.cos(about), 90 * Math.sin(down) * Math.sin(about), 100 * Math.cos(down));
+      if (ring === rings) continue;
+      const [a, b] = [ring * sides + side, ring * sides + (side + 1) % sides];
+      triangles.push(a, a + sides, b, b, a + sides, b + sides);
+    }
+  }
+  const binary = Buffer.concat([Float32Array.from(points), Uint32Array.from(triangles)].map((array) => Buffer.from(array.buffer)));
+  const bytes = 4 * points.length;
+  const text = JSON.stringify({
+    asset: { version: "2.0" }, meshes: [{ primitives: [{ attributes: { POSITION: 0 }, indices: 1 }] }], buffers: [{ byteLength: binary.length }],
+    accessors: [{ bufferView: 0, componentType: 5126, count: points.length / 3, type: "VEC3" }, { bufferView: 1, componentType: 5125, count: triangles.length, type: "SCALAR" }],
+    bufferViews: [{ buffer: 0, byteOffset: 0, byteLength: bytes }, { buffer: 0, byteOffset: bytes, byteLength: binary.length - bytes }],
+    extras: { matrix4x4_to_case_row_major: [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1] },
+  });
+  const json = Buffer.from(text.padEnd(Math.ceil(text.length / 4) * 4));
+  const head = (length, kind) => { const own = Buffer.alloc(8); own.writeUInt32LE(length, 0); own.writeUInt32LE(kind, 4); return own; };
+  const body = Buffer.concat([head(json.length, 0x4e4f534a), json, head(binary.length, 0x004e4942), binary]);
+  const start = Buffer.alloc(12);
+  [0x46546c67, 2, 12 + body.length].forEach((one, at) => start.writeUInt32LE(one, 4 * at));
+  return { glb: Buffer.concat([start, body]), nodes: points.length / 3 };
+}
+
+/** Answers in the place of the service for a response of so many nodes and two segments, whose columns are made up: times are those of any. */
+async function largeResponse(page, order) {
+  const real = await json(`/v1/cases/${caseId}/response`);
+  const { glb, nodes } = shellOf(NODES);
+  const [linear, pairs] = [24, 300];
+  const columns = Float32Array.from({ length: linear * 3 * nodes }, (_, at) => Math.sin(at) / 10);
+  const second = Int16Array.from({ length: order === 2 ? pairs * 3 * nodes : 0 }, (_, at) => (at * 7919) % 30_000 - 15_000);
+  const layout = (number) => `${number} little-endian [column][node][xyz]`;
+  const description = {
+    ...real, node_ids: Array.from({ length: nodes }, (_, node) => node), columns: { ...real.columns, layout: layout("f32"), count: linear }, inner_columns: [], second_order: undefined,
+    ...(order === 2 ? { second_order: { columns: { ...real.columns, layout: layout("i16"), count: pairs }, scale_mm: new Array(pairs).fill(1e-5) } } : {}),
+  };
+  const answer = (route) => {
+    const { accept } = route.request().headers();
+    if (accept === "model/gltf-binary") return route.fulfill({ contentType: accept, body: glb });
+    if (accept !== "application/octet-stream") return route.fulfill({ json: description });
+    return route.fulfill({ contentType: accept, body: Buffer.from(route.request().url().includes("order=2") ? second.buffer : columns.buffer) });
+  };
+  const applied = { job: real.job, displacement_mm: Array.from({ length: nodes }, () => [0, 0, 0]), node_ids: [], warnings: [], max_mm: 0, largest_rotation_deg: 0, order, within_linear_range: true };
+  const [there, apply] = [({ pathname }) => pathname === `/v1/cases/${caseId}/response`, ({ pathname }) => pathname === `/v1/cases/${caseId}/response/apply`];
+  await page.route(there, answer);
+  await page.route(apply, (route) => route.fulfill({ json: applied }));
+  return { nodes, gone: async () => { await page.unroute(there); await page.unroute(apply); } };
+}
+
+/** Script of a slider's frame: of its step and of the picture after it. */
+export async function slid(page) {
+  for (const order of [1, 2]) {
+    const { nodes, gone } = await largeResponse(page, order);
+    await go(page, "#/jobs");
+    await go(page, `${plan}?p=mandible,-4,1,0,3,0,0;maxilla,3,1,0,2,1,0&map=displacement&view=1`);
+    await planned(page);
+    const took = await page.evaluate(async () => {
+      const { scene } = document.querySelector(".screen");
+      const input = document.querySelectorAll("details.segment")[1].querySelector("input[type=range][data-word=yaw]");
+      const frame = () => new Promise((done) => { requestAnimationFrame(() => requestAnimationFrame(done)); });
+      const found = [];
+      let drawn = 0;
+      const usual = Object.getPrototypeOf(scene).render;
+      scene.render = function render() { const begun = performance.now(); usual.call(this); drawn += performance.now() - begun; };
+      for (let step = 0; step < 60; step += 1) {
+        drawn = 0;
+        const begun = performance.now();
+        input.value = String(step / 20);
+        input.dispatchEvent(new Event("input", { bubbles: true }));
+        const moved = performance.now() - begun;
+        await frame();
+        found.push(moved + drawn);
+      }
+      delete scene.render;
+      return found.sort((a, b) => a - b);
+    });
+    const [median, longest] = [took[took.length >> 1], took.at(-1)];
+    console.log(`   order ${order}: script of a slider's frame, ${nodes} nodes, two segments that turn: median ${median.toFixed(1)} ms, longest ${longest.toFixed(1)} ms of ${took.length}, load ${load()}`);
+    assert(nodes >= 14_000 && median < FRAME_MS, `order ${order}: ${median} ms`);
+    await gone();
+  }
+}
+
+/** The largest part of a view is seen after so long, in ms; nothing of it jumps by more than this, as a share of the window; nothing stands still for longer, in ms. */
+const SEEN_MS = 2500;
+const JUMPS = 0.25;
+
+/** What a browser measures of a view as it opens, as Lighthouse does: largest contentful paint, cumulative layout shift, and the time that tasks block it. */
+export async function figured() {
+  for (const [name, path, there] of [["cases", "#/cases", ".cards a"], ["plan", plan, ".strip[data-apart]"]]) {
+    const page = await opened();
+    await page.addInitScript(() => {
+      const told = { paint: 0, shift: 0, blocked: 0 };
+      window.told = told;
+      const watch = (type, note) => new PerformanceObserver((list) => list.getEntries().forEach(note)).observe({ type, buffered: true });
+      watch("largest-contentful-paint", ({ startTime }) => { told.paint = startTime; });
+      watch("layout-shift", ({ value, hadRecentInput }) => { if (!hadRecentInput) told.shift += value; });
+      watch("longtask", ({ duration }) => { told.blocked += Math.max(0, duration - 50); });
+    });
+    await page.goto(`${address}/${path}`);
+    await page.locator(there).first().waitFor();
+    await page.waitForFunction(() => window.told.paint > 0);
+    const { paint, shift, blocked } = await page.evaluate(() => window.told);
+    console.log(`   ${name}: largest contentful paint ${paint.toFixed(0)} ms, layout shift ${shift.toFixed(3)}, blocked ${blocked.toFixed(0)} ms, load ${load()}`);
+    assert(paint < SEEN_MS && shift < JUMPS, `${name}: ${paint} ms, ${shift}`);
+    await page.context().close();
+  }
 }

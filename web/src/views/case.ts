@@ -76,8 +76,8 @@ async function meshing(app: App, opened: Opened): Promise<Leave> {
   const { service, words, stage } = app;
   const { meshing: made } = opened.view as Case;
   let left = false;
-  const line = new ProgressLine(words, words.running, {
-    text: words.cancel, clicked: () => void (made === undefined ? undefined : service.ask("DELETE", `/v1/jobs/${made!.job}`).catch(() => {})),
+  const line = new ProgressLine(words, words.running, made === undefined || made === null ? undefined : {
+    text: words.cancel, clicked: () => service.ask("DELETE", `/v1/jobs/${made.job}`),
   });
   stage.replaceChildren(crumbs(words, undefined, opened.name, "overview"), make("div", { className: "card" }, line.element));
   if (made === undefined || made === null) return () => {};

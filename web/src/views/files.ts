@@ -1,11 +1,13 @@
 // The files of a result, to be saved.
 import type { Documents, Job } from "../api.js";
-import type { App } from "../app.js";
+import { refusal, type App } from "../app.js";
 import { button, make, save } from "../dom.js";
 
 export function fileList({ service, words }: App, job: Job): HTMLElement {
+  const said = make("div", { role: "status" });
   const row = ({ name, bytes, media_type }: Documents["FileDocument"]) => make("li", {}, button(name, () => {
-    void service.file(job.id, name).then((content) => save(new Blob([content], { type: media_type }), name));
+    service.file(job.id, name).then((content) => { said.replaceChildren(); save(new Blob([content], { type: media_type }), name); })
+      .catch((error: unknown) => said.replaceChildren(refusal(error, words)));
   }), make("span", { className: "fine" }, ` ${(bytes / 1024).toFixed(0)} KiB`));
-  return make("section", {}, make("h2", {}, words.files), make("ul", { className: "plans" }, ...(job.results?.files ?? []).map(row)));
+  return make("section", {}, make("h2", {}, words.files), make("ul", { className: "plans" }, ...(job.results?.files ?? []).map(row)), said);
 }

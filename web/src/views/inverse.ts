@@ -3,11 +3,12 @@ import type { Documents, Triple } from "../api.js";
 import { announce, refusal, type App, type Leave } from "../app.js";
 import { button, choice, make, select } from "../dom.js";
 import { inAxes, inWords, movement, still, TRANSLATIONS, type FrameName, type MotionName } from "../frame.js";
-import { openCase, restingSkin, type Opened, type RestingSkin } from "../loading.js";
+import { addBones, openCase, restingSkin, type Opened, type RestingSkin } from "../loading.js";
 import { mm } from "../figures.js";
-import { hex, POINTED } from "../palette.js";
+import { ACCENT, hex, POINTED } from "../palette.js";
 import { address, note } from "../route.js";
 import { beyondBounds, readBounds, readTargets, writeBounds, writeTargets, type Bounds, type Target } from "../targets.js";
+import type { Hit } from "../scene.js";
 import { Workbench } from "../workbench.js";
 import { crumbs } from "./crumbs.js";
 import { targetTags } from "./found.js";
@@ -15,8 +16,10 @@ import { wordFor } from "./movements.js";
 
 const COLOUR = hex(POINTED);
 const STARTING_BOUND_MM = 10;
-/** A pull this near to a target takes that. */
+/** A pull this near to a target or a landmark takes that; landmarks further from the skin than this are of bone. */
 const GRIP_MM = 4;
+/** What is further than this from the skin under the pointer is not meant by it. */
+const BEHIND_MM = 15;
 
 export async function inversePage(app: App): Promise<Leave> {
   const opened = await openCase(app.service, app.route.path[1]!);
@@ -31,6 +34,7 @@ export async function inversePage(app: App): Promise<Leave> {
     bench.offer([]);
     bench.start();
     new Inverse(app, opened, bench, loaded).start();
+    await addBones(app.service, opened, bench.scene);
   } catch (error) {
     bench.panel.append(refusal(error, app.words));
   }
@@ -47,6 +51,9 @@ class Inverse {
   private readonly boundFields = make("div", {});
   private readonly list = make("div", {});
   private readonly said = make("div", { role: "status" });
+  /** On the skin, by their names. */
+  private readonly landmarks: [string, Triple][];
+  private isPulling = false;
   /** Directions of targets that the bounds forbid. */
   private readonly forbidden = make("div", { role: "status" });
 
@@ -56,6 +63,7 @@ class Inverse {
     const { state } = app.route;
     this.bounds = readBounds(state.get("bounds") ?? "", this.usual);
     this.targets = readTargets(state.get("targets") ?? "", (opened.document.landmarks ?? {}) as Record<string, Triple>, (number) => `${app.words.point} ${number}`);
+    this.landmarks = (Object.entries(opened.document.landmarks ?? {}) as [string, Triple][]).filter(([, at_mm]) => this.isOnSkin(at_mm));
     this.points = this.targets.filter(({ landmark }) => landmark === undefined).length;
   }
 
@@ -63,17 +71,17 @@ class Inverse {
     const { app: { words }, bench, opened } = this;
     const marks = Object.keys(opened.document.landmarks ?? {});
     const add = select(words.addLandmark, [["", "–"], ...marks.map((mark) => [mark, mark] as const)], "", (mark) => {
-      if (mark !== "") this.add({ label: mark, landmark: mark, at_mm: opened.document.landmarks![mark] as Triple, by: [0, 0, null], sigma_mm: 1 });
+      if (mark !== "") this.add(ofLandmark(mark, opened.document.landmarks![mark] as Triple));
     });
     const pulling = choice(words.dragPoint, [["turn", words.turning], ["pull", words.pulling]] as const, "turn",
-      (value) => bench.scene.turnable(value === "turn"));
+      (value) => { this.isPulling = value === "pull"; bench.scene.turnable(!this.isPulling); this.marks(); });
     bench.section(words.targets, make("p", {}, words.inverseWhy), pulling, make("p", { className: "fine" }, words.dragHint),
       make("div", { className: "row" }, add, button(words.addPoint, () => this.addMiddle())), this.list);
     bench.section(words.bounds, this.boundFields);
     bench.section(words.find, this.forbidden, button(words.find, () => void this.find(), { className: "primary" }), this.said);
     this.drawBounds();
     this.draw();
-    this.dragging(pulling);
+    this.dragging();
   }
 
   private add(target: Target): void {
@@ -82,15 +90,15 @@ class Inverse {
   }
 
   /** Pulling at the skin makes a target where it was let go. */
-  private dragging(mode: HTMLElement): void {
+  private dragging(): void {
     const { canvas } = this.bench.scene;
     let pulled: Target | undefined;
     canvas.addEventListener("pointerdown", (event) => {
-      if (mode.querySelector<HTMLInputElement>("input:checked")?.value !== "pull") return;
+      if (!this.isPulling) return;
       const hit = this.bench.scene.pick(event);
       if (hit === undefined) return;
       canvas.setPointerCapture(event.pointerId);
-      pulled = this.targetAt(this.restAt(hit.node));
+      pulled = this.targetAt(hit, event);
     });
     canvas.addEventListener("pointermove", (event) => {
       if (pulled === undefined) return;
@@ -99,27 +107,39 @@ class Inverse {
         .map((value) => Number(value.toFixed(1))) as Triple;
       this.marks();
     });
-    canvas.addEventListener("pointerup", () => {
+    const letGo = () => {
       if (pulled !== undefined) this.draw();
       pulled = undefined;
-    });
+    };
+    for (const end of ["pointerup", "pointercancel"]) canvas.addEventListener(end, letGo);
   }
 
-  /** The target at a point of the skin: one that is there already, or a new one. */
-  private targetAt(at_mm: Triple): Target {
-    const away = (place: Triple) => Math.hypot(...place.map((value, axis) => value - at_mm[axis]!));
-    const known = this.targets.find((target) => away(target.at_mm) < GRIP_MM);
-    if (known !== undefined) return known;
-    this.points += 1;
-    const target: Target = { label: `${this.app.words.point} ${this.points}`, at_mm, by: [0, 0, null], sigma_mm: 1 };
+  /** The target at a point of the skin: the nearest that is there already, one of a landmark, or a new one. */
+  private targetAt({ node, point_mm }: Hit, event?: PointerEvent): Target {
+    // As it is seen: beside an outline skin goes away from a mark at once. What lies behind the head is not meant.
+    const away = (at_mm: Triple) => (event === undefined ? apart(at_mm, point_mm)
+      : apart(at_mm, point_mm) < BEHIND_MM ? apart(this.bench.scene.drag(event, at_mm), at_mm) : Infinity);
+    const near = <Place>(places: Place[], of: (place: Place) => Triple): Place | undefined => places
+      .map((place) => [away(of(place)), place] as const).filter(([distance]) => distance < GRIP_MM).sort(([one], [other]) => one - other)[0]?.[1];
+    const known = near(this.targets, (target) => target.at_mm);
+    const mark = near(this.landmarks, ([, place]) => place);
+    if (known !== undefined && (mark === undefined || away(known.at_mm) <= away(mark[1]))) return known;
+    if (mark === undefined) this.points += 1;
+    const target: Target = mark === undefined ? { label: `${this.app.words.point} ${this.points}`, at_mm: this.restAt(node), by: [0, 0, null], sigma_mm: 1 } : ofLandmark(...mark);
     this.targets.push(target);
     return target;
+  }
+
+  private isOnSkin(at_mm: Triple): boolean {
+    const { points_mm } = this.loaded.rest;
+    for (let node = 0; node < points_mm.length / 3; node += 1) if (apart(this.restAt(node), at_mm) < GRIP_MM) return true;
+    return false;
   }
 
   /** For whoever has no pointer: the point of the skin in the middle of the view. */
   private addMiddle(): void {
     const hit = this.bench.scene.middle();
-    if (hit !== undefined) this.targetAt(this.restAt(hit.node));
+    if (hit !== undefined) this.targetAt(hit);
     this.draw();
     if (hit === undefined) this.said.textContent = this.app.words.noSkinThere;
   }
@@ -166,10 +186,12 @@ class Inverse {
   private marks(): void {
     const { frame } = this.opened;
     this.warn();
-    this.bench.scene.mark(this.targets.map(({ at_mm, by }) => {
+    const wanted = this.targets.map(({ at_mm, by }) => {
       const moved = inAxes(by.map((value) => value ?? 0) as Triple, frame);
       return { at_mm, colour: COLOUR, to_mm: at_mm.map((value, axis) => value + moved[axis]!) as Triple };
-    }));
+    });
+    const held = this.landmarks.filter(([name]) => !this.targets.some(({ landmark }) => landmark === name));
+    this.bench.scene.mark([...(this.isPulling ? held.map(([, at_mm]) => ({ at_mm, colour: hex(ACCENT) })) : []), ...wanted]);
   }
 
   private drawBounds(): void {
@@ -209,6 +231,10 @@ class Inverse {
     return { kind: "optimise", case: this.opened.id, targets, bounds, outputs: ["skin.vtp", "skin.glb"], tags: targetTags(this.targets) };
   }
 }
+
+const apart = (one: Triple, other: Triple): number => Math.hypot(one[0] - other[0], one[1] - other[1], one[2] - other[2]);
+
+const ofLandmark = (landmark: string, at_mm: Triple): Target => ({ label: landmark, landmark, at_mm, by: [0, 0, null], sigma_mm: 1 });
 
 /** How far a segment may go, as the service takes it. */
 function interval(bound: Record<MotionName, number>, centre_mm: Triple, frame: FrameName): object {

@@ -18,11 +18,13 @@ export async function jobs(app: App): Promise<Leave> {
   let left = false;
   let timer: ReturnType<typeof setTimeout> | undefined;
   const said = make("div", {});
+  /** What became of cancelling one, and why the list is old. */
+  const [refused, old] = [make("div", {}), make("div", {})];
   const body = make("tbody", {});
   const cases = await service.list<Case>("/v1/cases").catch((): Case[] => []);
   const names = new Map(cases.map(({ id, case: document }) => [id, document.name ?? tail(id)]));
   const row = (job: Job) => {
-    const cancel = button(words.cancel, () => { service.ask("DELETE", `/v1/jobs/${job.id}`).then(draw).catch((error: unknown) => said.replaceChildren(refusal(error, words))); });
+    const cancel = button(words.cancel, () => { service.ask("DELETE", `/v1/jobs/${job.id}`).then(look, (error: unknown) => refused.replaceChildren(refusal(error, words))); });
     const working = WORKING.includes(job.status);
     const bar = make("progress", { max: 100, value: job.progress, ariaLabel: `${kindOf(words, job.kind)} ${words.progress}` });
     return make("tr", {}, make("th", { scope: "row" }, make("a", { href: address(["job", job.id]) }, kindOf(words, job.kind)),
@@ -34,13 +36,24 @@ export async function jobs(app: App): Promise<Leave> {
     const list = await service.list<Job>("/v1/jobs", 100);
     if (left) return;
     body.replaceChildren(...list.map(row));
-    if (list.length === 0) said.replaceChildren(make("p", {}, words.noJobs));
+    said.replaceChildren(list.length === 0 ? make("p", {}, words.noJobs) : "");
+    if (list.some((job) => WORKING.includes(job.status))) timer = setTimeout(() => void look(), AGAIN);
+  };
+  /** Draws again and says where that fails, which is tried anew until it does not. */
+  const look = async () => {
     clearTimeout(timer);
-    if (list.some((job) => WORKING.includes(job.status))) timer = setTimeout(() => void draw().catch(() => {}), AGAIN);
+    try {
+      await draw();
+      old.replaceChildren();
+    } catch (error) {
+      if (left) return;
+      if (old.childElementCount === 0) old.replaceChildren(refusal(error, words, () => void look()));
+      timer = setTimeout(() => void look(), AGAIN);
+    }
   };
   await draw();
   const head = [words.kind, words.overview, words.status, words.progress, words.created, ""].map((text) => make("th", { scope: "col" }, text));
-  stage.replaceChildren(make("h1", {}, words.jobs), said, make("div", { className: "card" },
+  stage.replaceChildren(make("h1", {}, words.jobs), refused, old, said, make("div", { className: "card" },
     scrolling(words.jobs, make("table", { className: "listed" }, make("thead", {}, make("tr", {}, ...head)), body))));
   return () => { left = true; clearTimeout(timer); };
 }

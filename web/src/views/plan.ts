@@ -1,7 +1,7 @@
 // Planning: segments move by sliders, and the skin follows within a frame.
 import type { Documents, Triple } from "../api.js";
 import { announce, refusal, warnings, type App, type Leave } from "../app.js";
-import { button, make, save, select } from "../dom.js";
+import { button, make, select } from "../dom.js";
 import { movement, still, type Motion, type MotionName } from "../frame.js";
 import { addBones, buildResponse, openCase, responseOf, showBoundary, type LoadedResponse, type Opened } from "../loading.js";
 import { matrix } from "../matrix.js";
@@ -44,6 +44,8 @@ const isKeyAsked = (error: unknown) => (error as { problem?: { status?: number }
 class Planning {
   private loaded!: LoadedResponse;
   private sum!: SkinSum;
+  /** How far each node of the skin is from rest. */
+  private moved_mm: Float32Array = new Float32Array();
   private plan: Plan = atRest([]);
   private pivots: Pivots = {};
   private history!: History<Plan>;
@@ -108,13 +110,15 @@ class Planning {
     await Promise.all(shown);
     wait.remove();
     this.sum = new SkinSum(this.loaded.columns);
+    this.moved_mm = new Float32Array(this.loaded.columns.nodes);
     const centres = this.loaded.description.segments.map(({ name, centre_mm }) => [name, centre_mm as Triple] as const);
     this.pivots = { ...Object.fromEntries(centres), ...readPivots(planState(app.route.state)) };
     bench.scene.showSkin(this.loaded.rest);
+    bench.provenance = `case ${opened.id} · response ${this.loaded.description.job}`;
     bench.start();
     const { words } = app;
     bench.offer([
-      { name: "displacement", label: words.displacement, scheme: "length", range_mm: 10, values: () => lengths(this.sum.displacement_mm) },
+      { name: "displacement", label: words.displacement, scheme: "length", range_mm: 10, values: () => this.moved_mm },
       ...(this.sum.second_mm === undefined ? [] : [
         { name: "second", label: words.secondOrder, scheme: "length" as const, range_mm: 1, values: () => lengths(this.sum.second_mm!) }]),
     ]);
@@ -274,7 +278,9 @@ class Planning {
 
   private after(): void {
     const { words } = this.app;
-    const most = lengths(this.sum.displacement_mm).reduce((largest, one) => Math.max(largest, one), 0);
+    this.moved_mm = lengths(this.sum.displacement_mm);
+    let most = 0;
+    for (const one of this.moved_mm) if (one > most) most = one;
     this.told.textContent = `${words.movesMost} ${mm(most)} mm ${words.atMost}`;
     this.bench.repaint();
     this.bench.caption.textContent = `${this.opened.name} · ${told(this.plan, words, this.opened.frame)}`;
@@ -328,17 +334,8 @@ class Planning {
         ({ id }) => { location.hash = address(["job", id], written(this.plan, this.pivots)); },
         (error: unknown) => { predict.disabled = false; said.replaceChildren(refusal(error, words)); });
     }, { className: "primary" });
-    const glb = button(words.glb, () => void this.saveGlb().catch((error: unknown) => said.replaceChildren(refusal(error, words))));
     return make("div", { className: "stack wide" }, method, further.element,
-      make("div", { className: "row" }, predict, glb), said);
-  }
-
-  /** The moved skin as the service writes it, with where it comes from and what it is not. */
-  private async saveGlb(): Promise<void> {
-    const path = `/v1/cases/${this.opened.id}/response/apply?job=${this.loaded.description.job}`;
-    const body = JSON.stringify({ plan: planDocument(this.plan, this.pivots, this.opened.frame) });
-    const answer = await this.app.service.ask("POST", path, body, { "Content-Type": "application/json", Accept: "model/gltf-binary" });
-    save(await answer.blob(), "skin.glb");
+      make("div", { className: "row" }, predict), said);
   }
 
   /** The skin of another plan as an overlay, and how far it is from this one. */

@@ -55,7 +55,7 @@ export async function resultPage(app: App): Promise<Leave> {
 async function follow(app: App, job: Job, left: () => boolean): Promise<Job> {
   const { service, words, stage } = app;
   const line = new ProgressLine(words, words.running, {
-    text: words.cancel, clicked: () => void service.ask("DELETE", `/v1/jobs/${job.id}`).catch(() => {}),
+    text: words.cancel, clicked: () => service.ask("DELETE", `/v1/jobs/${job.id}`),
   });
   line.tell(job);
   stage.replaceChildren(make("h1", {}, kindOf(words, job.kind)), make("div", { className: "card" }, line.element));

@@ -7,7 +7,8 @@ export const de: Words = {
   result: "Ergebnis", language: "Sprache", appearance: "Darstellung", asSystem: "Wie das System", light: "Hell", dark: "Dunkel",
   loading: "Lädt…", refused: "Abgelehnt.", lost: "Keine Verbindung.", jobFailed: "Der Auftrag ist gescheitert.", tryAgain: "Noch einmal",
   unreachable: "Der Dienst ist nicht erreichbar. Was zu sehen ist, kann veraltet sein.", noWarnings: "Keine Warnungen.",
-  calls: "Aufrufe des Dienstes", copyAsCurl: "Als curl kopieren", copied: "Kopiert",
+  calls: "Aufrufe des Dienstes", copyAsCurl: "Als curl kopieren", copied: "Kopiert", notCopied: "Nicht kopiert: die Zeile wählen",
+  noClipboard: "An dieser Adresse lässt der Browser keine Seite kopieren (über https und auf localhost tut er es): eine Zeile wählen, was sie ganz markiert, und kopieren.",
   keyAsked: "Dieser Dienst verlangt einen Schlüssel", keyWhy: "Er bleibt nur in diesem Tab und ist fort, wenn der Tab geschlossen wird.",
   key: "Schlüssel", goOn: "Weiter",
 
@@ -61,12 +62,12 @@ export const de: Words = {
   showPlace: (name) => `${name} zeigen`, shownInView: (name) => `${name} ist in der Ansicht markiert.`, thePlace: "die Stelle",
 
   look: "Haut", solid: "deckend", through: "durchsichtig", hidden: "verborgen", map: "Farben", plain: "Haut",
-  displacement: "Verschiebung", secondOrder: "Zweite Ordnung", numericalError: "Fehler des Netzes", signedDistance: "Abstand mit Vorzeichen", leftOutMap: "Vom Modell weggelassen",
+  displacement: "Verschiebung", secondOrder: "Zweite Ordnung: was linear fehlt", numericalError: "Fehler des Netzes", signedDistance: "Abstand mit Vorzeichen", leftOutMap: "Vom Modell weggelassen",
   range: "Bereich", views: "Ansichten", view: { "1": "Vorn", "2": "Profil rechts", "3": "Profil links", "4": "Schräg rechts", "5": "Schräg links", "6": "Von unten" },
-  picture: "Bild sichern", glb: "GLB sichern", headLabel: "Kopf in drei Dimensionen. Tasten 1 bis 6 wählen eine Ansicht, Pfeiltasten drehen ihn.",
+  picture: "Bild sichern", glb: "GLB sichern", glbHint: "Haut, Knochen und die gewählten Farben, wie sie zu sehen sind, als glTF.", headLabel: "Kopf in drei Dimensionen. Tasten 1 bis 6 wählen eine Ansicht, Pfeiltasten drehen ihn.",
   probe: "Messen: auf die Haut klicken, oder Enter für die Mitte der Ansicht, wenn der Kopf den Fokus hat.", landmarks: "Landmarken", regions: "Bereiche", landmark: "Landmarke", region: "Bereich",
   mean: "Mittel", p95: "p95", max: "max", error: "± Netz", nonlinear: "± Modell", whole: "ganze Haut",
-  before: "Vorher", after: "Nachher", beforeAfter: "Vorher und nachher", overlay: "überlagert", profile: "Profil", profileHint: "Umriss in der Mitte des Gesichts: vorher grau, nachher blau.",
+  before: "Vorher", after: "Nachher", beforeAfter: "Vorher und nachher", overlay: "überlagert", profile: "Profil", profileHint: "Umriss in der Mitte des Gesichts: vorher grün, nachher dunkel.",
   shown: "Zeigen", one: "eine", sides: "nebeneinander", cephalometry: "Kephalometrische Maße", measure: "Maß", planned: "Knochen, geplant", predicted: "Haut, vorhergesagt",
   hash: "Hash der Anfrage", reportHtml: "Bericht lesen", reportPdf: "Bericht als PDF", reportHint: "Zwei Seiten mit Plan, Bildern, Zahlen, Warnungen und Herkunft.",
   cancel: "Abbrechen", cancelled: "Abgebrochen.", running: "Läuft", provenance: "Herkunft", solvedBy: "Modell", took: "Dauer",
@@ -77,7 +78,7 @@ export const de: Words = {
   targets: "Ziele", target: "Ziel", addLandmark: "Landmarke dazu", dragPoint: "Punkte der Haut ziehen", bounds: "Wie weit Segmente dürfen",
   find: "Plan suchen", found: "Was gefunden wurde", left_: "übrig", standardError: "± Standardfehler", notDetermined: "Durch die Ziele nicht bestimmt",
   atBound: "an der Grenze", openPlan: "Als Plan öffnen", noTargets: "Noch keine Ziele.", emptyFree: "frei", movement: "Bewegung",
-  dragHint: "Ziehen: an jedem Punkt der Haut. Drehen: am Kopf.", addPoint: "Punkt in der Mitte der Ansicht dazu", noSkinThere: "In der Mitte der Ansicht ist keine Haut.", pulling: "Ziehen", turning: "Drehen",
+  dragHint: "Ziehen: an einer Landmarke (blau) oder jedem anderen Punkt der Haut. Drehen: am Kopf.", addPoint: "Punkt in der Mitte der Ansicht dazu", noSkinThere: "In der Mitte der Ansicht ist keine Haut.", pulling: "Ziehen", turning: "Drehen",
 
   missedBy: (target, mm) => `${target} ist um ${mm} mm verfehlt.`, stoppedAt: (movement, value) => `${movement} wird an der Grenze bei ${value} aufgehalten.`,
   missedRule: (sigmas) => `Ein Ziel ist verfehlt, wo mehr als ${sigmas} Standardabweichungen übrig sind.`, leftAtMost: (mm) => `höchstens ${mm} mm übrig`,
@@ -98,7 +99,7 @@ export const de: Words = {
 
   material: "Material", level: "Netzstufe", meanMm: "Mittel mm", toComparison: "Auf der Haut zeigen", pictures: "Bilder",
 
-  compareWhy: "Die vorhergesagte Haut gegen eine wirkliche halten, nach der Operation.", actual: "Wirkliche Haut (VTP, STL oder PLY)", align: "Zuerst registrieren", alignIcp: "mit ICP", alignNone: "nein",
+  compareWhy: "Die vorhergesagte Haut gegen eine wirkliche halten, nach der Operation.", actual: "Wirkliche Haut (VTP, STL oder PLY)", actualSkin: "Wirkliche Haut", predictionAlone: "Vorhersage allein", actualHint: "Grüner Umriss: die wirkliche Haut, wo die Registrierung sie hinlegt.", align: "Zuerst registrieren", alignIcp: "mit ICP", alignNone: "nein",
   compareNow: "Vergleichen", histogram: "Abstände", registration: "Registrierung", turned: "gedreht", shifted: "verschoben", residual: "rms",
   chooseJob: "Vorhersage", noPredictions: "Noch keine Vorhersage dieses Falls: erst eine planen.",
 

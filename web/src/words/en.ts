@@ -5,7 +5,8 @@ export const en = {
   result: "Result", language: "Language", appearance: "Appearance", asSystem: "As the system", light: "Light", dark: "Dark",
   loading: "Loading…", refused: "Refused.", lost: "No connection.", jobFailed: "The job failed.", tryAgain: "Try again",
   unreachable: "The service is out of reach. What you see may be old.", noWarnings: "No warnings.",
-  calls: "Calls to the service", copyAsCurl: "Copy as curl", copied: "Copied",
+  calls: "Calls to the service", copyAsCurl: "Copy as curl", copied: "Copied", notCopied: "Not copied: choose the line",
+  noClipboard: "At this address the browser lets no page copy (it does over https and on localhost): choose a line, which marks all of it, and copy it.",
   keyAsked: "This service asks for a key", keyWhy: "It is kept in this tab only, and gone when the tab is closed.",
   key: "Key", goOn: "Go on",
 
@@ -59,12 +60,12 @@ export const en = {
   showPlace: (name: string) => `Show ${name}`, shownInView: (name: string) => `${name} is marked in the view.`, thePlace: "the place",
 
   look: "Skin", solid: "solid", through: "see-through", hidden: "hidden", map: "Colours", plain: "Skin",
-  displacement: "Displacement", secondOrder: "Second order", numericalError: "Error of the mesh", signedDistance: "Signed distance", leftOutMap: "Left out by the model",
+  displacement: "Displacement", secondOrder: "Second order: what linear leaves out", numericalError: "Error of the mesh", signedDistance: "Signed distance", leftOutMap: "Left out by the model",
   range: "Range", views: "Views", view: { "1": "Front", "2": "Right profile", "3": "Left profile", "4": "Right oblique", "5": "Left oblique", "6": "From below" } as Record<string, string>,
-  picture: "Save picture", glb: "Save GLB", headLabel: "Head in three dimensions. Keys 1 to 6 choose a view, arrow keys turn it.",
+  picture: "Save picture", glb: "Save GLB", glbHint: "Skin, bones and the chosen colours as they are seen, as glTF.", headLabel: "Head in three dimensions. Keys 1 to 6 choose a view, arrow keys turn it.",
   probe: "Probe: click the skin to measure it, or press Enter with the head in focus for the middle of the view.", landmarks: "Landmarks", regions: "Regions", landmark: "Landmark", region: "Region",
   mean: "mean", p95: "p95", max: "max", error: "± mesh", nonlinear: "± model", whole: "whole skin",
-  before: "Before", after: "After", beforeAfter: "Before and after", overlay: "overlaid", profile: "Profile", profileHint: "Outline in the middle of the face: before grey, after blue.",
+  before: "Before", after: "After", beforeAfter: "Before and after", overlay: "overlaid", profile: "Profile", profileHint: "Outline in the middle of the face: before green, after dark.",
   shown: "Shown", one: "one", sides: "side by side", cephalometry: "Cephalometric measures", measure: "Measure", planned: "Bone, planned", predicted: "Skin, predicted",
   hash: "Hash of what was asked", reportHtml: "Read the report", reportPdf: "Report as PDF", reportHint: "Two pages with plan, pictures, numbers, warnings and provenance.",
   cancel: "Cancel", cancelled: "It was cancelled.", running: "Running", provenance: "Provenance", solvedBy: "Model", took: "Took",
@@ -75,7 +76,7 @@ export const en = {
   targets: "Targets", target: "Target", addLandmark: "Add a landmark", dragPoint: "Drag points of the skin", bounds: "How far segments may move, to either side",
   find: "Find the plan", found: "What was found", left_: "left over", standardError: "± standard error", notDetermined: "Not determined by the targets",
   atBound: "stopped by its bound", openPlan: "Open as plan", noTargets: "No targets yet.", emptyFree: "free", movement: "Movement",
-  dragHint: "Pull: drag any point of the skin. Turn: drag the head.", addPoint: "Add the point in the middle of the view", noSkinThere: "No skin in the middle of the view.", pulling: "Pull", turning: "Turn",
+  dragHint: "Pull: drag a landmark (blue) or any other point of the skin. Turn: drag the head.", addPoint: "Add the point in the middle of the view", noSkinThere: "No skin in the middle of the view.", pulling: "Pull", turning: "Turn",
 
   missedBy: (target: string, mm: string) => `${target} is missed by ${mm} mm.`, stoppedAt: (movement: string, value: string) => `${movement} is stopped by its bound at ${value}.`,
   missedRule: (sigmas: number) => `A target is missed where more than ${sigmas} standard deviations of it are left.`, leftAtMost: (mm: string) => `at most ${mm} mm left over`,
@@ -96,7 +97,7 @@ export const en = {
 
   material: "Material", level: "Mesh level", meanMm: "mean mm", toComparison: "Show it on the skin", pictures: "Pictures",
 
-  compareWhy: "Hold the predicted skin against a real one, after the operation.", actual: "Real skin (VTP, STL or PLY)", align: "Register first", alignIcp: "by ICP", alignNone: "no",
+  compareWhy: "Hold the predicted skin against a real one, after the operation.", actual: "Real skin (VTP, STL or PLY)", actualSkin: "Real skin", predictionAlone: "prediction alone", actualHint: "Green outline: the real skin, where its registration puts it.", align: "Register first", alignIcp: "by ICP", alignNone: "no",
   compareNow: "Compare", histogram: "Distances", registration: "Registration", turned: "turned", shifted: "shifted", residual: "rms",
   chooseJob: "Prediction", noPredictions: "No prediction of this case yet: plan one first.",
 

@@ -4,8 +4,11 @@ import { test } from "node:test";
 import type { Documents } from "../../../clients/typescript/src/facies.js";
 import { boxOf, steps } from "../../src/charts.js";
 import { coarse } from "../../src/coarse.js";
+import { bandOf } from "../../src/colours.js";
+import { writeGlb } from "../../src/glb.js";
 import { angles, rotation } from "../../src/frame.js";
 import { Canvas, distance, plyOf } from "../../src/painting.js";
+import { readGlb } from "../../../clients/typescript/src/facies.js";
 import { readPly } from "../../src/ply.js";
 import { rolesOf, withPainted, withRoles } from "../../src/roles.js";
 import { withPresets } from "../../src/views/materials.js";
@@ -100,4 +103,23 @@ test("scales have round numbers, boxes the quartiles of a cohort", () => {
   assert.deepEqual(steps(0, 1.55), [0, 0.5, 1, 1.5, 2]);
   assert.deepEqual(steps(-3.1, 4), [-4, -2, 0, 2, 4]);
   assert.deepEqual(boxOf([4, 1, 3, 2]), [1, 1, 2, 3, 4]);
+});
+
+test("what is seen is written as GLB that is read as it was, with bands of a map and bones where they are", async () => {
+  const skin = { ...sheets(3), name: "skin", colour: [233, 196, 172] as [number, number, number] };
+  const normals = new Float32Array(skin.points_mm.length).map((_, at) => (at % 3 === 2 ? 1 : 0));
+  const values = Float32Array.from({ length: skin.points_mm.length / 3 }, (_, node) => node / 10);
+  const bone = { ...sheets(2), name: "jaw", colour: [0, 0, 0] as [number, number, number], normals: normals.slice(0, sheets(2).points_mm.length), matrix: [1, 0, 0, 5, 0, 1, 0, -6, 0, 0, 1, 7, 0, 0, 0, 1] };
+  const colours = Array.from(values, (value) => bandOf(value, 2, "length"));
+  // LPS: left is x, up is z, the front is -y.
+  const file = await writeGlb([{ ...skin, normals, colours, values: { name: "_DISPLACEMENT", of: values } }, bone], [[1, 0, 0], [0, 0, 1], [0, -1, 0]], { notice: "not a medical device" }).arrayBuffer();
+  const read = readGlb(file);
+  assert.deepEqual([read.points_mm, read.triangles, read.values._DISPLACEMENT], [skin.points_mm, skin.triangles, values]);
+  const { nodes, asset } = JSON.parse(new TextDecoder().decode(new Uint8Array(file, 20, new DataView(file).getUint32(12, true))));
+  assert.equal(asset.extras.notice, "not a medical device");
+  assert.deepEqual(nodes[1].matrix.slice(12), [5, -6, 7, 1], "column by column");
+  assert.deepEqual(nodes[2].matrix, [0.001, 0, 0, 0, 0, 0, -0.001, 0, 0, 0.001, 0, 0, 0, 0, 0, 1]);
+  // Linear light of the darkest band, 79 18 123.
+  const darkest = [...read.values.COLOR_0!.slice(-3)];
+  assert(darkest.every((value, channel) => Math.abs(value - [0.0782, 0.006, 0.1981][channel]!) < 1e-3), darkest.join());
 });
