@@ -112,9 +112,11 @@ impl<'a> Table<'a> {
 
     /// Answers the bytes that one iteration must move.
     fn iterations(&self, system: &System) -> f64 {
-        let setup = |threads| on_threads(threads, || seconds(3, || drop(Multigrid::new(system))));
+        let setup = |threads| {
+            on_threads(threads, || seconds(3, || drop(Multigrid::new(system, &Unobserved))))
+        };
         THREADS.into_iter().for_each(|n| self.row("multigrid setup", n, setup(n), f64::NAN));
-        let multigrid = Multigrid::new(system);
+        let Ok(multigrid) = Multigrid::new(system, &Unobserved) else { return f64::NAN };
         let bytes_of_iteration = self.sweeps::<1>(system, &multigrid);
         self.sweeps::<8>(system, &multigrid);
         bytes_of_iteration

@@ -1,6 +1,6 @@
 //! Construction of a checked scene from a stated case and plan.
 
-use super::case::{Case, Plan, Settings};
+use super::case::{Bone, Case, Plan, Settings};
 use super::check::Check;
 use super::cut;
 use super::far_segment::far_segments;
@@ -13,10 +13,12 @@ use super::skin_check::doubtful_skin;
 use super::stiff_layer;
 use super::suspect_constants::{moduli_apart, no_soft_tissue, suspect_constants};
 use super::walls;
+use crate::boundary::contact::BoneSurface;
 use crate::boundary::{connected_parts, tearing};
 use crate::mesh::connectivity::Faces;
 use crate::mesh::{Vector, Warning};
 use crate::model::fem::discretisation_error::DistributedLoads;
+use crate::plan::PlannedSegment;
 use crate::plan::doubt::nothing_moves;
 
 /// What cells are made of, and what runs through them.
@@ -90,6 +92,7 @@ impl Scene {
             membrane,
             element,
             conditions,
+            bones: bones(case, &segments),
             stated: std::mem::take(&mut check.stated),
             parts,
             segments,
@@ -132,6 +135,20 @@ impl Scene {
         warnings.extend(self.built_in_poisson_ratio());
         warnings
     }
+}
+
+/// The bones of a case that have a surface, with the movements of their segments.
+fn bones(case: &Case, segments: &[PlannedSegment]) -> Vec<BoneSurface> {
+    let of_bone = |bone: &Bone| {
+        let segment = segments.iter().find(|segment| segment.name == bone.name);
+        Some(BoneSurface {
+            name: bone.name.clone(),
+            is_carried: segment.is_some(),
+            surface: case.surfaces.get(&bone.surface)?.clone(),
+            movement: segment.map(|segment| segment.movement).unwrap_or_default(),
+        })
+    };
+    case.bones.iter().filter_map(of_bone).collect()
 }
 
 /// The warning of a plan that says something and moves nothing. An empty one is a case without a plan.

@@ -177,8 +177,22 @@ impl<'a> Check<'a> {
             return method.usual_element;
         }
         if !method.elements.contains(&asked) {
-            let detail =
-                format!("{} has no choice of elements: `auto` is what it is made of", method.title);
+            let known: Vec<String> =
+                method.elements.iter().map(|known| format!("`{}`", known.name())).collect();
+            let detail = match known.is_empty() {
+                true => {
+                    format!(
+                        "{} has no choice of elements: `auto` is what it is made of",
+                        method.title
+                    )
+                }
+                false => format!(
+                    "{} has no element `{}`: there are {}",
+                    method.title,
+                    asked.name(),
+                    known.join(", ")
+                ),
+            };
             self.problems.add("/spec/element", SceneErrorCode::MethodNotAvailable, detail);
             return method.usual_element;
         }

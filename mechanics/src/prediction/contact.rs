@@ -35,9 +35,9 @@ pub struct Touch {
 /// Two parts of the boundary that press on each other.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ContactPair {
-    /// Names of segments, regions of the skin, `fixed`, `skin` or `inner`.
+    /// Names of segments, bones, regions of the skin, `fixed`, `skin` or `inner`.
     pub between: [String; 2],
-    /// In mm²: of the nodes that are pressed, on the side that has less.
+    /// In mm²: of the nodes that are pressed, on the side that has less, or on that of tissue against the surface of a bone.
     pub area: f64,
     /// In kPa.
     pub largest_pressure: f64,
@@ -118,7 +118,8 @@ fn pressed(
         return Ok(None);
     }
     progress.phase(Phase::Contact);
-    let surfaces = FacingSurfaces::new(&scene.mesh, &scene.boundary, &scene.conditions.holds);
+    let surfaces =
+        FacingSurfaces::new(&scene.mesh, &scene.boundary, &scene.conditions.holds, &scene.bones);
     let found = solve(&surfaces)?;
     let nothing_presses = found.is_none();
     let Pressing { equilibrium, contact, numerical_error } = found.unwrap_or_else(|| {
@@ -211,8 +212,10 @@ fn pairs(
     for Pressed { row, force } in &contact.pressed {
         let corners = row.terms.iter().skip(1);
         let nearest = corners.max_by(|(_, a), (_, b)| a.norm().total_cmp(&b.norm()));
-        let Some((other, _)) = nearest else { continue };
-        let (own, other) = (names[row.node as usize].as_str(), names[*other as usize].as_str());
+        let of_tissue = || nearest.map(|(other, _)| names[*other as usize].as_str());
+        let of_bone = row.bone.map(|on| scene.bones[on.bone as usize].name.as_str());
+        let Some(other) = of_bone.or_else(of_tissue) else { continue };
+        let own = names[row.node as usize].as_str();
         let between = [own.min(other), own.max(other)];
         let of_pair = sides.entry(between).or_default();
         let own = usize::from(own > other);
@@ -228,10 +231,11 @@ fn pairs(
             nodes.iter().map(|node| areas.get(node).copied().unwrap_or_default()).sum()
         };
         ContactPair {
-            area: if is_one {
-                0.5 * area(&nodes)
-            } else {
-                area(&one.nodes).min(area(&other.nodes))
+            area: match (is_one, one.nodes.is_empty() || other.nodes.is_empty()) {
+                // The surface of a bone has no nodes of its own.
+                (_, true) => area(&nodes),
+                (true, false) => 0.5 * area(&nodes),
+                (false, false) => area(&one.nodes).min(area(&other.nodes)),
             },
             between: between.map(str::to_owned),
             largest_pressure: nodes.iter().map(|&node| pressure[node as usize]).fold(0.0, f64::max),

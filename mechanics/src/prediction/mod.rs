@@ -153,7 +153,7 @@ fn described(scene: &Scene, answer: Answer, progress: &dyn Progress) -> Predicti
         |missing| skin::landmark_displacement(&scene.mesh, &scene.landmarks, missing);
     let missing = numerical_error.as_ref().map(|error| at_landmarks(&error.missing));
     Prediction {
-        reactions: reaction::by_class(scene, &equilibrium),
+        reactions: reaction::by_class(scene, &equilibrium, contact.as_ref()),
         condition_reactions: reaction::by_condition(scene, &equilibrium),
         nonlinearity,
         landmarks: landmarks.into_iter().map(|(name, (moved, _))| (name, moved)).collect(),

@@ -6,10 +6,12 @@ use std::collections::BTreeMap;
 
 use nalgebra::{DVector, Matrix3xX};
 
+use super::contact::Touch;
 use super::scene::Scene;
 use super::stated::{StatedCondition, StatedHold};
 use crate::boundary::NodeClass;
 use crate::mesh::Vector;
+use crate::model::fem::contact::Pressed;
 use crate::model::problem::Equilibrium;
 
 /// Normals of one node that differ by less are one wall.
@@ -27,8 +29,13 @@ pub struct ConditionReaction {
     pub force: Vector,
 }
 
-/// Sums the reactions of the nodes of each segment and of each other class.
-pub(super) fn by_class(scene: &Scene, equilibrium: &Equilibrium) -> BTreeMap<String, Vector> {
+/// Sums the reactions of the nodes of each segment and of each other class, with what the surfaces of bones press with: those of
+/// segments with the nodes of these, the others with what is fixed.
+pub(super) fn by_class(
+    scene: &Scene,
+    equilibrium: &Equilibrium,
+    contact: Option<&Touch>,
+) -> BTreeMap<String, Vector> {
     let mut sums: BTreeMap<String, Vector> =
         scene.segments.iter().map(|segment| (segment.name.clone(), Vector::zeros())).collect();
     for (hold, reaction) in scene.conditions.holds.iter().zip(&equilibrium.reactions) {
@@ -37,6 +44,12 @@ pub(super) fn by_class(scene: &Scene, equilibrium: &Equilibrium) -> BTreeMap<Str
             other => other.name().to_owned(),
         };
         *sums.entry(holder).or_insert_with(Vector::zeros) += reaction;
+    }
+    let pressed = contact.iter().flat_map(|touch| &touch.contact.pressed);
+    for (Pressed { row, force }, on) in pressed.filter_map(|own| Some((own, own.row.bone?))) {
+        let bone = &scene.bones[on.bone as usize];
+        let holder = if bone.is_carried { bone.name.as_str() } else { NodeClass::Fixed.name() };
+        *sums.entry(holder.to_owned()).or_insert_with(Vector::zeros) += row.normal() * *force;
     }
     sums
 }

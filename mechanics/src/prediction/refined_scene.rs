@@ -78,6 +78,7 @@ impl Scene {
             membrane: self.membrane.as_ref().map(|membrane| finer.membrane(membrane)),
             element: self.element,
             segments: self.segments.clone(),
+            bones: self.bones.clone(),
             forces: finer.forces_at_nodes()?,
             distributed: finer.distributed(),
             muscles: finer.muscles(),

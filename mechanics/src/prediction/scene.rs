@@ -10,6 +10,7 @@ use super::method::{Method, MethodKind, Unknowns};
 use super::muscle_field::{MuscleField, MuscleTissue};
 use super::skin::Skin;
 use super::stated::StatedCondition;
+use crate::boundary::contact::BoneSurface;
 use crate::boundary::{Conditions, ConnectedPart, NodeClass};
 use crate::material::LinearElastic;
 use crate::material::hyperelastic::{Fibres, Law};
@@ -77,6 +78,8 @@ pub struct Scene {
     pub parts: Vec<ConnectedPart>,
     /// Segments by the number in `NodeClass::Joined`, with the movement each makes.
     pub segments: Vec<PlannedSegment>,
+    /// Those whose surfaces tissue in contact may not pass.
+    pub bones: Vec<BoneSurface>,
     /// For each node, in mN; quadratic elements have those of edge nodes after them.
     pub forces: Vec<Vector>,
     /// What of these acts between nodes too.

@@ -77,7 +77,8 @@ impl Solver {
             }
         }
         let why = format!("{rows} rows are cheaper to iterate than to factorise");
-        match solve_by(system, self.hierarchy(system), right_hand_sides, tolerance, progress) {
+        let hierarchy = self.hierarchy(system, progress)?;
+        match solve_by(system, hierarchy, right_hand_sides, tolerance, progress) {
             Err(stalled @ SolverError::NotConverged { .. }) if rows <= ORDERING_ROWS => {
                 let ordering = ordering::minimum_degree(system);
                 let fits = ordering.factor_mb + iterations_mb <= tolerance.memory_mb;
@@ -105,15 +106,23 @@ impl Solver {
                 .map(|side| factor.solve(system, side, relative_residual, progress))
                 .collect(),
             None => {
-                let hierarchy = self.hierarchy(system);
+                let hierarchy = self.hierarchy(system, progress)?;
                 solve_loosely(system, hierarchy, right_hand_sides, relative_residual, progress)
             }
         }
     }
 
     /// The hierarchy of the system.
-    pub fn hierarchy(&self, system: &System) -> &Multigrid {
-        self.hierarchy.get_or_init(|| Multigrid::new(system))
+    pub fn hierarchy(
+        &self,
+        system: &System,
+        progress: &dyn Progress,
+    ) -> Result<&Multigrid, SolverError> {
+        if let Some(hierarchy) = self.hierarchy.get() {
+            return Ok(hierarchy);
+        }
+        let hierarchy = Multigrid::new(system, progress)?;
+        Ok(self.hierarchy.get_or_init(|| hierarchy))
     }
 
     fn factor(&self, system: &System, ordering: &Ordering) -> Result<&Factor, SolverError> {

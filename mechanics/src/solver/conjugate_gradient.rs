@@ -29,7 +29,7 @@ pub fn solve(
     tolerance: &Tolerance,
     progress: &dyn Progress,
 ) -> Result<Vec<Solution>, SolverError> {
-    solve_by(system, &Multigrid::new(system), right_hand_sides, tolerance, progress)
+    solve_by(system, &Multigrid::new(system, progress)?, right_hand_sides, tolerance, progress)
 }
 
 /// The same with the hierarchy of the system.

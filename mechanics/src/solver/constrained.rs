@@ -103,7 +103,7 @@ impl<'a> Equations<'a> {
         start: Point,
         progress: &dyn Progress,
     ) -> Result<Found, SolverError> {
-        self.make_columns(wanted.rows);
+        self.make_columns(wanted.rows, progress)?;
         let independent = Independent::new(&self.schur(wanted.rows));
         let mut run = Run {
             equations: self,
@@ -118,15 +118,19 @@ impl<'a> Equations<'a> {
         Ok(Found { point, decided: independent.dependent(), iterations, relative_residual })
     }
 
-    fn make_columns(&mut self, rows: &[usize]) {
+    fn make_columns(&mut self, rows: &[usize], progress: &dyn Progress) -> Result<(), SolverError> {
         let missing: Vec<usize> =
             rows.iter().copied().filter(|&row| self.columns[row].is_none()).collect();
         for chunk in missing.chunks(MOST_LANES) {
+            if progress.is_cancelled() {
+                return Err(SolverError::Stopped);
+            }
             let equations: Vec<&Equation> = chunk.iter().map(|&row| &self.rows[row]).collect();
             for (&row, column) in chunk.iter().zip(self.matrix.columns(&equations)) {
                 self.columns[row] = Some(column);
             }
         }
+        Ok(())
     }
 
     fn column(&self, row: usize) -> &[f32] {

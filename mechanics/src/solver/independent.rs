@@ -28,13 +28,15 @@ impl Independent {
             let pivot = open.max_by(|&a, &b| share(&left, a).total_cmp(&share(&left, b)));
             let Some(pivot) = pivot.filter(|&pivot| share(&left, pivot) > DECIDED) else { break };
             let root = left[pivot].sqrt();
-            let column: Vec<f64> = (0..size)
-                .map(|i| {
-                    let own = 0.5 * (matrix[i][pivot] + matrix[pivot][i]);
-                    let earlier: f64 = columns.iter().map(|c| c[i] * c[pivot]).sum();
-                    (own - earlier) / root
-                })
-                .collect();
+            // For all rows at once, column by column as they lie in memory.
+            let mut earlier = vec![0.0; size];
+            for column in &columns {
+                let by = column[pivot];
+                earlier.iter_mut().zip(column).for_each(|(sum, c)| *sum += c * by);
+            }
+            let own = |i: usize| 0.5 * (matrix[i][pivot] + matrix[pivot][i]);
+            let column: Vec<f64> =
+                earlier.iter().enumerate().map(|(i, sum)| (own(i) - sum) / root).collect();
             left.iter_mut().zip(&column).for_each(|(left, c)| *left -= c * c);
             is_open[pivot] = false;
             order.push(pivot);

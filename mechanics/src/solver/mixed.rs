@@ -45,12 +45,15 @@ pub fn solve_loosely(
     progress: &dyn Progress,
 ) -> Result<Vec<MixedSolution>, SolverError> {
     scaled(system, right_hand_sides, wanted, |right_hand_sides| {
+        let multigrid = system.solver.hierarchy(system.stiffness, progress)?;
         let mut solutions = Vec::with_capacity(right_hand_sides.len());
         for chunk in right_hand_sides.chunks(MOST_LANES) {
             solutions.extend(match chunk.len() {
-                1 => Run::<1>::new(system, chunk).solve_loosely(wanted, progress),
-                2..=4 => Run::<4>::new(system, chunk).solve_loosely(wanted, progress),
-                _ => Run::<MOST_LANES>::new(system, chunk).solve_loosely(wanted, progress),
+                1 => Run::<1>::new(system, multigrid, chunk).solve_loosely(wanted, progress),
+                2..=4 => Run::<4>::new(system, multigrid, chunk).solve_loosely(wanted, progress),
+                _ => {
+                    Run::<MOST_LANES>::new(system, multigrid, chunk).solve_loosely(wanted, progress)
+                }
             }?);
         }
         Ok(solutions)
@@ -63,15 +66,16 @@ fn solve_scaled(
     wanted: f64,
     progress: &dyn Progress,
 ) -> Result<Vec<MixedSolution>, SolverError> {
+    let multigrid = system.solver.hierarchy(system.stiffness, progress)?;
     let alone = |right: &MixedRightHandSide| {
-        Run::<1>::new(system, std::slice::from_ref(right)).solve(wanted, progress)
+        Run::<1>::new(system, multigrid, std::slice::from_ref(right)).solve(wanted, progress)
     };
     let mut solutions = Vec::with_capacity(right_hand_sides.len());
     for chunk in right_hand_sides.chunks(MOST_LANES) {
         let together = match chunk.len() {
             1 => alone(&chunk[0]),
-            2..=4 => Run::<4>::new(system, chunk).solve(wanted, progress),
-            _ => Run::<MOST_LANES>::new(system, chunk).solve(wanted, progress),
+            2..=4 => Run::<4>::new(system, multigrid, chunk).solve(wanted, progress),
+            _ => Run::<MOST_LANES>::new(system, multigrid, chunk).solve(wanted, progress),
         };
         match together {
             // Alone each may keep more directions.
@@ -103,7 +107,8 @@ pub fn direction(
     enough: Enough,
     progress: &dyn Progress,
 ) -> Result<MixedDirection, SolverError> {
-    let mut run = Run::<1>::new(system, std::slice::from_ref(right_hand_side));
+    let multigrid = system.solver.hierarchy(system.stiffness, progress)?;
+    let mut run = Run::<1>::new(system, multigrid, std::slice::from_ref(right_hand_side));
     run.most_iterations = enough.most_iterations;
     run.keep = MOST_DIRECTIONS;
     let is_met = match run.iterate(enough.relative_residual, progress) {

@@ -63,8 +63,11 @@ pub(super) struct Run<'a, const N: usize> {
 }
 
 impl<'a, const N: usize> Run<'a, N> {
-    pub fn new(system: &'a MixedSystem<'a>, columns: &[MixedRightHandSide]) -> Self {
-        let multigrid = system.solver.hierarchy(system.stiffness);
+    pub fn new(
+        system: &'a MixedSystem<'a>,
+        multigrid: &'a Multigrid,
+        columns: &[MixedRightHandSide],
+    ) -> Self {
         let coupling = system.coupling;
         let weights = coupling.weights();
         let forces: Vec<Unknowns> = columns.iter().map(|right| right.forces.clone()).collect();

@@ -17,6 +17,7 @@ pub mod mixed_system;
 pub mod multigrid;
 pub mod ordering;
 pub mod preconditioned;
+pub mod pressed_curvature;
 mod report;
 mod scaling;
 pub mod slots;

@@ -3,10 +3,10 @@
 //!
 //! Residuals and products of pressures carry the weights W of `mixed`, which make forces of volumes.
 
+use super::System;
 use super::lanes::{Lanes, MOST_LANES};
 use super::mixed_system::Coupling;
 use super::multigrid::Multigrid;
-use super::{Solver, System};
 
 /// Of the pressure Schur complement, S = D / 3 as in `mixed`.
 const SCHUR: f64 = 3.0;
@@ -23,10 +23,13 @@ pub struct Preconditioned<'a> {
 }
 
 impl<'a> Preconditioned<'a> {
-    /// With the hierarchy that the solver keeps or makes.
-    pub fn new(system: &'a System, coupling: Option<&'a Coupling>, solver: &'a Solver) -> Self {
+    pub fn new(
+        system: &'a System,
+        coupling: Option<&'a Coupling>,
+        multigrid: &'a Multigrid,
+    ) -> Self {
         let pressures = coupling.map(|coupling| (coupling, coupling.weights()));
-        Preconditioned { system, multigrid: solver.hierarchy(system), pressures }
+        Preconditioned { system, multigrid, pressures }
     }
 
     /// Three for each free row, then the pressures.

@@ -38,8 +38,8 @@ pub struct NewtonReport {
     pub hierarchies: usize,
     /// Steps along which the tangent was not positive definite: tissue may then rest in another way too.
     pub indefinite_steps: usize,
-    /// Whether no direction without positive curvature was found in the tangent at rest; not asked where pressures make of
-    /// rest a saddle.
+    /// Whether no direction without positive curvature was found in the tangent at rest, pressures answering to displacements;
+    /// nothing where iterations ended before that was known, or where what presses may hold what is not stable.
     pub is_stable: Option<bool>,
     /// The bulk modulus that stays in each cell while a pressure carries the rest, as a multiple of mu; 0 without.
     pub bulk_in_cells: f64,

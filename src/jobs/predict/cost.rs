@@ -32,6 +32,11 @@ const BESIDE_ANOTHER: f64 = 1.5;
 /// columns at the 50 700 nodes of `docs/performance.md` took 254 MB more than one.
 const COLUMN_AT_NODE: f64 = 210.0;
 
+/// How much longer an answer may take where gaps close: what a jaw raised by 4, 8 and 15 mm into the lips of two faces took against
+/// the same without contact (`docs/contact.md#what-was-measured`).
+pub const CONTACT: f64 = 80.0;
+pub const CONTACT_AT_FINITE_STRAIN: f64 = 5.0;
+
 /// The memory of a process that solves a scene, in MB, and of so many columns of a response. Volume splines check
 /// the size of their lattice themselves, and are told as their mesh here.
 pub fn memory_mb(scene: &Scene, columns: usize) -> f64 {
@@ -77,6 +82,20 @@ fn bytes_of_element(shape: CellShape, element: ElementChoice) -> f64 {
 /// Between which times a scene is expected to be solved, in s; none for methods whose unknowns are not those of the
 /// mesh.
 pub fn time_s(scene: &Scene, method: MethodName) -> Option<TimeBandDocument> {
+    let takes = if is_at_finite_strain(scene) { CONTACT_AT_FINITE_STRAIN } else { CONTACT };
+    time_without_contact_s(scene, method).map(|band| with_contact(scene, band, takes))
+}
+
+/// The times of a scene in which gaps may close, which take up to so many times as long.
+pub fn with_contact(scene: &Scene, band: TimeBandDocument, takes: f64) -> TimeBandDocument {
+    match scene.settings.contact.is_unilateral() {
+        true => TimeBandDocument { high: takes * band.high, ..band },
+        false => band,
+    }
+}
+
+/// The same where nothing presses.
+pub fn time_without_contact_s(scene: &Scene, method: MethodName) -> Option<TimeBandDocument> {
     let nodes = scene.mesh.nodes.len();
     let held: usize = scene.conditions.holds.iter().map(|hold| hold.count()).sum();
     let unknowns = (3 * nodes - held) as f64;

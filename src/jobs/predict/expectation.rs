@@ -1,6 +1,9 @@
 //! Expected choice of `auto`, before anything is solved.
 
-use super::cost::{at_finite_strain, memory_at_finite_strain_mb, memory_mb, time_s};
+use super::cost::{
+    CONTACT, CONTACT_AT_FINITE_STRAIN, at_finite_strain, memory_at_finite_strain_mb, memory_mb,
+    time_without_contact_s, with_contact,
+};
 use super::input::{PredictInput, Prepared};
 use crate::schema::predict::expectation::{
     BandDocument, ExpectationDocument, ExpectedRungDocument, RESTS_ON,
@@ -41,13 +44,16 @@ impl Prepared {
     }
 
     fn expected_rungs(&self, input: &PredictInput) -> Vec<ExpectedRungDocument> {
-        let (scene, linear) = (&self.scene, time_s(&self.scene, input.spec.method));
+        let scene = &self.scene;
+        let alone = time_without_contact_s(scene, input.spec.method);
+        let linear = alone.map(|band| with_contact(scene, band, CONTACT));
         let memory = memory_mb(scene, 0);
         let second_order = linear.map(|TimeBandDocument { low, high }| TimeBandDocument {
             low: SECOND_ORDER_TAKES * low,
             high: SECOND_ORDER_TAKES * high,
         });
-        let newton = linear.map(at_finite_strain);
+        let newton = alone.map(at_finite_strain);
+        let newton = newton.map(|band| with_contact(scene, band, CONTACT_AT_FINITE_STRAIN));
         let rung = |(rung, time_s, memory_mb): (Rung, _, f64)| ExpectedRungDocument {
             name: rung.name().to_owned(),
             time_s,

@@ -12,7 +12,7 @@ pub(super) fn description() -> Description {
                 no stretching",
             "elements of first order that do not lock: tetrahedra share pressures at their nodes, hexahedra and wedges one in \
                 each cell; plain ones lock above a Poisson ratio of 0.45, which is told",
-            "a wall that slides keeps its normal, and loads keep their direction",
+            "a wall that tissue slides on stays flat, and turns with the segment that carries it; loads keep their direction",
             "where tissue may rest in several ways, as pressed and creased tissue may, one of them is found",
         ],
         reads: &[

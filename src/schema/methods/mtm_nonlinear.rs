@@ -12,7 +12,7 @@ pub(super) fn description() -> Description {
             "tissue that is pressed to less than 0.577 of its length gives way, and cells may turn inside out, which is told: \
                 fem_nonlinear with its usual law does neither",
             "plain tetrahedra lock above a Poisson ratio of 0.45, with a warning",
-            "a wall that slides keeps its normal, and loads keep their direction",
+            "a wall that tissue slides on stays flat, and turns with the segment that carries it; loads keep their direction",
         ],
         reads: &[
             "case.segments",

@@ -15,7 +15,8 @@ pub struct NewtonDocument {
     pub hierarchies: u64,
     /// Steps along which the tangent was not positive definite: tissue may then rest in another way too.
     pub indefinite_steps: u64,
-    /// Whether the tangent at rest is positive definite, as far as iterations see; not asked of elements with pressures.
+    /// Whether the tangent at rest is positive definite, as far as iterations see, pressures answering to displacements. Absent where
+    /// iterations ended before that was known, as with Poisson's ratios near 1/2, and where contact may hold what is not stable.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub is_stable: Option<bool>,

@@ -26,7 +26,7 @@ pub struct ContactDocument {
 /// Two parts of the boundary that press on each other.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct ContactPairDocument {
-    /// Two names, of segments and of `skin_regions`; `fixed`, `skin` and `inner` for the rest.
+    /// Two names, of segments, of bones and of `skin_regions`; `fixed`, `skin` and `inner` for the rest.
     pub between: Vec<String>,
     /// Nodes that are pressed, on both sides.
     pub nodes: u64,

@@ -6,15 +6,18 @@
 //! triangles of about one direction: an edge of a block has those of its faces. Where one side is held as a whole the normal
 //! is that of its triangle, which moves as a rigid body. Points in front face each other through air. Points that lie in each
 //! other do where they lay in front of each other at rest, or are not two sides of one fold of tissue. Points that lie in
-//! each other at rest, as those of scanned lips do, start with no gap.
+//! each other at rest, as those of scanned lips do, start with no gap. Of tissue and of surfaces of bone (`bone`) a node is held
+//! against what it is nearest to, or deepest in.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 use rayon::prelude::*;
 
+use super::bone::{BoneSurface, FacedBone, MovedBone, RigidBone};
+use super::fold::Folds;
 use super::line::{Meeting, meeting};
 use super::moved_boundary::{Boundary, MovedBoundary};
-use super::row::ContactRow;
+use super::row::{ContactRow, OnBone};
 use crate::boundary::Hold;
 use crate::mesh::volume::BoundaryFace;
 use crate::mesh::{TriangleSurface, Vector, VolumeMesh};
@@ -22,14 +25,14 @@ use crate::mesh::{TriangleSurface, Vector, VolumeMesh};
 /// Points that lie in each other without having been in front are at most this part of their edges deep.
 const DEEPEST: f64 = 0.5;
 
-/// Points this many edges of tissue apart, or fewer, do not lie in each other: they are two sides of one fold.
-const FOLD: usize = 4;
-
 /// Nodes that move by more than this part of the largest movement move much.
 const MUCH: f64 = 0.5;
 
 /// Gaps below 0 by less than this, in mm, are closed.
 pub const CLOSED_MM: f64 = 1e-6;
+
+/// A point that is held along a normal, but for less than this part of it, is held there already.
+const LEAST_FREE: f64 = 0.5;
 
 const MOST_STEPS: usize = 100;
 
@@ -43,11 +46,21 @@ pub struct FacingSurfaces<'a> {
     is_held: Vec<bool>,
     /// Of each face for each of its nodes: an equal part of its area, along its normal, in mm².
     shares: Vec<(u32, Vector)>,
-    /// The cells around each node.
-    around: Vec<Vec<u32>>,
+    folds: Folds<'a>,
     /// For each point, how far it is looked for what it faces, in mm: the longest edge around it.
     reach: Vec<f64>,
     /// For each point, how deep it lies in other tissue at rest, in mm: 0 or below.
+    at_rest: Vec<f64>,
+    bones: Vec<BesideTissue>,
+    /// Of points that are held in one or two directions.
+    partly_held: BTreeMap<u32, Hold>,
+}
+
+/// A bone beside the tissue.
+struct BesideTissue {
+    number: u32,
+    bone: RigidBone,
+    /// For each point of the boundary, how deep it lies in the bone at rest, in mm: 0 or below.
     at_rest: Vec<f64>,
 }
 
@@ -60,7 +73,13 @@ struct Faced {
 }
 
 impl<'a> FacingSurfaces<'a> {
-    pub fn new(mesh: &'a VolumeMesh, boundary: &[BoundaryFace], holds: &[Hold]) -> Self {
+    /// The boundary of a mesh under some holds, and bones beside it; those without area are left out.
+    pub fn new(
+        mesh: &'a VolumeMesh,
+        boundary: &[BoundaryFace],
+        holds: &[Hold],
+        bones: &[BoneSurface],
+    ) -> Self {
         let rest = mesh.surface_of(boundary);
         let mut held = vec![false; mesh.nodes.len()];
         holds
@@ -73,12 +92,14 @@ impl<'a> FacingSurfaces<'a> {
             rest_normals: rest.point_normals(),
             is_held: nodes.iter().map(|&node| held[node as usize]).collect(),
             shares: shares(mesh, boundary),
-            around: cells_around(mesh),
+            folds: Folds::new(mesh),
             reach: longest_edges(&rest),
             at_rest: vec![0.0; rest.points.len()],
+            bones: beside(bones, rest.points.len()),
+            partly_held: partly_held(holds),
             boundary: Boundary::new(rest),
         };
-        surfaces.at_rest = surfaces.depths_at_rest();
+        surfaces.set_depths_at_rest();
         surfaces
     }
 
@@ -93,14 +114,20 @@ impl<'a> FacingSurfaces<'a> {
         areas
     }
 
-    /// The largest movement, and the median of the longest edges around nodes that move much, in mm.
+    /// The largest movement of nodes and bones, and the median of the longest edges around nodes that move much, in mm.
     fn movement_and_edge(&self, displacement: &[Vector]) -> (f64, f64) {
         let movements = || self.nodes().iter().map(|&node| displacement[node as usize].norm());
         let largest = movements().fold(0.0, f64::max);
         let much = movements().zip(&self.reach).filter(|(movement, _)| *movement >= MUCH * largest);
         let mut edges: Vec<f64> = much.map(|(_, edge)| *edge).collect();
         edges.sort_by(f64::total_cmp);
-        (largest, edges.get(edges.len() / 2).copied().unwrap_or(f64::INFINITY))
+        let edge = edges.get(edges.len() / 2).copied().unwrap_or(f64::INFINITY);
+        (largest.max(self.movement_of_bones()), edge)
+    }
+
+    /// The largest movement of bones, in mm.
+    pub fn movement_of_bones(&self) -> f64 {
+        self.bones.iter().map(|beside| beside.bone.largest_movement()).fold(0.0, f64::max)
     }
 
     /// The number of steps in which what moves much goes by a part of its edges.
@@ -109,16 +136,11 @@ impl<'a> FacingSurfaces<'a> {
         ((movement / (part * edge)).ceil() as usize).clamp(1, MOST_STEPS)
     }
 
-    /// Whether a gap closes along a displacement, in so many steps.
-    pub fn touches(&self, displacement: &[Vector], steps: usize) -> bool {
-        let share = |step: usize| step as f64 / steps as f64;
-        let part = |share: f64| displacement.iter().map(|u| u * share).collect::<Vec<Vector>>();
-        let closes =
-            |row: &ContactRow, share: f64| row.gap_after_part(displacement, share) < -CLOSED_MM;
-        (1..=steps + 1).any(|step| {
-            let rows = self.rows(&part(share(step - 1)));
-            rows.iter().any(|row| closes(row, share(step).min(1.0)))
-        })
+    /// Whether a gap closes from one share of a displacement, and of the movement of bones, to another one.
+    pub fn closes(&self, displacement: &[Vector], [before, after]: [f64; 2]) -> bool {
+        let part: Vec<Vector> = displacement.iter().map(|u| u * before).collect();
+        let closes = |row: &ContactRow| row.gap_after_part(displacement, after) < -CLOSED_MM;
+        self.rows(&part, before).iter().any(closes)
     }
 
     pub fn rest(&self) -> &TriangleSurface {
@@ -130,11 +152,22 @@ impl<'a> FacingSurfaces<'a> {
         self.boundary.after(displacement)
     }
 
-    /// The rows of the points that face another near by after a displacement, linear about it, by node.
-    pub fn rows(&self, displacement: &[Vector]) -> Vec<ContactRow> {
+    /// The rows of the points that face another or a bone near by after a displacement and a share of the movement of bones,
+    /// linear about it, by node.
+    pub fn rows(&self, displacement: &[Vector], share: f64) -> Vec<ContactRow> {
         let Some(moved) = self.boundary.moved(displacement) else { return Vec::new() };
+        let bones: Vec<MovedBone> =
+            self.bones.iter().map(|beside| beside.bone.after(share)).collect();
         let points = (0..self.is_held.len() as u32).into_par_iter();
-        points.filter_map(|point| self.row(&moved, point)).collect()
+        let row = |point: u32| {
+            let on_bones = self.bones.iter().zip(&bones);
+            let on_bones =
+                on_bones.filter_map(|(beside, bone)| self.row_on(beside, bone, &moved, point));
+            let all = self.row(&moved, point).into_iter().chain(on_bones);
+            let gap = |row: &ContactRow| row.gap_after(displacement, share);
+            all.min_by(|one, other| gap(one).total_cmp(&gap(other)))
+        };
+        points.filter_map(row).collect()
     }
 
     fn nodes(&self) -> &[u32] {
@@ -152,7 +185,57 @@ impl<'a> FacingSurfaces<'a> {
             terms.push((nodes[corner as usize], -weight * normal));
             gap -= weight * normal.dot(&rest.points[corner as usize]);
         }
-        Some(ContactRow { node, terms, gap })
+        Some(ContactRow { node, terms, gap, bone: None })
+    }
+
+    /// The row of a point that faces a bone.
+    fn row_on(
+        &self,
+        beside: &BesideTissue,
+        moved_bone: &MovedBone,
+        moved: &MovedBoundary,
+        point: u32,
+    ) -> Option<ContactRow> {
+        let FacedBone { place, normal, .. } =
+            self.faced_of(&beside.bone, moved_bone, moved, point)?;
+        let node = self.nodes()[point as usize];
+        let rest = self.boundary.rest.points[point as usize];
+        let bone =
+            OnBone { bone: beside.number, carried: -normal.dot(&beside.bone.displacement(&place)) };
+        Some(ContactRow {
+            node,
+            terms: vec![(node, normal)],
+            gap: normal.dot(&(rest - place)) - beside.at_rest[point as usize],
+            bone: Some(bone),
+        })
+    }
+
+    /// What a point faces of a bone. Behind it lies what was in front at rest, or what is less deep than a part of its edges and
+    /// not nearer to another side of the bone.
+    fn faced_of(
+        &self,
+        bone: &RigidBone,
+        moved_bone: &MovedBone,
+        moved: &MovedBoundary,
+        point: u32,
+    ) -> Option<FacedBone> {
+        let at = point as usize;
+        if self.is_held[at] {
+            return None;
+        }
+        let reach = self.reach[at];
+        let opposes = |normal: &Vector| Boundary::opposes(moved, point, normal);
+        let found = moved_bone.faced(&moved.surface.points[at], reach, opposes)?;
+        let (rest, own) = (self.boundary.rest.points[at], self.rest_normals[at]);
+        let is_behind = || {
+            bone.is_in_front(found.triangle, &rest, &own)
+                || found.is_closest && -found.gap <= DEEPEST * reach
+        };
+        let is_free = |normal: &Vector| {
+            let held = self.partly_held.get(&self.nodes()[at]);
+            held.is_none_or(|hold| (normal - hold.part_along(normal)).norm() > LEAST_FREE)
+        };
+        (is_free(&found.normal) && (found.gap >= 0.0 || is_behind())).then_some(found)
     }
 
     /// What a point faces: first along its own normal or across a triangle, then along the mean of both normals.
@@ -233,32 +316,40 @@ impl<'a> FacingSurfaces<'a> {
     fn is_of_one_fold(&self, point: u32, triangle: usize) -> bool {
         let nodes = self.nodes();
         let corners = self.boundary.rest.triangles[triangle].map(|corner| nodes[corner as usize]);
-        let first = nodes[point as usize];
-        let mut seen = BTreeSet::from([first]);
-        let mut ring = vec![first];
-        for _ in 0..FOLD {
-            let cells: BTreeSet<u32> =
-                ring.iter().flat_map(|&node| &self.around[node as usize]).copied().collect();
-            let reached = cells.iter().flat_map(|&cell| self.mesh.cells.nodes(cell as usize));
-            ring = reached.copied().filter(|&node| seen.insert(node)).collect();
-            if ring.iter().any(|node| corners.contains(node)) {
-                return true;
-            }
-        }
-        false
+        self.folds.are_near(nodes[point as usize], &corners)
     }
 
-    /// How deep points lie in other tissue at rest.
-    fn depths_at_rest(&self) -> Vec<f64> {
+    /// How deep points lie in other tissue and in bone at rest.
+    fn set_depths_at_rest(&mut self) {
         let nothing = vec![Vector::zeros(); self.mesh.nodes.len()];
-        let mut depths = self.at_rest.clone();
-        for row in self.rows(&nothing) {
-            if let Ok(point) = self.nodes().binary_search(&row.node) {
-                depths[point] = row.gap.min(0.0);
-            }
-        }
-        depths
+        let Some(moved) = self.boundary.moved(&nothing) else { return };
+        let points = 0..self.is_held.len() as u32;
+        let depth = |row: Option<ContactRow>| row.map_or(0.0, |row| row.gap.min(0.0));
+        let in_tissue = |point| depth(self.row(&moved, point));
+        let at_rest = points.clone().into_par_iter().map(in_tissue).collect();
+        let in_bone = |beside: &BesideTissue| -> Vec<f64> {
+            let bone = beside.bone.after(0.0);
+            let depth = |point| depth(self.row_on(beside, &bone, &moved, point));
+            points.clone().into_par_iter().map(depth).collect()
+        };
+        let in_bones: Vec<Vec<f64>> = self.bones.iter().map(in_bone).collect();
+        self.at_rest = at_rest;
+        self.bones.iter_mut().zip(in_bones).for_each(|(beside, depths)| beside.at_rest = depths);
     }
+}
+
+fn beside(bones: &[BoneSurface], points: usize) -> Vec<BesideTissue> {
+    let numbered = (0_u32..).zip(bones);
+    let of_bone = |(number, bone)| {
+        let bone = RigidBone::new(bone)?;
+        Some(BesideTissue { number, bone, at_rest: vec![0.0; points] })
+    };
+    numbered.filter_map(of_bone).collect()
+}
+
+fn partly_held(holds: &[Hold]) -> BTreeMap<u32, Hold> {
+    let partly = holds.iter().filter(|hold| (1..3).contains(&hold.count()));
+    partly.map(|hold| (hold.node, hold.clone())).collect()
 }
 
 fn shares(mesh: &VolumeMesh, boundary: &[BoundaryFace]) -> Vec<(u32, Vector)> {
@@ -269,14 +360,6 @@ fn shares(mesh: &VolumeMesh, boundary: &[BoundaryFace]) -> Vec<(u32, Vector)> {
         face.nodes().iter().map(|&node| (node, share)).collect::<Vec<_>>()
     };
     boundary.iter().flat_map(of_face).collect()
-}
-
-fn cells_around(mesh: &VolumeMesh) -> Vec<Vec<u32>> {
-    let mut around = vec![Vec::new(); mesh.nodes.len()];
-    for (cell, (_, nodes)) in (0_u32..).zip(mesh.cells.iter()) {
-        nodes.iter().for_each(|&node| around[node as usize].push(cell));
-    }
-    around
 }
 
 /// Of the triangles around each point.

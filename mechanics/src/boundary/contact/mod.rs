@@ -1,9 +1,12 @@
-//! Contact of the boundary with itself: which points of it face each other, and how far apart they are.
+//! Contact of the boundary with itself and with bone: which points of it face each other, and how far apart they are.
 
+mod bone;
 mod facing;
+mod fold;
 mod line;
 mod moved_boundary;
 mod row;
 
+pub use bone::BoneSurface;
 pub use facing::{CLOSED_MM, FacingSurfaces};
-pub use row::{ContactRow, with_pressing};
+pub use row::{ContactRow, OnBone, with_pressing};

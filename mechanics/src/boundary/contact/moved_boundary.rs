@@ -59,11 +59,16 @@ impl Boundary {
         })
     }
 
+    /// Whether a point has a normal that opposes another one.
+    pub fn opposes(moved: &MovedBoundary, point: u32, other: &Vector) -> bool {
+        moved.normals[point as usize].dot(other) < OPPOSED
+    }
+
     /// The normal of a point over those of its triangles that oppose a triangle; none where its normal does not.
     pub fn own_normal(&self, moved: &MovedBoundary, point: u32, triangle: usize) -> Option<Vector> {
         let other = moved.flats[triangle];
         let opposes = |normal: &Vector| normal.dot(&other) < OPPOSED;
-        opposes(&moved.normals[point as usize]).then(|| self.mean(moved, point, opposes))?
+        Self::opposes(moved, point, &other).then(|| self.mean(moved, point, opposes))?
     }
 
     /// The normal at a point of a triangle, over triangles around its corners that are much like it.

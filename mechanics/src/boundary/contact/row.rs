@@ -19,36 +19,58 @@ const FAR_MM: f64 = 0.05;
 pub struct ContactRow {
     /// The node that is kept from passing.
     pub node: u32,
-    /// The node with the unit normal n, and the corners of the triangle that it faces with -w n, w their weights.
+    /// The node with the unit normal n, and the corners of the triangle of tissue that it faces with -w n, w their weights.
     pub terms: Vec<(u32, Vector)>,
     /// At rest, in mm; nothing may be below 0 there.
     pub gap: f64,
+    /// What it faces where that is no tissue.
+    pub bone: Option<OnBone>,
+}
+
+/// A place on the surface of a bone.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OnBone {
+    /// Its number among the bones.
+    pub bone: u32,
+    /// -n . u of the place, u its whole movement: what that adds to the gap, in mm.
+    pub carried: f64,
 }
 
 impl ContactRow {
-    /// g after a displacement, in mm.
-    pub fn gap_after(&self, displacement: &[Vector]) -> f64 {
-        self.gap_after_part(displacement, 1.0)
+    /// g in mm after a displacement of tissue and a share of the movement of bones.
+    pub fn gap_after(&self, displacement: &[Vector], share: f64) -> f64 {
+        self.gap + self.moved(displacement) + share * self.carried()
     }
 
-    /// g after a part of a displacement, in mm.
+    /// g in mm after a part of a displacement and of the movement of bones.
     pub fn gap_after_part(&self, displacement: &[Vector], part: f64) -> f64 {
+        self.gap + part * (self.moved(displacement) + self.carried())
+    }
+
+    fn moved(&self, displacement: &[Vector]) -> f64 {
         let moved = self.terms.iter().map(|(node, along)| along.dot(&displacement[*node as usize]));
-        self.gap + part * moved.sum::<f64>()
+        moved.sum()
     }
 
-    /// Whether another row of the same node says the same after a displacement.
-    pub fn agrees(&self, other: &ContactRow, displacement: &[Vector]) -> bool {
-        let apart = self.gap_after(displacement) - other.gap_after(displacement);
-        apart.abs() < SAME_MM && self.normal().dot(&other.normal()) > SAME_NORMAL
+    fn carried(&self) -> f64 {
+        self.bone.map_or(0.0, |on| on.carried)
     }
 
-    /// Whether the gap is closed or nearly so after a displacement.
-    pub fn is_near(&self, displacement: &[Vector]) -> bool {
-        self.gap_after(displacement) < FAR_MM
+    /// Whether another row of the same node says the same after a displacement and a share of the movement of bones.
+    pub fn agrees(&self, other: &ContactRow, displacement: &[Vector], share: f64) -> bool {
+        let apart = self.gap_after(displacement, share) - other.gap_after(displacement, share);
+        self.bone.map(|on| on.bone) == other.bone.map(|on| on.bone)
+            && apart.abs() < SAME_MM
+            && self.normal().dot(&other.normal()) > SAME_NORMAL
     }
 
-    fn normal(&self) -> Vector {
+    /// Whether the gap is closed or nearly so.
+    pub fn is_near(&self, displacement: &[Vector], share: f64) -> bool {
+        self.gap_after(displacement, share) < FAR_MM
+    }
+
+    /// Out of what the node faces.
+    pub fn normal(&self) -> Vector {
         self.terms.first().map(|(_, along)| *along).unwrap_or_default()
     }
 }

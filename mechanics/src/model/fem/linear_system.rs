@@ -303,9 +303,13 @@ impl<'a> LinearSystem<'a> {
     }
 
     /// The matrix with what approximates its inverse.
-    pub(super) fn preconditioned(&self) -> Preconditioned<'_> {
+    pub(super) fn preconditioned(
+        &self,
+        progress: &dyn Progress,
+    ) -> Result<Preconditioned<'_>, SolverError> {
         let coupling = self.pressures.as_ref().map(|pressures| &pressures.coupling);
-        Preconditioned::new(&self.stiffness, coupling, &self.solver)
+        let multigrid = self.solver.hierarchy(&self.stiffness, progress)?;
+        Ok(Preconditioned::new(&self.stiffness, coupling, multigrid))
     }
 
     /// Internal forces of displacements and pressures by row, where something is held.

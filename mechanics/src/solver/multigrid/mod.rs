@@ -29,7 +29,8 @@ use ties::Ties;
 
 use super::lanes::Lanes;
 use super::vector::{norm, ratio};
-use super::{PartlyHeld, System};
+use super::{PartlyHeld, SolverError, System};
+use crate::progress::Progress;
 
 /// Rows of the first aggregates, and of the later ones.
 const FIRST_AGGREGATE: usize = 20;
@@ -113,18 +114,18 @@ impl<const N: usize> CoarseWorkspace<N> {
 }
 
 impl Multigrid {
-    /// Builds the hierarchy.
-    pub fn new(system: &System) -> Self {
+    /// Builds the hierarchy, unless it is stopped.
+    pub fn new(system: &System, progress: &dyn Progress) -> Result<Self, SolverError> {
         let special = Special::new(system);
         let mask = |row: usize, column: usize, block: &mut [[f64; 3]; 3]| {
             special.mask(row, column, block);
         };
         let (finest, below) = rayon::join(
             || Smoother::new(&system.matrix, system.layout.clone(), mask),
-            || Below::new(system, &special),
+            || Below::new(system, &special, progress),
         );
         let partly_held = system.partly_held.clone();
-        Multigrid { finest, partly_held, below }
+        Ok(Multigrid { finest, partly_held, below: below? })
     }
 
     pub fn megabytes(&self) -> f64 {
@@ -179,11 +180,18 @@ impl Multigrid {
 }
 
 impl Below {
-    fn new(system: &System, special: &Special) -> Self {
+    fn new(
+        system: &System,
+        special: &Special,
+        progress: &dyn Progress,
+    ) -> Result<Self, SolverError> {
         let free = &system.positions[..system.layout.free];
         let origin = mean(free);
+        go_on(progress)?;
         let ties = Ties::new(&system.matrix, &system.layout, |row| special.axes(row));
+        go_on(progress)?;
         let weights = Weights::new(&ties, free, FIRST_AGGREGATE);
+        go_on(progress)?;
         let fine = Fine {
             matrix: &system.matrix,
             layout: &system.layout,
@@ -197,6 +205,7 @@ impl Below {
         let first = weights.into_prolongator(place, free, system.layout.clone(), &origin);
         let mut levels = Vec::new();
         while current.matrix.rows() > DENSE_ROWS {
+            go_on(progress)?;
             let Some((weights, next)) = coarsen(&current, &centres, &origin) else { break };
             let next_centres = in_places(&weights.centres, &next.layout);
             let layout = Arc::new(current.layout);
@@ -212,7 +221,7 @@ impl Below {
             true => Coarsest::Whole(dense(&current.matrix)),
             false => Coarsest::ByRow(current.matrix.diagonal.iter().map(inverse_block).collect()),
         };
-        Below { first, levels, coarsest, coarsest_rows }
+        Ok(Below { first, levels, coarsest, coarsest_rows })
     }
 
     fn descend<const N: usize>(&self, depth: usize, workspace: &mut [CoarseWorkspace<N>]) {
@@ -227,6 +236,10 @@ impl Below {
         level.below.add_prolonged(&mut below[0].x, &mut own.x);
         level.smoother.backward(&mut own.x, &mut own.right);
     }
+}
+
+fn go_on(progress: &dyn Progress) -> Result<(), SolverError> {
+    if progress.is_cancelled() { Err(SolverError::Stopped) } else { Ok(()) }
 }
 
 /// What a cycle answers: `values` times `scale` of each right-hand side.

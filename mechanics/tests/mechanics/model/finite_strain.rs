@@ -19,7 +19,7 @@ fn lame(poisson_ratio: f64) -> (f64, f64) {
     (2.0 * mu * poisson_ratio / (1.0 - 2.0 * poisson_ratio), mu)
 }
 
-fn neo_hookean(poisson_ratio: f64) -> Law {
+pub(super) fn neo_hookean(poisson_ratio: f64) -> Law {
     let (lambda, mu) = lame(poisson_ratio);
     Law::NeoHookean(NeoHookean { lambda, mu })
 }
@@ -34,7 +34,7 @@ fn rest(
     rest_of(Elements::PLAIN, mesh, law, holds, progress)
 }
 
-fn rest_of(
+pub(super) fn rest_of(
     elements: Elements,
     mesh: &VolumeMesh,
     law: Law,
@@ -61,7 +61,10 @@ fn rest_of(
 }
 
 /// Holds the nodes that something is said of.
-fn holds(mesh: &VolumeMesh, displacement: impl Fn(&Vector) -> Option<Vector>) -> Vec<Hold> {
+pub(super) fn holds(
+    mesh: &VolumeMesh,
+    displacement: impl Fn(&Vector) -> Option<Vector>,
+) -> Vec<Hold> {
     let nodes = (0..).zip(&mesh.nodes);
     nodes.filter_map(|(node, x)| displacement(x).map(|u| Hold::at(node, u))).collect()
 }
@@ -186,9 +189,9 @@ fn pull_a_bar(shape: CellShape, element: ElementChoice) {
 
 /// 100 x 100 x 20 mm, a patch of its bottom moved by 26.9 mm and turned by 15 degrees times a share, with a free ring
 /// around it, of 25 mm for block B and of none for block A of docs/verification.md#hard-block.
-const RING: f64 = 25.0;
+pub(super) const RING: f64 = 25.0;
 
-fn hard_block(cells: [usize; 3], share: f64, ring_mm: f64) -> (VolumeMesh, Vec<Hold>) {
+pub(super) fn hard_block(cells: [usize; 3], share: f64, ring_mm: f64) -> (VolumeMesh, Vec<Hold>) {
     let mesh = block(Vector::new(100.0, 100.0, 20.0), cells, CellShape::Tet4);
     let turn = Rotation3::from_axis_angle(&Vector::y_axis(), (15.0 * share).to_radians());
     let pivot = Vector::new(50.0, 50.0, 0.0);
@@ -230,7 +233,8 @@ fn pressures_take_the_hard_block_to_rest_in_as_many_steps_for_every_poisson_rati
             assert!(least_det_f(&mesh, &moved.displacement) > 0.1);
             let newton = moved.solver.newton.unwrap();
             // No cell is pressed to a fifth of its volume: all of the bulk modulus is shared in the end.
-            assert!(newton.bulk_in_cells == 0.0 && newton.is_stable.is_none());
+            assert!(newton.bulk_in_cells == 0.0 && newton.is_stable != Some(false));
+            assert!(newton.is_stable.is_some() || poisson_ratio > 0.49, "{poisson_ratio}");
             moved.solver.iterations
         })
         .collect();

@@ -12,4 +12,5 @@ mod membrane;
 mod spline_axes;
 mod spline_stepping;
 mod spline_volume;
+mod stability;
 mod thickness_warp;

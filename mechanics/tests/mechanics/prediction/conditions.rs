@@ -5,8 +5,8 @@ use mechanics::mesh::sample::block;
 use mechanics::mesh::{CellShape, Vector};
 use mechanics::plan::{PlannedSegment, RigidMovement};
 use mechanics::prediction::{
-    Case, CaseSegment, ElementChoice, NodeClass, Plan, Scene, Settings, Sliding, SlidingNormal,
-    predict,
+    Case, CaseSegment, ElementChoice, Method, NodeClass, Plan, Prescribed, Scene, Settings,
+    Sliding, SlidingNormal, predict,
 };
 use mechanics::progress::Unobserved;
 
@@ -80,11 +80,37 @@ fn a_rotation_carries_tissue_along_only_up_to_the_linear_artefact() {
 }
 
 #[test]
+fn tissue_at_finite_strain_that_one_segment_carries_turns_with_it() {
+    for shape in [CellShape::Hex8, CellShape::Tet4, CellShape::Wedge6] {
+        let mut case = jaw_and_skull(shape);
+        case.fixed.clear();
+        case.allow_unfixed = true;
+        let settings = Settings { method: Method::FemNonlinear, ..exact() };
+        let found = solve(&case, &moved("jaw", turned()), &settings);
+        let error = largest_error(&case.volume, &found.displacement, |x| turned().displacement(x));
+        assert!(error < 1e-9, "{shape:?}: {error:e}");
+    }
+}
+
+#[test]
 fn two_plans_one_after_the_other_equal_the_composed_plan() {
     let first = RigidMovement::about_pivot(Vector::x() * 0.1, Vector::y(), Vector::z());
     let composed = first.then(&turned());
     let x = Vector::new(12.0, -7.0, 3.0);
     assert!((turned().apply(&first.apply(&x)) - composed.apply(&x)).norm() < 1e-12);
+    // Tissue whose nodes are brought where the second plan takes what the first one moved.
+    let case = jaw_and_skull(CellShape::Hex8);
+    let at_once = solve(&case, &moved("jaw", composed), &exact());
+    let mut by_node = case.clone();
+    by_node.segments.clear();
+    let mesh = std::sync::Arc::make_mut(&mut by_node.volume);
+    let later = |x: &Vector| turned().apply(&first.apply(x)) - x;
+    mesh.node_vectors.insert("later".to_owned(), mesh.nodes.iter().map(later).collect());
+    let prescribed = vec![Prescribed::FromArray { nodes: set("x_min"), array: "later".to_owned() }];
+    let after = solve(&by_node, &Plan { prescribed, ..Plan::default() }, &exact());
+    let pairs = at_once.displacement.iter().zip(&after.displacement);
+    let apart = pairs.map(|(one, other)| (one - other).norm()).fold(0.0, f64::max);
+    assert!(apart < 1e-9, "{apart}");
 }
 
 #[test]

@@ -1,11 +1,12 @@
 //! Contact that opens and closes: closed forms, blocks whose meshes do not match, and who refuses it.
 
+use mechanics::mesh::connectivity::Faces;
 use mechanics::mesh::sample::block;
 use mechanics::mesh::{CellShape, Vector, VolumeMesh};
 use mechanics::plan::{PlannedSegment, RigidMovement};
 use mechanics::prediction::{
-    Case, CaseSegment, ContactKind, ElementChoice, Method, Plan, Prediction, Prescribed, Scene,
-    SceneErrorCode, Settings, Touch,
+    Case, CaseSegment, ContactKind, ElementChoice, Method, Plan, Prediction, Scene, SceneErrorCode,
+    Settings,
 };
 
 use super::numerical_error::{Effectivity, Question};
@@ -88,10 +89,9 @@ fn a_bar_presses_on_what_it_reaches_and_on_nothing_before() {
     }
 }
 
-/// The largest difference of the pressure from `wanted`, the largest penetration, and the smallest force over the largest.
+/// The largest difference of the pressure from `wanted`, and the smallest force over the largest.
 struct Met {
     pressure: f64,
-    penetration: f64,
     pull: f64,
 }
 
@@ -100,11 +100,31 @@ fn met(found: &Prediction, nodes: &[u32], wanted: f64) -> Met {
     let pressures = nodes.iter().map(|&node| (touch.pressure[node as usize] / wanted - 1.0).abs());
     let forces = touch.contact.pressed.iter().map(|pressed| pressed.force);
     let largest = forces.clone().fold(0.0, f64::max);
-    Met {
-        pressure: pressures.fold(0.0, f64::max),
-        penetration: touch.largest_penetration(),
-        pull: -forces.fold(0.0, f64::min) / largest,
-    }
+    Met { pressure: pressures.fold(0.0, f64::max), pull: -forces.fold(0.0, f64::min) / largest }
+}
+
+/// The least height of moved nodes over moved faces that others are the corners of, and of these over them.
+fn least_height(case: &Case, found: &Prediction, upper: &[u32], lower: &[u32]) -> f64 {
+    let faces = case.volume.boundary_of(&Faces::new(&case.volume));
+    let at = |node: u32| case.volume.nodes[node as usize] + found.displacement[node as usize];
+    let triangles: Vec<[u32; 3]> = faces.iter().flat_map(|face| face.triangles()).collect();
+    // The height over the plane of the corners, where that is below the node.
+    let height = |node: u32, corners: &[u32; 3]| -> Option<f64> {
+        let (x, [a, b, c]) = (at(node), corners.map(at));
+        let across = |p: Vector, q: Vector| p.x * q.y - p.y * q.x;
+        let area = across(b - a, c - a);
+        let (s, t) = (across(x - a, c - a) / area, across(b - a, x - a) / area);
+        let is_inside = s >= -1e-9 && t >= -1e-9 && s + t <= 1.0 + 1e-9;
+        is_inside.then(|| x.z - (a + (b - a) * s + (c - a) * t).z)
+    };
+    let over = |nodes: &[u32], others: &[u32], sign: f64| -> f64 {
+        let own = |corners: &&[u32; 3]| corners.iter().all(|corner| others.contains(corner));
+        let heights = nodes
+            .iter()
+            .flat_map(|&node| triangles.iter().filter(own).filter_map(move |t| height(node, t)));
+        heights.map(|height| sign * height).fold(f64::INFINITY, f64::min)
+    };
+    over(upper, lower, 1.0).min(over(lower, upper, -1.0))
 }
 
 /// Two blocks, three cells to two, pressed together by a tenth.
@@ -132,9 +152,13 @@ fn blocks_with_meshes_that_do_not_match_keep_apart_and_press_within_a_ninth_of_e
     let nodes = |name: &str| case.volume.node_sets[name].clone();
     let (one, other) = (nodes("lower/z_max"), nodes("upper/z_min"));
     let found = solve(&case, &plan, &unilateral());
+    // Measured on the moved meshes, whose faces are not quite flat.
+    let height = least_height(&case, &found, &other, &one);
+    println!("least height {height:e}");
+    assert!(height > -1e-3, "{height}");
     for (side, nodes) in [("lower", one), ("upper", other)] {
         let met = met(&found, &nodes, 1.5);
-        assert!(met.penetration < 1e-12 && met.pull <= 0.0, "{side}: {}", met.penetration);
+        assert!(met.pull <= 0.0, "{side}: {}", met.pull);
         assert!(met.pressure < 0.11, "{side}: {}", met.pressure);
     }
     let u = |node: usize| -0.1 * case.volume.nodes[node].z;
@@ -238,123 +262,4 @@ fn a_method_without_contact_is_refused_by_name() {
             assert!(said.detail.contains("`fem_linear`"), "{said}");
         }
     }
-}
-
-/// Places from 0, evenly up to `fine_to` and then each cell longer than the last.
-fn graded(fine_to: f64, fine: f64, growth: f64, end: f64) -> Vec<f64> {
-    let mut places: Vec<f64> =
-        (0..=(fine_to / fine).round() as usize).map(|i| i as f64 * fine).collect();
-    let mut step = fine;
-    while *places.last().unwrap() < end {
-        step *= growth;
-        places.push(places.last().unwrap() + step);
-    }
-    places
-}
-
-/// A block with nodes at the products of places.
-fn at_places(x: &[f64], y: &[f64], z: &[f64]) -> VolumeMesh {
-    let cells = [x.len() - 1, y.len() - 1, z.len() - 1];
-    let size = Vector::from(cells.map(|cells| cells as f64));
-    let mut mesh = block(size, cells, CellShape::Hex8);
-    let place = |places: &[f64], at: f64| places[at.round() as usize];
-    for node in &mut mesh.nodes {
-        *node = Vector::new(place(x, node.x), place(y, node.y), place(z, node.z));
-    }
-    mesh
-}
-
-/// Displacement in mm of a half space below z = 0 under a force in mN down at the origin (Boussinesq 1885; Johnson, Contact
-/// Mechanics, equations 3.18).
-fn boussinesq(force: f64, young: f64, nu: f64, x: &Vector) -> Vector {
-    let shear = young / (2.0 * (1.0 + nu));
-    let (r, depth) = (x.norm(), -x.z);
-    let factor = force / (4.0 * std::f64::consts::PI * shear);
-    let across = factor * (depth / r.powi(3) - (1.0 - 2.0 * nu) / (r * (r + depth)));
-    let down = factor * (depth * depth / r.powi(3) + 2.0 * (1.0 - nu) / r);
-    Vector::new(across * x.x, across * x.y, -down)
-}
-
-/// A quarter of a half space, far from the contact moved as a force at its surface would, under a ball of 10 mm.
-fn ball_on_half_space(force: f64, young: f64, nu: f64) -> Case {
-    const RADIUS: f64 = 10.0;
-    let fine = graded(2.75, 0.25, 1.28, 25.0);
-    let depth: Vec<f64> = fine.iter().rev().map(|z| -z).collect();
-    let half_space = at_places(&fine, &fine, &depth);
-    let ball: Vec<f64> = (0..=28).map(|i| 0.125 * f64::from(i)).collect();
-    let mut ball = at_places(&ball, &ball, &[0.0, 1.0]);
-    for node in &mut ball.nodes {
-        let down = (RADIUS * RADIUS - node.x * node.x - node.y * node.y).sqrt();
-        node.z += RADIUS - down;
-    }
-    let mut mesh = together(&[("half", half_space), ("ball", ball)]);
-    let outer = |node: &Vector| {
-        if node.norm() > 20.0 { boussinesq(force, young, nu, node) } else { Vector::zeros() }
-    };
-    mesh.node_vectors.insert("outer".to_owned(), mesh.nodes.iter().map(outer).collect());
-    let sides = ["half/x_max", "half/y_max", "half/z_min"];
-    let mut far: Vec<u32> = sides.iter().flat_map(|set| mesh.node_sets[*set].clone()).collect();
-    far.sort_unstable();
-    far.dedup();
-    for (plane, side) in [("x_plane", "half/x_min"), ("y_plane", "half/y_min")] {
-        let nodes = mesh.node_sets[side].iter().copied();
-        let nodes = nodes.filter(|node| far.binary_search(node).is_err()).collect();
-        mesh.node_sets.insert(plane.to_owned(), nodes);
-    }
-    mesh.node_sets.insert("far".to_owned(), far);
-    Case {
-        segments: vec![CaseSegment { name: "ball".to_owned(), nodes: set("ball") }],
-        skin: Some(set("half/z_max")),
-        ..case_of(mesh, material(young, nu))
-    }
-}
-
-/// p0 and a of p^2 = p0^2 (1 - r^2 / a^2), by least squares over pairs of r^2 and p^2.
-fn hertz_of(pairs: &[(f64, f64)]) -> [f64; 2] {
-    let count = pairs.len() as f64;
-    let mean = |of: fn(&(f64, f64)) -> f64| pairs.iter().map(of).sum::<f64>() / count;
-    let (mx, my) = (mean(|p| p.0), mean(|p| p.1));
-    let slope = pairs.iter().map(|(x, y)| (x - mx) * (y - my)).sum::<f64>()
-        / pairs.iter().map(|(x, _)| (x - mx).powi(2)).sum::<f64>();
-    let p0 = (my - slope * mx).sqrt();
-    [p0, p0 / (-slope).sqrt()]
-}
-
-/// A rigid ball of 10 mm pressed .386519 mm into a half space: 20 mN, a = 1.96601 mm, p0 = 2.470589 kPa (Hertz 1882). Small
-/// strain is off by the order of (a / R)^2 / 2 = 2 %.
-#[test]
-fn a_ball_presses_on_a_half_space_as_hertz_says() {
-    let force = 20.0;
-    let case = ball_on_half_space(force, 15.0, 0.49);
-    let down = Vector::new(0.0, 0.0, -0.386519);
-    let movement = RigidMovement::about_pivot(Vector::zeros(), Vector::zeros(), down);
-    let plan = Plan {
-        segments: vec![PlannedSegment { name: "ball".to_owned(), movement }],
-        prescribed: vec![
-            Prescribed::FromArray { nodes: set("far"), array: "outer".to_owned() },
-            hold("x_plane", [Some(0.0), None, None]),
-            hold("y_plane", [None, Some(0.0), None]),
-        ],
-        ..Plan::default()
-    };
-    let found = solve(&case, &plan, &unilateral());
-    let touch = found.contact.as_ref().unwrap();
-    let pressed = -4.0 * force_of(touch);
-    let top = &case.volume.node_sets["half/z_max"];
-    let at = |&node: &u32| {
-        let (place, pressure) = (case.volume.nodes[node as usize], touch.pressure[node as usize]);
-        (place.xy().norm_squared(), pressure * pressure)
-    };
-    // Within .8 a.
-    let inner = top.iter().map(at).filter(|&(r2, p2)| p2 > 0.0 && r2 < 1.6 * 1.6);
-    let [p0, a] = hertz_of(&inner.collect::<Vec<_>>());
-    assert!((pressed / force - 1.0).abs() < 0.03, "{pressed}");
-    assert!((p0 / 2.470589 - 1.0).abs() < 0.03, "{p0}");
-    assert!((a / 1.96601 - 1.0).abs() < 0.03, "{a}");
-    assert!(touch.contact.effort.changes <= 8, "{}", touch.contact.effort.changes);
-}
-
-/// The force along z on the nodes that are not held.
-fn force_of(touch: &Touch) -> f64 {
-    touch.contact.pressed.iter().map(|pressed| pressed.force * pressed.row.terms[0].1.z).sum()
 }

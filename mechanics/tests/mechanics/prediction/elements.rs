@@ -6,8 +6,8 @@ use std::collections::BTreeMap;
 use mechanics::mesh::sample::{ThickSphere, block, thick_sphere_octant};
 use mechanics::mesh::{CellShape, Vector, VolumeMesh};
 use mechanics::prediction::{
-    Case, ElementChoice, Load, Plan, Prediction, Prescribed, RegionNames, Scene, Settings, Sliding,
-    SlidingNormal,
+    Case, ElementChoice, Load, Method, Plan, Prediction, Prescribed, RegionNames, Scene, Settings,
+    Sliding, SlidingNormal,
 };
 
 use crate::scenes::{case_of, exact, hold, material, set, solve};
@@ -84,11 +84,16 @@ fn elements_that_do_not_lock_come_to_the_limit_of_cook_s_membrane() {
 
 /// The thick sphere of V.7 at cells of about 3 mm: mean radial displacement of the outer surface.
 fn outer_displacement(nu: f64, element: ElementChoice) -> f64 {
+    outer_displacement_of(CellShape::Tet4, nu, 2.0, &with(element))
+}
+
+/// The same for an inner surface that moves outwards by so many mm.
+fn outer_displacement_of(shape: CellShape, nu: f64, by: f64, settings: &Settings) -> f64 {
     let sphere =
         ThickSphere { inner_radius: 60.0, outer_radius: 72.0, cells_radial: 4, cells_along: 16 };
-    let mut mesh = thick_sphere_octant(sphere, CellShape::Tet4);
+    let mut mesh = thick_sphere_octant(sphere, shape);
     mesh.node_vectors
-        .insert("radial".to_owned(), mesh.nodes.iter().map(|x| x.normalize() * 2.0).collect());
+        .insert("radial".to_owned(), mesh.nodes.iter().map(|x| x.normalize() * by).collect());
     let inner = Prescribed::FromArray { nodes: set("inner"), array: "radial".to_owned() };
     let symmetry = [
         hold("x_min", [Some(0.0), None, None]),
@@ -97,7 +102,7 @@ fn outer_displacement(nu: f64, element: ElementChoice) -> f64 {
     ];
     let plan = Plan { prescribed: [vec![inner], symmetry.to_vec()].concat(), ..Plan::default() };
     let case = case_of(mesh, material(15.0, nu));
-    let displacement = solve(&case, &plan, &with(element)).displacement;
+    let displacement = solve(&case, &plan, settings).displacement;
     let outer = case.volume.node_set("outer").unwrap();
     let radial = |&node: &u32| {
         displacement[node as usize].dot(&case.volume.nodes[node as usize].normalize())
@@ -113,6 +118,21 @@ fn a_thick_sphere_of_stabilised_tetrahedra_moves_as_the_closed_form_up_to_nu_0_4
         let found = outer_displacement(nu, ElementChoice::Stabilised);
         println!("nu {nu}: {found} / {exact}");
         assert!((found / exact - 1.0).abs() < 0.005, "nu {nu}: {found} instead of {exact}");
+    }
+}
+
+/// Tissue that hardly changes its volume: V.8.
+#[test]
+fn a_thick_sphere_at_finite_strain_keeps_its_volume() {
+    for (shape, element) in
+        [(CellShape::Tet4, ElementChoice::Stabilised), (CellShape::Hex8, ElementChoice::Auto)]
+    {
+        for (by, exact) in [(2.0, 1.40799), (5.0, 3.58785)] {
+            let settings = Settings { method: Method::FemNonlinear, ..with(element) };
+            let found = outer_displacement_of(shape, 0.4999, by, &settings);
+            println!("{shape:?} {by} mm: {found} / {exact}");
+            assert!((found / exact - 1.0).abs() < 0.005, "{shape:?} {by}: {found} {exact}");
+        }
     }
 }
 
@@ -191,6 +211,22 @@ fn elements_err_on_the_slab_as_published() {
             println!("nu {nu} {element:?} {h}: {error:.4} / {expected}");
             assert!((error - expected).abs() < 0.2 * expected + 0.02, "{nu} {element:?}: {error}");
         }
+    }
+}
+
+/// Neo-Hookean tissue against linear one on the skin of V.29, computed elsewhere by quadratic tetrahedra of 6 mm.
+#[test]
+fn large_movements_of_the_slab_differ_from_linear_ones_as_published() {
+    for (share, expected) in [(0.25, 0.048), (0.5, 0.186), (1.0, 0.697), (1.5, 1.464)] {
+        let (case, mut plan) = slab(3.0, 0.46);
+        plan.prescribed[0] = hold("patch", [Some(4.0 * share), Some(0.0), Some(8.0 * share)]);
+        let element = ElementChoice::Stabilised;
+        let nonlinear = Settings { method: Method::FemNonlinear, ..with(element) };
+        let [one, other] = [nonlinear, with(element)]
+            .map(|settings| at_skin_points(&case, &solve(&case, &plan, &settings)));
+        let apart = one.iter().zip(&other).map(|(a, b)| (a - b).norm()).sum::<f64>() / 45.0;
+        println!("{share}: {apart:.4} / {expected}");
+        assert!((apart / expected - 1.0).abs() < 0.06, "{share}: {apart}");
     }
 }
 

@@ -6,6 +6,8 @@ mod closed_form;
 mod conditions;
 mod contact;
 mod contact_at_finite_strain;
+mod contact_hertz;
+mod contact_on_bone;
 pub mod elements;
 mod fibres;
 mod generic_face;

@@ -24,18 +24,24 @@ pub(in crate::model::fem) struct Round {
 }
 
 impl KeptRows {
-    /// Takes up the rows found after a displacement.
-    pub fn take(&mut self, mut found: Vec<ContactRow>, displacement: &[Vector]) -> Round {
+    /// Takes up the rows found after a displacement and a share of the movement of bones.
+    pub fn take(
+        &mut self,
+        mut found: Vec<ContactRow>,
+        displacement: &[Vector],
+        share: f64,
+    ) -> Round {
         let before: BTreeMap<u32, usize> =
             self.rows.iter().enumerate().map(|(place, row)| (row.node, place)).collect();
         let mut round = Round { same: vec![None; found.len()], new: 0 };
         for (row, same) in found.iter_mut().zip(&mut round.same) {
             let old = before.get(&row.node).copied();
-            *same = old.filter(|&old| self.rows[old].agrees(row, displacement));
+            *same = old.filter(|&old| self.rows[old].agrees(row, displacement, share));
             match *same {
                 Some(old) => *row = self.rows[old].clone(),
                 None => {
-                    let counts = row.is_near(displacement) || self.pressing.contains(&row.node);
+                    let is_near = row.is_near(displacement, share);
+                    let counts = is_near || self.pressing.contains(&row.node);
                     round.new += usize::from(counts);
                 }
             }
@@ -58,12 +64,12 @@ impl KeptRows {
         forces
     }
 
-    /// By node, the gap in mm after a displacement.
-    pub fn gaps(&self, displacement: &[Vector]) -> BTreeMap<u32, f64> {
-        self.rows.iter().map(|row| (row.node, row.gap_after(displacement))).collect()
+    /// By node, the gap in mm after a displacement and a share of the movement of bones.
+    pub fn gaps(&self, displacement: &[Vector], share: f64) -> BTreeMap<u32, f64> {
+        self.rows.iter().map(|row| (row.node, row.gap_after(displacement, share))).collect()
     }
 
-    /// The contact of an answer in which rows with these numbers press with forces in mN.
+    /// The contact of an answer, all movement made, in which rows with these numbers press with forces in mN.
     pub fn contact(
         &self,
         pressing: impl Iterator<Item = (usize, f64)>,
@@ -73,7 +79,7 @@ impl KeptRows {
         let pressed = |&(row, force): &(usize, f64)| Pressed { row: self.rows[row].clone(), force };
         Contact {
             pressed: pressing.iter().map(pressed).collect(),
-            gaps: self.gaps(displacement),
+            gaps: self.gaps(displacement, 1.0),
             forces: self.forces(pressing.into_iter(), displacement.len()),
             ..Contact::default()
         }

@@ -10,6 +10,7 @@ use crate::mesh::Vector;
 use crate::model::fem::linear_system::{Correction, LinearSystem, Residual, Solved};
 use crate::model::problem::{Equilibrium, LoadCase, ModelError};
 use crate::progress::Progress;
+use crate::solver::SolverError;
 use crate::solver::constrained::{Equations, Point, Wanted};
 
 /// Beyond this, in mm, an answer is none.
@@ -61,15 +62,19 @@ impl<'a> ContactProblem<'a> {
         step: f64,
         progress: &dyn Progress,
     ) -> Result<Option<InContact<'a>>, ModelError> {
-        let mut rounds = Rounds::new(self);
+        let mut rounds = Rounds::new(self, progress)?;
         let steps = self.surfaces.steps(self.free(), step);
         for step in 1..=steps {
+            if progress.is_cancelled() {
+                return Err(SolverError::Stopped.into());
+            }
             rounds.share = step as f64 / steps as f64;
             rounds.look();
             if rounds.touches() {
                 rounds.settle(ON_THE_WAY, progress)?;
             } else {
                 rounds.displacement = self.free_part(rounds.share);
+                rounds.reached = rounds.share;
             }
         }
         if !rounds.has_touched() {
@@ -130,9 +135,11 @@ struct Rounds<'a, 'b> {
     /// Those of `kept_rows`.
     equations: Equations<'a>,
     kept_rows: KeptRows,
-    /// The part of the movement that is done.
+    /// The part of the movement that is to be done.
     share: f64,
+    /// The answer so far, and the part of the movement that it is of.
     displacement: Vec<Vector>,
+    reached: f64,
     /// What contact adds to the answer without it, and the multipliers of the rows that press.
     added: Point,
     active: Vec<usize>,
@@ -141,27 +148,28 @@ struct Rounds<'a, 'b> {
 }
 
 impl<'a, 'b> Rounds<'a, 'b> {
-    fn new(problem: &'b ContactProblem<'a>) -> Self {
+    fn new(problem: &'b ContactProblem<'a>, progress: &dyn Progress) -> Result<Self, SolverError> {
         let system = problem.system;
-        Rounds {
+        Ok(Rounds {
             problem,
             unknowns: FreeUnknowns::new(system.holds, &system.numbering),
-            equations: Equations::new(system.preconditioned(), Vec::new()),
+            equations: Equations::new(system.preconditioned(progress)?, Vec::new()),
             kept_rows: KeptRows::default(),
             share: 0.0,
             displacement: vec![Vector::zeros(); problem.free().len()],
+            reached: 0.0,
             added: Point::default(),
             active: Vec::new(),
             effort: Effort::default(),
             relative_residual: 0.0,
-        }
+        })
     }
 
     /// Looks for closest points with the answer so far; how many rows say something new.
     fn look(&mut self) -> usize {
-        let mut found = self.problem.surfaces.rows(&self.displacement);
+        let mut found = self.problem.surfaces.rows(&self.displacement, self.reached);
         found.retain(|row| !self.unknowns.equation(row).is_empty());
-        let Round { same, new } = self.kept_rows.take(found, &self.displacement);
+        let Round { same, new } = self.kept_rows.take(found, &self.displacement, self.reached);
         let equations = self.kept_rows.rows.iter().map(|row| self.unknowns.equation(row));
         self.equations.replace(equations.collect(), &same);
         new
@@ -185,7 +193,8 @@ impl<'a, 'b> Rounds<'a, 'b> {
         progress: &dyn Progress,
     ) -> Result<f64, ModelError> {
         let free = self.problem.free();
-        let movement = self.share * free.iter().map(Vector::norm).fold(0.0, f64::max);
+        let of_bones = self.problem.surfaces.movement_of_bones();
+        let movement = self.share * free.iter().map(Vector::norm).fold(of_bones, f64::max);
         let gaps: Vec<f64> =
             self.kept_rows.rows.iter().map(|row| row.gap_after_part(free, self.share)).collect();
         let mut set = ActiveSet::of_gaps(&gaps, movement);
@@ -214,6 +223,7 @@ impl<'a, 'b> Rounds<'a, 'b> {
         let pairs = self.displacement.iter().zip(&displacement);
         let moved_mm = pairs.map(|(one, other)| (one - other).norm()).fold(0.0, f64::max);
         self.displacement = displacement;
+        self.reached = self.share;
         Ok(moved_mm)
     }
 

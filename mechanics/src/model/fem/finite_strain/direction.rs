@@ -12,11 +12,17 @@ use crate::solver::mixed;
 use crate::solver::mixed_system::{Coupling, MixedRightHandSide, MixedSystem};
 use crate::solver::multigrid::Multigrid;
 use crate::solver::preconditioned::Preconditioned;
+use crate::solver::pressed_curvature;
 use crate::solver::{Solver, SolverError, System, Unknowns};
 
 /// Inner iterations after which a direction is taken as it is, without pressures and with them.
 const MOST_INNER: usize = 200;
 const MOST_INNER_MIXED: usize = 60;
+
+/// The relative residual at which a tangent is known to be positive definite, and the iterations in which it is to be met
+/// with pressures: their bulk modulus makes what is left of the tangent stiff.
+const SURE: f64 = 1e-6;
+const MOST_STIFF: usize = 400;
 
 /// A hierarchy serves this many steps, unless it has grown this much worse.
 const SERVES: usize = 2;
@@ -62,6 +68,8 @@ pub(super) struct Remaining<'a> {
     /// Positions and displacements of the nodes.
     pub nodes: &'a [Vector],
     pub displacement: &'a [Vector],
+    /// The share of the movement of bones after the step.
+    pub share: f64,
     /// The relative residual that is wanted.
     pub relative: f64,
     /// The norm of the forces in mN that nothing balances.
@@ -113,7 +121,7 @@ impl Directions {
             .map(|pressures| pressures.coupling_at(&|cell| deformed.gradients(cell)));
         let mut found = match coupling {
             None => {
-                let multigrid = hierarchy.solver.hierarchy(&system);
+                let multigrid = hierarchy.solver.hierarchy(&system, progress)?;
                 alone(&system, multigrid, &forces, remaining.relative, &inner)?
             }
             Some(coupling) => {
@@ -127,12 +135,16 @@ impl Directions {
         let mut by_node = constrained.displacement(&known.total(&found.unknowns));
         let mut multipliers = Vec::new();
         if let Some(touching) = touching {
-            let Remaining { displacement, unbalanced, relative, .. } = *remaining;
+            let Remaining { displacement, share, unbalanced, relative, .. } = *remaining;
             let displacement: Vec<Vector> =
                 displacement.iter().zip(&by_node).map(|(u, step)| u + step).collect();
-            let ahead =
-                Ahead { displacement: &displacement, unbalanced, relative, progress: &inner };
-            let matrix = Preconditioned::new(&system, coupling, &hierarchy.solver);
+            let displacement = &displacement;
+            let ahead = Ahead { displacement, share, unbalanced, relative, progress: &inner };
+            let matrix = Preconditioned::new(
+                &system,
+                coupling,
+                hierarchy.solver.hierarchy(&system, progress)?,
+            );
             if let Some(change) = touching.change(matrix, &ahead)? {
                 let (_, p) = change.step.split_at(3 * system.layout.free);
                 let added = constrained.displacement(&system.by_row(&change.step));
@@ -156,7 +168,8 @@ impl Directions {
         })
     }
 
-    /// Whether the tangent is positive definite along all that iterations meet on the way to a load of no pattern.
+    /// Whether the tangent, with pressures that answer to displacements, is positive definite along all that iterations meet on
+    /// the way to a load of no pattern; none where they end before they meet it.
     pub fn is_stable(
         &mut self,
         deformed: &Deformed,
@@ -164,9 +177,6 @@ impl Directions {
         nodes: &[Vector],
         progress: &dyn Progress,
     ) -> Result<Option<bool>, SolverError> {
-        if self.pressures.is_some() {
-            return Ok(None);
-        }
         let system = constrained.system(deformed.tangent(progress)?, nodes);
         // Multiples of the golden ratio, each less its whole part: as even and as patternless as random numbers.
         let mut number = 0.5;
@@ -181,13 +191,28 @@ impl Directions {
             ..LoadCase::default()
         };
         let load = constrained.known(&case).right_hand_side(&system);
-        let enough = Enough { relative_residual: 1e-6, most_iterations: MOST_INNER };
         // The hierarchy of the last step is that of a tangent near by.
         let hierarchy = self.hierarchy.take().unwrap_or_else(|| self.new_hierarchy());
-        let (multigrid, inner) = (hierarchy.solver.hierarchy(&system), Inner(progress));
-        let found = conjugate_gradient::direction(&system, multigrid, &load, enough, &inner)?;
+        let inner = Inner(progress);
+        let coupling = self.pressures.as_mut();
+        let is_stable = match coupling.map(|own| own.coupling_at(&|cell| deformed.gradients(cell)))
+        {
+            None => {
+                let enough = Enough { relative_residual: SURE, most_iterations: MOST_INNER };
+                let multigrid = hierarchy.solver.hierarchy(&system, progress)?;
+                Some(
+                    conjugate_gradient::direction(&system, multigrid, &load, enough, &inner)?
+                        .is_convex,
+                )
+            }
+            Some(coupling) => {
+                let enough = Enough { relative_residual: SURE, most_iterations: MOST_STIFF };
+                let mixed = MixedSystem { stiffness: &system, coupling, solver: &hierarchy.solver };
+                pressed_curvature::is_positive_definite(&mixed, &load, enough, &inner)?
+            }
+        };
         self.hierarchy = Some(hierarchy);
-        Ok(Some(found.is_convex))
+        Ok(is_stable)
     }
 
     fn hierarchy(&mut self) -> Hierarchy {

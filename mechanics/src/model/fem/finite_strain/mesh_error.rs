@@ -86,6 +86,7 @@ impl Finer<'_> {
             volumes: &left,
             nodes: &nodes,
             displacement: &displacement,
+            share: 1.0,
             relative,
             unbalanced,
             progress,

@@ -123,7 +123,7 @@ impl<'a> FiniteStrain<'a> {
         progress: &dyn Progress,
     ) -> Result<Option<InContact>, ModelError> {
         let steps = surfaces.steps(&free.displacement, STEP);
-        if !surfaces.touches(&free.displacement, steps) {
+        if !touches(surfaces, &free.displacement, steps, progress)? {
             return Ok(None);
         }
         let numbering = number(&nodes_of_cells(self.mesh), &self.mesh.nodes, self.holds);
@@ -289,4 +289,23 @@ impl<'a> FiniteStrain<'a> {
         }
         Ok(())
     }
+}
+
+/// Whether a gap closes along a displacement, in so many steps.
+fn touches(
+    surfaces: &FacingSurfaces,
+    displacement: &[Vector],
+    steps: usize,
+    progress: &dyn Progress,
+) -> Result<bool, SolverError> {
+    let share = |step: usize| (step as f64 / steps as f64).min(1.0);
+    for step in 1..=steps + 1 {
+        if progress.is_cancelled() {
+            return Err(SolverError::Stopped);
+        }
+        if surfaces.closes(displacement, [share(step - 1), share(step)]) {
+            return Ok(true);
+        }
+    }
+    Ok(false)
 }

@@ -194,6 +194,7 @@ impl<'a, 'b> Newton<'a, 'b> {
             volumes,
             nodes: &nodes,
             displacement: &displacement,
+            share: self.made + ahead,
             relative,
             unbalanced,
             progress: self.question.progress,
@@ -279,10 +280,9 @@ impl<'a, 'b> Newton<'a, 'b> {
     /// Looks for what touches; whether contact leaves nothing to do.
     fn look(&mut self) -> bool {
         let displacement = self.displacement();
-        let is_made = self.made >= 1.0;
         let Some(touching) = &mut self.touching else { return true };
-        touching.look(&displacement, is_made);
-        touching.rests(&displacement)
+        touching.look(&displacement, self.made);
+        touching.rests(&displacement, self.made)
     }
 
     /// Of the nodes.
@@ -319,6 +319,9 @@ impl<'a, 'b> Newton<'a, 'b> {
             &self.positions(),
             self.question.progress,
         )?;
+        // What presses holds what is not stable without it.
+        let presses = self.touching.as_ref().is_some_and(Touching::presses);
+        let is_stable = is_stable.filter(|is_stable| *is_stable || !presses);
         let tally = self.directions.tally;
         let (mut energy, mut unknowns) =
             (deformed.energy(&self.x), self.question.constrained.free_unknowns());

@@ -16,8 +16,9 @@ use crate::model::dofs::Numbering;
 use crate::model::fem::cell_stiffness::tetrahedron;
 use crate::model::fem::inner_stress::InnerStress;
 use crate::model::problem::InvertedCell;
-use crate::solver::Block;
+use crate::progress::Progress;
 use crate::solver::half_matrix::{HalfMatrix, RowChunk};
+use crate::solver::{Block, SolverError};
 
 /// Cells or rows that one thread takes at a time.
 const CHUNK: usize = 1024;
@@ -171,13 +172,23 @@ impl DeformedSimplices<'_> {
     }
 
     /// The derivatives of the internal forces by the positions, in kPa mm.
-    pub fn tangent(&self, numbering: &Numbering) -> HalfMatrix<f64, 3> {
+    pub fn tangent(
+        &self,
+        numbering: &Numbering,
+        progress: &dyn Progress,
+    ) -> Result<HalfMatrix<f64, 3>, SolverError> {
         let mut matrix = HalfMatrix::zeros(numbering.pattern.clone());
-        matrix.row_chunks(CHUNK).into_par_iter().for_each_init(
+        matrix.row_chunks(CHUNK).into_par_iter().try_for_each_init(
             || vec![0_u32; numbering.pattern.rows()],
-            |at, chunk| self.add_rows(numbering, chunk, at),
-        );
-        matrix
+            |at, chunk| match progress.is_cancelled() {
+                true => Err(SolverError::Stopped),
+                false => {
+                    self.add_rows(numbering, chunk, at);
+                    Ok(())
+                }
+            },
+        )?;
+        Ok(matrix)
     }
 
     /// Row by row: no two threads write to the same block, and cells are added in their order. `at` is scratch: where

@@ -164,7 +164,7 @@ impl Deformed<'_> {
     /// The derivatives of the internal forces by the positions, in kPa mm.
     pub fn tangent(&self, progress: &dyn Progress) -> Result<HalfMatrix<f64, 3>, SolverError> {
         let numbering = self.tissue.numbering;
-        let mut matrix = self.simplices.tangent(numbering);
+        let mut matrix = self.simplices.tangent(numbering, progress)?;
         self.bricks.add_tangent(&mut matrix, numbering, progress)?;
         self.sheet.add_tangent(&mut matrix);
         Ok(matrix)

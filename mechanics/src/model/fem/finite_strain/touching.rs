@@ -57,6 +57,8 @@ pub(super) struct Change {
 pub(super) struct Ahead<'a> {
     /// Displacements after the step without a change of contact, by node.
     pub displacement: &'a [Vector],
+    /// The share of the movement of bones after it.
+    pub share: f64,
     /// The norm of the forces in mN that the step is to balance, and the part of it that may be left.
     pub unbalanced: f64,
     pub relative: f64,
@@ -83,32 +85,36 @@ impl<'a> Touching<'a> {
         }
     }
 
-    /// Looks for what faces what after a displacement; once the movement is made, only so often.
-    pub fn look(&mut self, displacement: &[Vector], is_made: bool) {
-        self.late_rounds += usize::from(is_made);
+    /// Looks for what faces what after a displacement and a share of the movement of bones; once that is made, only so often.
+    pub fn look(&mut self, displacement: &[Vector], share: f64) {
+        self.late_rounds += usize::from(share >= 1.0);
         self.new = 0;
         if self.late_rounds > MOST_ROUNDS {
             return;
         }
         let rows = self.kept_rows.rows.iter().zip(&self.multipliers);
         let before: BTreeMap<u32, f64> = rows.map(|(row, m)| (row.node, *m)).collect();
-        let mut found = self.surfaces.rows(displacement);
+        let mut found = self.surfaces.rows(displacement, share);
         found.retain(|row| !self.unknowns.equation(row).is_empty());
-        self.new = self.kept_rows.take(found, displacement).new;
+        self.new = self.kept_rows.take(found, displacement, share).new;
         let rows = self.kept_rows.rows.iter();
         self.multipliers =
             rows.map(|row| before.get(&row.node).copied().unwrap_or_default()).collect();
     }
 
-    /// Whether nothing of contact is left to do after a displacement.
-    pub fn rests(&self, displacement: &[Vector]) -> bool {
-        let is_met = || self.deepest(displacement) <= CLOSED_MM;
+    /// Whether nothing of contact is left to do after a displacement and a share of the movement of bones.
+    pub fn rests(&self, displacement: &[Vector], share: f64) -> bool {
+        let is_met = || self.deepest(displacement, share) <= CLOSED_MM;
         self.new == 0 && self.repeats && is_met()
     }
 
     /// What presses on each node, in mN.
     pub fn forces(&self, nodes: usize) -> Vec<Vector> {
         self.kept_rows.forces(self.pressing(), nodes)
+    }
+
+    pub fn presses(&self) -> bool {
+        self.pressing().next().is_some()
     }
 
     /// The rows that press, with their forces in mN.
@@ -129,8 +135,10 @@ impl<'a> Touching<'a> {
         ahead: &Ahead,
     ) -> Result<Option<Change>, SolverError> {
         let rows = &self.kept_rows.rows;
-        let gaps: Vec<f64> = rows.iter().map(|row| row.gap_after(ahead.displacement)).collect();
-        let movement = ahead.displacement.iter().map(Vector::norm).fold(0.0, f64::max);
+        let gaps: Vec<f64> =
+            rows.iter().map(|row| row.gap_after(ahead.displacement, ahead.share)).collect();
+        let of_bones = ahead.share * self.surfaces.movement_of_bones();
+        let movement = ahead.displacement.iter().map(Vector::norm).fold(of_bones, f64::max);
         let mut set = ActiveSet::of_gaps(&gaps, movement);
         for (presses, row) in set.presses.iter_mut().zip(rows) {
             *presses |= self.kept_rows.pressing.contains(&row.node);
@@ -165,9 +173,9 @@ impl<'a> Touching<'a> {
         self.multipliers = multipliers;
     }
 
-    /// How deep points lie behind what they face after a displacement, in mm.
-    pub fn deepest(&self, displacement: &[Vector]) -> f64 {
-        let gaps = self.kept_rows.rows.iter().map(|row| row.gap_after(displacement));
+    /// How deep points lie behind what they face after a displacement and a share of the movement of bones, in mm.
+    pub fn deepest(&self, displacement: &[Vector], share: f64) -> f64 {
+        let gaps = self.kept_rows.rows.iter().map(|row| row.gap_after(displacement, share));
         gaps.fold(0.0, |most, gap| most.max(-gap))
     }
 
@@ -185,13 +193,13 @@ impl<'a> Touching<'a> {
         let found = self.kept_rows.contact(self.pressing(), displacement);
         // Where points were not looked for any more, what a last look finds is what they still move by.
         self.late_rounds = 0;
-        self.look(displacement, false);
-        let last_moved_mm = self.deepest(displacement);
+        self.look(displacement, 1.0);
+        let last_moved_mm = self.deepest(displacement, 1.0);
         if last_moved_mm > UNSETTLED_MM {
             return Err(self.unsettled(last_moved_mm));
         }
         let Touching { effort, kept_rows, .. } = self;
-        let gaps = kept_rows.gaps(displacement);
+        let gaps = kept_rows.gaps(displacement, 1.0);
         let contact = Contact { gaps, effort, last_moved_mm, relative_residual, ..found };
         Ok((!contact.pressed.is_empty()).then_some(contact))
     }

@@ -130,7 +130,7 @@ impl Search<'_> {
         let relative_residual =
             if is_first { ON_THE_WAY } else { (0.1 * at.residual).clamp(INNER[0], INNER[1]) };
         let enough = Enough { relative_residual, most_iterations: MOST_INNER };
-        let multigrid = Multigrid::new(&system);
+        let multigrid = Multigrid::new(&system, self.progress)?;
         let inner = Inner(self.progress);
         let found = match direction(&system, &multigrid, &right_hand_side, enough, &inner) {
             Ok(found) => found,

@@ -1,0 +1,141 @@
+//! Surfaces of bone that tissue may not pass: rigid triangles that go where a segment takes them, or stay.
+//!
+//! The gap of a place is its distance to the closest triangle that it opposes, below 0 behind it, along the normal of that triangle
+//! or, at an edge between triangles, along the line to the edge. A bone goes on a straight way to where its segment takes it, as
+//! held nodes do: x + s ((R - I) x + t), s the share of the movement.
+
+use std::sync::Arc;
+
+use nalgebra::Matrix3;
+
+use crate::mesh::closest_point::Feature;
+use crate::mesh::{ClosestPoint, SurfaceSearch, TriangleSurface, Vector};
+use crate::plan::RigidMovement;
+
+/// Nearer to an edge than this, in mm, its normal is the mean of those of its triangles.
+const AT_EDGE_MM: f64 = 1e-3;
+
+/// A closest triangle that is nearer than another by less than this part of the distance is as near.
+const AS_NEAR: f64 = 1e-9;
+
+/// A bone of a case and the movement of its segment.
+#[derive(Clone, Debug)]
+pub struct BoneSurface {
+    pub name: String,
+    /// Whether a segment has its name and carries it.
+    pub is_carried: bool,
+    pub surface: Arc<TriangleSurface>,
+    /// Of its segment; none where it stays.
+    pub movement: RigidMovement,
+}
+
+/// A bone prepared to be searched.
+pub(super) struct RigidBone {
+    surface: Arc<TriangleSurface>,
+    movement: RigidMovement,
+    search: SurfaceSearch,
+    /// Unit normals of triangles at rest.
+    flats: Vec<Vector>,
+}
+
+/// A bone after a share of its movement: x -> A x + b.
+pub(super) struct MovedBone<'a> {
+    bone: &'a RigidBone,
+    forward: Matrix3<f64>,
+    back: Matrix3<f64>,
+    shift: Vector,
+}
+
+/// The place of a bone that a point faces.
+pub(super) struct FacedBone {
+    pub triangle: usize,
+    /// At rest.
+    pub place: Vector,
+    /// Out of the bone, as moved.
+    pub normal: Vector,
+    /// In mm, below 0 behind the bone.
+    pub gap: f64,
+    /// Whether no other triangle of the bone is nearer.
+    pub is_closest: bool,
+}
+
+impl RigidBone {
+    /// None where no triangle has an area.
+    pub fn new(bone: &BoneSurface) -> Option<Self> {
+        let surface = bone.surface.clone();
+        let search = SurfaceSearch::new(&surface).ok()?;
+        let unit = |triangle| surface.area_vector(triangle).try_normalize(f64::MIN_POSITIVE);
+        let flats = (0..surface.triangles.len()).map(|t| unit(t).unwrap_or_default()).collect();
+        Some(RigidBone { movement: bone.movement, search, flats, surface })
+    }
+
+    /// The largest movement of its points, in mm.
+    pub fn largest_movement(&self) -> f64 {
+        let moved = self.surface.points.iter().map(|x| self.movement.displacement(x).norm());
+        moved.fold(0.0, f64::max)
+    }
+
+    /// Where a place goes in the whole movement.
+    pub fn displacement(&self, place: &Vector) -> Vector {
+        self.movement.displacement(place)
+    }
+
+    pub fn after(&self, share: f64) -> MovedBone<'_> {
+        let rotation = self.movement.rotation();
+        let forward = Matrix3::identity() * (1.0 - share) + rotation * share;
+        // Half a turn has none halfway.
+        let back = forward.try_inverse().unwrap_or_else(|| rotation.transpose());
+        MovedBone { bone: self, forward, back, shift: self.movement.translation() * share }
+    }
+
+    /// Whether a point with a normal of its own lies before a triangle, and that before it, at rest.
+    pub fn is_in_front(&self, triangle: usize, at: &Vector, own: &Vector) -> bool {
+        let corners = self.surface.corners(triangle);
+        self.flats[triangle].dot(&(at - corners[0])) > 0.0
+            && corners.iter().any(|corner| own.dot(&(corner - at)) > 0.0)
+    }
+}
+
+impl MovedBone<'_> {
+    /// The nearest place, no farther than `reach`, whose normal `opposes`.
+    pub fn faced(
+        &self,
+        at: &Vector,
+        reach: f64,
+        opposes: impl Fn(&Vector) -> bool,
+    ) -> Option<FacedBone> {
+        let search = &self.bone.search;
+        let query = self.back * (at - self.shift);
+        let counts = |triangle: usize| opposes(&self.moved_normal(&self.bone.flats[triangle]));
+        let closest = search.nearer_where(&query, reach, counts)?;
+        let (normal, gap) = self.normal_and_gap(at, &query, &closest);
+        let nearer = search.nearer_than(&query, closest.distance * (1.0 - AS_NEAR));
+        opposes(&normal).then_some(FacedBone {
+            triangle: closest.triangle,
+            place: closest.point,
+            normal,
+            gap,
+            is_closest: nearer.is_none(),
+        })
+    }
+
+    fn normal_and_gap(&self, at: &Vector, query: &Vector, closest: &ClosestPoint) -> (Vector, f64) {
+        let search = &self.bone.search;
+        let apart = at - (self.forward * closest.point + self.shift);
+        let flat = self.moved_normal(&self.bone.flats[closest.triangle]);
+        if closest.feature == Feature::Face {
+            return (flat, flat.dot(&apart));
+        }
+        let mean = self.moved_normal(&search.pseudo_normal(closest));
+        let is_behind = search.signed_distance(query, closest) < 0.0;
+        match apart.norm() {
+            distance if distance < AT_EDGE_MM => (mean, mean.dot(&apart)),
+            distance if is_behind => (apart / -distance, -distance),
+            distance => (apart / distance, distance),
+        }
+    }
+
+    fn moved_normal(&self, normal: &Vector) -> Vector {
+        (self.back.transpose() * normal).try_normalize(f64::MIN_POSITIVE).unwrap_or_default()
+    }
+}
