@@ -60,7 +60,7 @@ fn what_linearity_leaves_out_of_the_two_faces_is_what_newton_changes() -> Result
         for (moved_mm, [least, most]) in
             [(0.5, [0.8, 1.25]), (5.4, [0.8, 1.25]), (10.8, [0.8, 1.25]), (25.0, [0.7, 2.0])]
         {
-            let turn = across * (0.5 * moved_mm).to_radians();
+            let turn = across * (0.5_f64 * moved_mm).to_radians();
             let down = Vector::z() * -moved_mm;
             let plan = plan_of(&case, &[RigidMovement::about_pivot(turn, pivot, down)]);
             let scene = Scene::new(&case, &plan, &Settings::default()).unwrap();

@@ -136,7 +136,8 @@ impl Estimate<'_> {
         let rows = contact.pressed.iter().map(|pressed| &pressed.row);
         let holds = with_pressing(self.system.holds, rows);
         let (residual, left) = self.left_over(solved, &holds)?;
-        Ok(left.by(pressing.correction(&residual, left.tolerance, progress)?))
+        let found = pressing.correction(&residual, left.tolerance, progress)?;
+        Ok(left.by(found))
     }
 
     /// What functions on the edges leave over of the equations of the nodes, with what holds edges.
