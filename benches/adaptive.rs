@@ -1,7 +1,7 @@
 //! Adaptive against uniform refinement, as the table of docs/estimates.md: `cargo bench --bench adaptive [-- SCENE …]`.
 //!
-//! For each scene and mesh: cells, unknowns, the true error of the skin in the mean and at the 95th percentile, the estimate
-//! over it, and processor seconds. Uniform meshes have every edge halved; adaptive ones are those of `predict_adaptively` at
+//! For each scene and mesh: cells, unknowns, the true error of the skin that moves (`moving_points`) in the mean and at the 95th
+//! percentile, the estimate over it, and processor seconds. Uniform meshes have every edge halved; adaptive ones are those of `predict_adaptively` at
 //! bounds on their cells that double. The truth is quadratic tetrahedra on the finest adaptive mesh; its own error is how far
 //! the same on the mesh before is from it. The slopes are those of error against unknowns over all meshes of a kind, and
 //! *fewer* says how many times fewer unknowns adaptive meshes need for the error of the finest uniform one.
@@ -9,21 +9,17 @@
 mod measure;
 
 use std::collections::BTreeMap;
-use std::path::PathBuf;
 use std::sync::Arc;
 
+use measure::face::{self, Face};
 use measure::process;
 use measure::split::tetrahedra;
-use mechanics::boundary::NodeSelection;
-use mechanics::format::{Mesh, ReadLimits, read};
-use mechanics::material::LinearElastic;
+use mechanics::mesh::Vector;
 use mechanics::mesh::quality::DihedralAngles;
 use mechanics::mesh::refinement::refine;
-use mechanics::mesh::{Vector, VolumeMesh};
 use mechanics::plan::{PlannedSegment, RigidMovement};
 use mechanics::prediction::{
-    Adapted, Case, CaseSegment, ElementChoice, Plan, Prediction, Scene, Settings, Wanted, predict,
-    predict_adaptively,
+    Adapted, Case, ElementChoice, Plan, Scene, Settings, Wanted, predict, predict_adaptively,
 };
 use mechanics::progress::Unobserved;
 use mechanics::study::scenes::{half_head, slab};
@@ -65,8 +61,9 @@ fn main() {
 
 fn measure_task(task: &Task) {
     let scene = scene_of(&task.case, task, ElementChoice::Auto);
+    let skin = Moving::of(&scene);
     let angle = DihedralAngles::of(&scene.mesh).map_or(0.0, |angles| angles.smallest.to_degrees());
-    let mut rows = uniform_rows(task);
+    let mut rows = uniform_rows(task, &skin);
     let mut bound = 2 * scene.mesh.cells.len();
     let mut last = None;
     while bound <= task.most {
@@ -77,9 +74,9 @@ fn measure_task(task: &Task) {
         last = Some(adapted);
         bound *= 2;
     }
-    let (truth, own) = truth_of(task, &scene);
+    let (truth, own) = truth_of(task, &scene, &skin);
     for row in &rows {
-        let error = Measure::of(&scene, &row.displacement, &truth);
+        let error = skin.apart(&row.displacement, &truth);
         println!(
             "| {} | {} | {} | {} | {:.4} / {:.4} | {:.2} | {:.1} |",
             task.name,
@@ -92,16 +89,13 @@ fn measure_task(task: &Task) {
             row.cpu_s,
         );
     }
-    let slope = |kind: &str| slope(&points(&rows, kind, &scene, &truth));
+    let slope = |kind: &str| slope(&points(&rows, kind, &skin, &truth));
     println!(
         "{}: slopes uniform {:.2}, adaptive {:.2}; fewer {:.1}; own error of the truth {:.4} mean, {:.4} p95; smallest angle {:.1} -> {:.1} degrees",
         task.name,
         slope("uniform"),
         slope("adaptive"),
-        fewer(
-            &points(&rows, "uniform", &scene, &truth),
-            &points(&rows, "adaptive", &scene, &truth)
-        ),
+        fewer(&points(&rows, "uniform", &skin, &truth), &points(&rows, "adaptive", &skin, &truth)),
         own.mean,
         own.p95,
         angle,
@@ -111,7 +105,7 @@ fn measure_task(task: &Task) {
     );
 }
 
-fn uniform_rows(task: &Task) -> Vec<Row> {
+fn uniform_rows(task: &Task, skin: &Moving) -> Vec<Row> {
     let mut case = task.case.clone();
     let mut rows = Vec::new();
     for level in 0..=task.uniform {
@@ -121,11 +115,12 @@ fn uniform_rows(task: &Task) -> Vec<Row> {
         let begun = process::cpu_seconds();
         let scene = scene_of(&case, task, ElementChoice::Auto);
         let prediction = predict(&scene, &Unobserved).expect("it is solved");
+        let missing = &prediction.numerical_error.as_ref().expect("it is estimated").missing;
         rows.push(Row {
             kind: "uniform",
             cells: scene.mesh.cells.len(),
             unknowns: prediction.solver.unknowns,
-            estimated_mm: estimated(&scene_of(&task.case, task, ElementChoice::Auto), &prediction),
+            estimated_mm: Measure::of(skin.nodes.iter().map(|&node| missing[node].norm())).mean,
             displacement: prediction.displacement,
             cpu_s: process::cpu_seconds() - begun,
         });
@@ -155,7 +150,7 @@ fn adapted(scene: &Scene, cells: usize) -> Adapted {
 }
 
 /// Quadratic tetrahedra on two adaptive meshes; the finer one, and how far the coarser is from it.
-fn truth_of(task: &Task, scene: &Scene) -> (Vec<Vector>, Measure) {
+fn truth_of(task: &Task, scene: &Scene, skin: &Moving) -> (Vec<Vector>, Measure) {
     let quadratic = scene_of(&task.case, task, ElementChoice::Quadratic);
     let on = |cells: usize| {
         let finest = adapted(scene, cells).finest.expect("it is refined");
@@ -163,7 +158,7 @@ fn truth_of(task: &Task, scene: &Scene) -> (Vec<Vector>, Measure) {
         finer.solve(&Unobserved).expect("it is solved").displacement
     };
     let (coarse, fine) = (on(task.truth / 4), on(task.truth));
-    let own = Measure::of(scene, &coarse, &fine);
+    let own = skin.apart(&coarse, &fine);
     (fine, own)
 }
 
@@ -172,22 +167,33 @@ fn scene_of(case: &Case, task: &Task, element: ElementChoice) -> Scene {
     Scene::new(case, &task.plan, &settings).expect("the scene is held")
 }
 
-fn estimated(scene: &Scene, prediction: &Prediction) -> f64 {
-    let missing = &prediction.numerical_error.as_ref().expect("it is estimated").missing;
-    let nodes = scene.skin.nodes();
-    nodes.iter().map(|&node| missing[node as usize].norm()).sum::<f64>() / nodes.len() as f64
+/// The skin nodes of a scene that move on its own mesh, which are those of a `Level`.
+struct Moving {
+    nodes: Vec<usize>,
 }
 
-/// Of distances at the skin nodes of a scene, in mm.
+impl Moving {
+    fn of(scene: &Scene) -> Self {
+        let moved = predict(scene, &Unobserved).expect("it is solved").displacement;
+        let nodes = scene.skin.nodes();
+        let points = scene.skin.moving_points(&moved).into_iter();
+        Moving { nodes: points.map(|point| nodes[point as usize] as usize).collect() }
+    }
+
+    fn apart(&self, found: &[Vector], truth: &[Vector]) -> Measure {
+        Measure::of(self.nodes.iter().map(|&node| (found[node] - truth[node]).norm()))
+    }
+}
+
+/// Of lengths in mm.
 struct Measure {
     mean: f64,
     p95: f64,
 }
 
 impl Measure {
-    fn of(scene: &Scene, found: &[Vector], truth: &[Vector]) -> Self {
-        let nodes = scene.skin.nodes().iter().map(|&node| node as usize);
-        let mut lengths: Vec<f64> = nodes.map(|n| (found[n] - truth[n]).norm()).collect();
+    fn of(lengths: impl Iterator<Item = f64>) -> Self {
+        let mut lengths: Vec<f64> = lengths.collect();
         lengths.sort_by(f64::total_cmp);
         let mean = lengths.iter().sum::<f64>() / lengths.len() as f64;
         Measure { mean, p95: lengths[(lengths.len() * 95).div_ceil(100) - 1] }
@@ -195,10 +201,10 @@ impl Measure {
 }
 
 /// Logarithms of unknowns and mean error of the rows of a kind.
-fn points(rows: &[Row], kind: &str, scene: &Scene, truth: &[Vector]) -> Vec<[f64; 2]> {
+fn points(rows: &[Row], kind: &str, skin: &Moving, truth: &[Vector]) -> Vec<[f64; 2]> {
     let own = rows.iter().filter(|row| row.kind == kind);
     own.map(|row| {
-        let error = Measure::of(scene, &row.displacement, truth).mean;
+        let error = skin.apart(&row.displacement, truth).mean;
         [(row.unknowns as f64).ln(), error.ln()]
     })
     .collect()
@@ -245,42 +251,14 @@ fn half_head_task() -> Task {
 
 /// The faces in tetrahedra: the jaw 5 mm forward.
 fn faces() -> Vec<Task> {
-    let face = |(name, file, jaw, skull, forward): (&'static str, &str, &str, &str, Vector)| {
-        let mesh = tetrahedra(&load(file)?);
-        let set = |name: &str| NodeSelection::NodeSet(name.to_owned());
-        let material = LinearElastic::new(15.0, 0.49, 1.0).expect("within the ranges");
-        let case = Case {
-            volume: Arc::new(mesh),
-            segments: vec![CaseSegment { name: "jaw".to_owned(), nodes: set(jaw) }],
-            fixed: vec![set(skull)],
-            materials: BTreeMap::from([("*".to_owned(), material)]),
-            ..Case::default()
-        };
-        let movement = RigidMovement::about_pivot(Vector::zeros(), Vector::zeros(), forward * 5.0);
+    let face = |face: Face| {
+        let mesh = tetrahedra(&face.load()?);
+        let by = face.forward * 5.0;
+        let movement = RigidMovement::about_pivot(Vector::zeros(), Vector::zeros(), by);
         let segments = vec![PlannedSegment { name: "jaw".to_owned(), movement }];
         let plan = Plan { segments, ..Plan::default() };
-        Some(Task { name, case, plan, uniform: 1, most: 500_000, truth: 250_000 })
+        let (name, case) = (face.name, face.case(mesh, 0.49));
+        Some(Task { name, case, plan, uniform: 1, most: 700_000, truth: 330_000 })
     };
-    [
-        ("subject", "face/subject_face.vtu", "jaw_attached", "skull_fixed_orig", -Vector::x()),
-        ("template", "face/template_face.vtu", "mandible_fixed", "skull_nose_fixed", Vector::y()),
-    ]
-    .into_iter()
-    .filter_map(face)
-    .collect()
-}
-
-fn load(path: &str) -> Option<VolumeMesh> {
-    let root = std::env::var_os("FACIES_SHARED").map_or_else(
-        || PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../shared"),
-        PathBuf::from,
-    );
-    let Ok(bytes) = std::fs::read(root.join("data").join(path)) else {
-        println!("skipped: {path} is not here");
-        return None;
-    };
-    match read(&bytes, &ReadLimits::default()).expect("the faces are valid").mesh {
-        Mesh::Volume(mesh) => Some(mesh),
-        _ => panic!("a face is a volume mesh"),
-    }
+    face::faces().into_iter().filter_map(face).collect()
 }

@@ -10,9 +10,10 @@ mod measure;
 
 use std::sync::Arc;
 
+use measure::split::tetrahedra;
 use measure::{face, process, shell};
 use mechanics::mesh::refinement::refine;
-use mechanics::mesh::{CellShape, Cells, Vector, VolumeMesh};
+use mechanics::mesh::{CellShape, Vector};
 use mechanics::model::fem::discretisation_error::Estimate;
 use mechanics::plan::{PlannedSegment, RigidMovement};
 use mechanics::prediction::{Case, ElementChoice, Method, Plan, Scene, Settings, predict};
@@ -301,26 +302,4 @@ fn faces() -> Vec<Row> {
         }
     }
     rows
-}
-
-/// Every cell cut into the tetrahedra between its lowest node and the faces without it, whose quadrilaterals are cut from
-/// their lowest node: cells that share a face cut it alike.
-fn tetrahedra(mesh: &VolumeMesh) -> VolumeMesh {
-    let mut cells = Cells::default();
-    for (shape, nodes) in mesh.cells.iter() {
-        let lowest = *nodes.iter().min().expect("a cell has nodes");
-        for face in shape.faces() {
-            let mut face: Vec<u32> = face.iter().map(|&corner| nodes[corner]).collect();
-            if face.contains(&lowest) {
-                continue;
-            }
-            let first = (0..face.len()).min_by_key(|&k| face[k]).unwrap_or_default();
-            face.rotate_left(first);
-            for pair in face[1..].windows(2) {
-                cells.push(CellShape::Tet4, &[face[0], pair[1], pair[0], lowest]);
-            }
-        }
-    }
-    let VolumeMesh { nodes, node_sets, .. } = mesh.clone();
-    VolumeMesh { nodes, cells, node_sets, ..VolumeMesh::default() }
 }

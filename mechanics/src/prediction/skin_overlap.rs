@@ -38,6 +38,17 @@ pub(super) fn deepest_overlap(surface: &TriangleSurface) -> Option<Deepest> {
     deepest(surface, &self_crossings(surface, passes).pairs)
 }
 
+/// How much deeper moved skin passes through itself than at rest, and where; none where no depth is known.
+pub(super) fn deeper_than_at_rest(skin: &Skin, moved: &TriangleSurface) -> Option<Deepest> {
+    let depth_of = |surface: &TriangleSurface| {
+        let passes = |pair: &TrianglePair| pass(surface, pair, TOUCHING_MM);
+        deepest(surface, &self_crossings(surface, passes).pairs)
+    };
+    let Deepest { depth, at } = depth_of(moved)?;
+    let at_rest = depth_of(&skin.surface).map_or(0.0, |own| own.depth);
+    Some(Deepest { depth: depth - at_rest, at })
+}
+
 /// A warning that counts the triangles of a moved skin that cross and did not cross at rest. The points of the moved
 /// skin have to be finite.
 pub fn skin_overlap(skin: &Skin, moved: &TriangleSurface) -> Option<Warning> {

@@ -1,6 +1,7 @@
 //! Numerics on what is not part of the project: real meshes, surfaces and images, and files of other programs.
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on panics")]
 
+mod estimates;
 mod files;
 mod interop;
 mod muscle_mapping;
@@ -18,6 +19,7 @@ use support::{samples, scenes};
 
 fn main() -> ExitCode {
     support::external::run([
+        estimates::trials(),
         files::trials(),
         interop::trials(),
         muscle_mapping::trials(),

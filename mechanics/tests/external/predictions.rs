@@ -62,7 +62,7 @@ fn all_cells_of_the_subject_face_are_valid_and_four_must_be_divided_to_know() ->
 }
 
 /// The subject with its jaw and its skull.
-fn subject() -> Result<Case, Missing> {
+pub fn subject() -> Result<Case, Missing> {
     let segments = vec![CaseSegment { name: "jaw".to_owned(), nodes: set("jaw_attached") }];
     Ok(Case {
         skin: Some(set("outer_skin")),
@@ -107,7 +107,7 @@ fn a_jaw_raised_into_the_lips_of_a_real_face_is_told() -> Result<(), Missing> {
 }
 
 /// The template with its jaw and its skull.
-fn template() -> Result<Case, Missing> {
+pub fn template() -> Result<Case, Missing> {
     let segments = vec![CaseSegment { name: "jaw".to_owned(), nodes: set("mandible_fixed") }];
     Ok(Case {
         skin: Some(set("outer_skin")),
@@ -285,7 +285,7 @@ fn the_sum_of_columns_is_the_direct_solution_on_the_face_like_shell() -> Result<
 }
 
 /// A shell like a face with an upper and a lower jaw.
-fn shell(file: &str) -> Result<Case, Missing> {
+pub fn shell(file: &str) -> Result<Case, Missing> {
     let label = |value| NodeSelection::Label { array: "tag".to_owned(), value };
     let bone = |name: &str, value| CaseSegment { name: name.to_owned(), nodes: label(value) };
     Ok(Case {
@@ -297,7 +297,7 @@ fn shell(file: &str) -> Result<Case, Missing> {
 }
 
 /// u2 of the plan of a scene at the nodes of its skin, to a relative residual.
-fn second_order(scene: &Scene, relative_residual: f64) -> Vec<Vector> {
+pub fn second_order(scene: &Scene, relative_residual: f64) -> Vec<Vector> {
     let system = scene.assemble(&Unobserved).unwrap().unwrap();
     let solved = system.solve(&[scene.load_case()], &Unobserved).unwrap().remove(0);
     let cells = system.pressures.as_ref().map(|pressures| &pressures.cells);
@@ -314,7 +314,7 @@ fn second_order(scene: &Scene, relative_residual: f64) -> Vec<Vector> {
     scene.skin.nodes().iter().map(|&node| solved.displacement[node as usize]).collect()
 }
 
-fn nine_millimetres_and_five_degrees() -> [RigidMovement; 2] {
+pub fn nine_millimetres_and_five_degrees() -> [RigidMovement; 2] {
     let pivot = Vector::new(0.0, 50.0, -30.0);
     let turn = Vector::new(5_f64.to_radians(), 0.0, 0.0);
     [

@@ -7,7 +7,7 @@ use mechanics::format::{
     ArrayValues, ColourScale, NamedValues, SurfaceOutput, WriteError, csv, glb, ply, stl,
 };
 use mechanics::mesh::{Frame, TriangleSurface, Vector};
-use mechanics::prediction::{Prediction, Skin};
+use mechanics::prediction::{NumericalError, Prediction, Skin};
 
 /// The gap in mm of a node that faces nothing near.
 const NOTHING_FACED: f64 = 1000.0;
@@ -46,7 +46,8 @@ pub struct PredictedSkin {
     pub signed_distance: Option<Vec<f64>>,
     /// What linear elasticity leaves out, in mm, where it is known.
     pub nonlinearity: Option<Vec<f64>>,
-    /// What the mesh leaves out, in mm, where it is estimated.
+    /// What the mesh leaves out, in mm, where it is estimated: vectors and their lengths.
+    pub missing: Option<Vec<Vector>>,
     pub numerical_error: Option<Vec<f64>>,
     /// Where anything presses.
     pub contact: Option<ContactArrays>,
@@ -60,10 +61,15 @@ impl PredictedSkin {
     pub fn new(skin: &Skin, prediction: &Prediction) -> Self {
         let nodes = skin.nodes().iter();
         let displacement = nodes.map(|&node| prediction.displacement[node as usize]).collect();
-        let numerical_error = prediction.numerical_error.as_ref().ok();
-        let numerical_error = numerical_error.map(|error| skin.lengths(&error.missing));
+        let error = prediction.numerical_error.as_ref().ok();
+        let of_skin = |error: &NumericalError| -> Vec<Vector> {
+            skin.nodes().iter().map(|&node| error.missing[node as usize]).collect()
+        };
+        let missing = error.map(of_skin);
+        let numerical_error = error.map(|error| skin.lengths(&error.missing));
         let contact = ContactArrays::new(prediction, skin.nodes().iter().copied());
-        PredictedSkin { numerical_error, contact, ..Self::of_displacement(skin, displacement) }
+        let moved = Self::of_displacement(skin, displacement);
+        PredictedSkin { missing, numerical_error, contact, ..moved }
     }
 
     /// The skin with one displacement in mm for each of its points.
@@ -78,6 +84,7 @@ impl PredictedSkin {
             displacement,
             signed_distance: None,
             nonlinearity: None,
+            missing: None,
             numerical_error: None,
             contact: None,
             sets: skin.regions.iter().map(|(name, points)| set(name, points, skin)).collect(),
@@ -108,6 +115,10 @@ impl PredictedSkin {
         if let Some(error) = &self.numerical_error {
             let values = ArrayValues::Reals(error);
             output.point_arrays.push(NamedValues { name: "numerical_error_mm", values });
+        }
+        if let Some(missing) = self.missing.as_ref().filter(|_| name == OutputName::SkinVtp) {
+            let values = ArrayValues::Vectors(missing);
+            output.point_arrays.push(NamedValues { name: "missing_mm", values });
         }
         if let Some(distance) = &self.signed_distance {
             let values = ArrayValues::Reals(distance);

@@ -7,7 +7,7 @@ use mechanics::format::{
     ArrayValues, NamedValues, SurfaceOutput, VolumeInLps, VolumeOutput, WriteError,
 };
 use mechanics::mesh::{Frame, TriangleSurface, Vector};
-use mechanics::prediction::{Case, ImagedTissue, Prediction, Scene};
+use mechanics::prediction::{Case, ImagedTissue, NumericalError, Prediction, Scene};
 
 /// `segment` of a point of a bone that moves with no segment.
 const NO_SEGMENT: i64 = -1;
@@ -61,9 +61,15 @@ pub fn encode_volume(
         point_arrays.extend(stress.of_nodes());
     }
     let error = prediction.numerical_error.as_ref().ok();
-    let error = error.map(|error| error.missing.iter().map(Vector::norm).collect::<Vec<f64>>());
-    if let Some(error) = &error {
+    let turned = |error: &NumericalError| -> Vec<Vector> {
+        error.missing.iter().map(|missing| written.turned(missing)).collect()
+    };
+    let missing = error.map(turned);
+    let error =
+        missing.as_ref().map(|missing| missing.iter().map(Vector::norm).collect::<Vec<f64>>());
+    if let (Some(missing), Some(error)) = (&missing, &error) {
         point_arrays.push(named("numerical_error_mm", ArrayValues::Reals(error)));
+        point_arrays.push(named("missing_mm", ArrayValues::Vectors(missing)));
     }
     let contact = ContactArrays::new(prediction, 0..mesh.nodes.len() as u32);
     point_arrays.extend(contact.iter().flat_map(ContactArrays::arrays));

@@ -260,6 +260,7 @@ fn a_prediction_tells_the_error_of_its_mesh_for_skin_parts_landmarks_and_nodes()
         let bytes = fs::read(out.path().join(file)).unwrap();
         let text = String::from_utf8_lossy(&bytes);
         assert!(text.contains("Name=\"numerical_error_mm\""), "{file}");
+        assert!(text.contains("Name=\"missing_mm\""), "{file}");
     }
 }
 
@@ -278,6 +279,27 @@ fn a_corrected_prediction_moves_its_skin_by_what_was_missing() {
     let moved = plain.iter().zip(&corrected).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
     // Rounding of a sum of numbers below 100.
     assert!((moved - error.max).abs() < 1e-12, "{moved} {}", error.max);
+}
+
+#[test]
+fn what_a_correction_adds_stands_beside_the_answer_without_it() {
+    let out = tempfile::tempdir().unwrap();
+    let tissue = |spec: &str| {
+        predict(HELD, SHEAR, spec, out.path()).unwrap();
+        let bytes = fs::read(out.path().join("volume.vtu")).unwrap();
+        match format::read(&bytes, &ReadLimits::default()).unwrap().mesh {
+            Mesh::Volume(mesh) => mesh,
+            _ => panic!("a volume"),
+        }
+    };
+    let plain = tissue(r#"{"method":"fem_linear","outputs":["volume.vtu"]}"#);
+    let corrected = tissue(r#"{"method":"fem_linear","outputs":["volume.vtu"],"corrected":true}"#);
+    let missing = &plain.node_vectors["missing_mm"];
+    assert!(missing.iter().map(Vector::norm).fold(0.0, f64::max) > 1e-3);
+    let pairs = plain.nodes.iter().zip(&corrected.nodes).zip(missing);
+    let off = pairs.map(|((before, after), missing)| (before + missing - after).norm());
+    // Rounding of a sum of numbers below 100.
+    assert!(off.fold(0.0, f64::max) < 1e-12);
 }
 
 #[test]

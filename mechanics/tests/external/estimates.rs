@@ -1,0 +1,80 @@
+//! What linear and second-order answers leave out of real faces and of a shell like one, held against Newton's answer.
+
+use mechanics::mesh::Vector;
+use mechanics::plan::RigidMovement;
+use mechanics::prediction::{Case, Method, Plan, Scene, Settings, predict};
+use mechanics::progress::Unobserved;
+
+use super::predictions::{
+    nine_millimetres_and_five_degrees, second_order, shell, subject, template,
+};
+use crate::support::external::{Missing, trials};
+use crate::support::responses::plan_of;
+
+trials! {
+    second_order_is_four_times_nearer_to_newton_on_the_shell_of_100_000_tetrahedra
+    what_linearity_leaves_out_of_the_two_faces_is_what_newton_changes
+}
+
+fn at_finite_strain(case: &Case, plan: &Plan) -> Vec<Vector> {
+    let settings =
+        Settings { method: Method::FemNonlinear, estimate: false, ..Settings::default() };
+    let scene = Scene::new(case, plan, &settings).unwrap();
+    predict(&scene, &Unobserved).unwrap().displacement
+}
+
+/// Mean and 95th percentile of lengths in mm.
+fn measures(lengths: impl Iterator<Item = f64>) -> [f64; 2] {
+    let mut lengths: Vec<f64> = lengths.collect();
+    lengths.sort_by(f64::total_cmp);
+    let mean = lengths.iter().sum::<f64>() / lengths.len() as f64;
+    [mean, lengths[(lengths.len() * 95).div_ceil(100) - 1]]
+}
+
+fn second_order_is_four_times_nearer_to_newton_on_the_shell_of_100_000_tetrahedra()
+-> Result<(), Missing> {
+    let case = shell("shell/100k.vtu")?;
+    let plan = plan_of(&case, &nine_millimetres_and_five_degrees());
+    let scene = Scene::new(&case, &plan, &Settings::default()).unwrap();
+    let linear = predict(&scene, &Unobserved).unwrap().displacement;
+    let exact = at_finite_strain(&case, &plan);
+    let second = second_order(&scene, 1e-3);
+    let nodes = scene.skin.nodes().iter().map(|&node| node as usize);
+    let first = measures(nodes.clone().map(|node| (linear[node] - exact[node]).norm()));
+    let apart = |(node, u2): (usize, &Vector)| (linear[node] + u2 - exact[node]).norm();
+    let both = measures(nodes.zip(&second).map(apart));
+    println!("off by {first:.4?} mm to first order, {both:.4?} to second");
+    assert!(4.0 * both[0] < first[0] && 3.0 * both[1] < first[1], "{both:?} of {first:?}");
+    Ok(())
+}
+
+/// Both faces in hexahedra and wedges with mean dilatation, the jaw down and turned about an axis across the face.
+fn what_linearity_leaves_out_of_the_two_faces_is_what_newton_changes() -> Result<(), Missing> {
+    for (name, case, jaw, across) in [
+        ("subject", subject()?, "jaw_attached", Vector::y()),
+        ("template", template()?, "mandible_fixed", Vector::x()),
+    ] {
+        let jaw = case.volume.node_set(jaw).unwrap();
+        let pivot = jaw.iter().map(|&node| case.volume.nodes[node as usize]).sum::<Vector>()
+            / jaw.len() as f64;
+        for (moved_mm, [least, most]) in
+            [(0.5, [0.8, 1.25]), (5.4, [0.8, 1.25]), (10.8, [0.8, 1.25]), (25.0, [0.7, 2.0])]
+        {
+            let turn = across * (0.5_f64 * moved_mm).to_radians();
+            let down = Vector::z() * -moved_mm;
+            let plan = plan_of(&case, &[RigidMovement::about_pivot(turn, pivot, down)]);
+            let scene = Scene::new(&case, &plan, &Settings::default()).unwrap();
+            let linear = predict(&scene, &Unobserved).unwrap();
+            let exact = at_finite_strain(&case, &plan);
+            let nodes = scene.skin.nodes().iter().map(|&node| node as usize);
+            let told = linear.nonlinearity.unwrap().left_out;
+            let told = measures(nodes.clone().map(|node| told[node].norm()));
+            let truth =
+                measures(nodes.map(|node| (linear.displacement[node] - exact[node]).norm()));
+            let ratio = [told[0] / truth[0], told[1] / truth[1]];
+            println!("{name} {moved_mm} mm: truth {truth:.4?} mm, told over it {ratio:.2?}");
+            assert!(ratio.iter().all(|own| (least..most).contains(own)), "{name} {moved_mm}");
+        }
+    }
+    Ok(())
+}
