@@ -8,7 +8,7 @@
 use std::collections::BTreeMap;
 
 use super::answer::Refusal;
-use super::error::{Measured, moved};
+use super::error::{Estimated, Measured, moved};
 use super::report::{Errors, Outcome, Row};
 use super::variant::Scan;
 use crate::mesh::{SurfaceSearch, TriangleSurface, Vector, Warning};
@@ -93,6 +93,7 @@ impl<'a> ScannedSkin<'a> {
         let failed = |error: StatisticsError| refused(error.to_string());
         let length: Vec<f64> = found.iter().map(|u| u.norm()).collect();
         Ok(Measured {
+            estimated: Estimated::default(),
             error: errors(&there.pooled(&back)).map_err(failed)?,
             closest_point: errors(&there).map_err(failed)?,
             regions: self.regions([&to_scan, &to_prediction]).map_err(failed)?,
