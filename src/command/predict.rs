@@ -156,7 +156,7 @@ fn print_result(result: &ResultDocument, before: &CheckDocument) {
     if let Some(refinement) = &result.refinement {
         println!("refined      {}", refinement.summary());
     }
-    for (name, reaction) in &result.reaction_mn {
+    for (name, reaction) in &result.reaction_millinewton {
         let [x, y, z] = reaction.0;
         println!("reaction     {name} {x:.1} {y:.1} {z:.1} mN");
     }

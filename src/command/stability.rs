@@ -7,6 +7,7 @@ use serde_json::{Value, json};
 
 use super::documents::write;
 use super::failure::CommandError;
+use crate::jobs::study::words::variant_in_words;
 use mechanics::chart::{Mark, StabilityAxis, StabilityMap};
 use mechanics::study::stability::{Answer, AxisMap, Bounds, Finding, Map, Verdict, axes, map};
 use mechanics::study::{Stopwatch, Variant};
@@ -88,12 +89,13 @@ pub fn picture(found: &Map) -> String {
             .collect(),
     };
     let axes: Vec<StabilityAxis> = found.axes.iter().map(axis).collect();
+    let rows: Vec<String> = found.variants.iter().map(|label| variant_in_words(label)).collect();
     StabilityMap {
         title: "Where methods fail, and whether they say so",
         subtitle: "Each panel turns one thing up from harmless to hopeless, left to right. Right: the skin's \
             error (95 % of its area) is within the stated bound of a closed form, a symmetry or a far better \
-            method.",
-        rows: &found.variants,
+            method. A method without a cell there does not know what is turned up.",
+        rows: &rows,
         axes: &axes,
     }
     .to_svg()

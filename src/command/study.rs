@@ -27,7 +27,7 @@ use crate::schema::{CaseDocument, Limits, MaterialDocument, StudyDocument};
 use mechanics::study::methods;
 
 /// The scenes and levels of a study that names none.
-const USUAL_SCENES: [&str; 3] = ["sphere", "slab", "half_head"];
+const USUAL_SCENES: [&str; 5] = ["sphere", "slab", "slab_far", "half_head", "half_head_far"];
 const USUAL_LEVELS: [u32; 2] = [0, 1];
 /// Of the small one: the movement and the tissue of the slab, docs/verification.md#v29.
 const SMALL_SCENE: &str = "slab";
@@ -47,7 +47,8 @@ pub struct Arguments {
     /// The slab with one plan and one tissue and every method: a minute at most
     #[arg(long, help_heading = WHAT, conflicts_with_all = ["scene", "case", "spec"])]
     small: bool,
-    /// A scene that the program makes itself: sphere, slab, slab_hex or half_head; may be given several times
+    /// A scene that the program makes itself: sphere, slab, slab_hex, half_head, or with large movements slab_far, half_head_far;
+    /// may be given several times
     #[arg(long, help_heading = WHAT, value_name = "NAME")]
     scene: Vec<String>,
     /// A file with a case and a plan, as for `predict`; may be given several times

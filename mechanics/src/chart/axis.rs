@@ -22,20 +22,20 @@ pub struct Tick {
 /// Powers of ten below which 2 and 5 are labelled as well.
 const FEW_DECADES: f64 = 1.7;
 
+/// How far a range goes beyond its values, and its ends at least from each other.
+const AIR: f64 = 1.5;
+const LEAST_RATIO: f64 = 10.0;
+
 impl LogAxis {
-    /// A range that holds all values and all of `least`, with some air, drawn between two places.
-    /// Values that are not positive and finite count as the nearer end of what can be drawn.
-    pub fn covering(values: impl Iterator<Item = f64>, least: [f64; 2], ends: [f64; 2]) -> Self {
+    /// A range that holds all values with some air, at least a power of ten, drawn between two places; without values it is
+    /// around 1. Values that are not positive and finite count as the nearer end of what can be drawn.
+    pub fn covering(values: impl Iterator<Item = f64>, ends: [f64; 2]) -> Self {
         let (low, high) = values
             .map(drawable)
             .fold((f64::INFINITY, 0.0f64), |(low, high), value| (low.min(value), high.max(value)));
-        let air = 1.5;
-        LogAxis {
-            low: (low / air).min(least[0]),
-            high: (high * air).max(least[1]),
-            from: ends[0],
-            to: ends[1],
-        }
+        let (low, high) = if low <= high { (low, high) } else { (1.0, 1.0) };
+        let air = f64::max(AIR, (LEAST_RATIO * low / high).sqrt());
+        LogAxis { low: low / air, high: high * air, from: ends[0], to: ends[1] }
     }
 
     /// Where a value is drawn; values outside the range at the nearer end.
@@ -116,14 +116,16 @@ mod tests {
 
     #[test]
     fn a_short_range_has_more_labels_and_odd_values_have_a_place() {
-        let axis = LogAxis::covering([0.3, 2.0].into_iter(), [0.5, 1.0], [0.0, 100.0]);
+        let axis = LogAxis::covering([0.3, 2.0].into_iter(), [0.0, 100.0]);
         let labelled: Vec<f64> =
             axis.ticks().iter().filter(|tick| tick.labelled).map(|tick| tick.value).collect();
         assert_eq!(labelled, [0.2, 0.5, 1.0, 2.0]);
         for value in [0.0, -1.0, f64::NAN, f64::INFINITY, 1e-300] {
             assert!((0.0..=100.0).contains(&axis.place(value)), "{value}");
         }
-        let empty = LogAxis::covering(std::iter::empty(), [0.5, 1.0], [0.0, 100.0]);
+        let one = LogAxis::covering([0.3].into_iter(), [0.0, 100.0]);
+        assert!((one.high / one.low - 10.0).abs() < 1e-9 && (one.place(0.3) - 50.0).abs() < 1e-9);
+        let empty = LogAxis::covering(std::iter::empty(), [0.0, 100.0]);
         assert!(empty.place(0.7).is_finite() && empty.low > 0.0 && empty.high.is_finite());
     }
 }

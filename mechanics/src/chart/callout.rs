@@ -32,10 +32,6 @@ impl Taken {
         Taken { inside, solid: Vec::new(), lines: Vec::new() }
     }
 
-    pub fn add(&mut self, place: Place) {
-        self.solid.push(place);
-    }
-
     /// A mark around a point.
     pub fn add_mark(&mut self, [x, y]: [f64; 2], radius: f64) {
         let (x, y, side) = (x - radius, y - radius, 2.0 * radius);

@@ -44,14 +44,9 @@ pub struct LadderFailure {
     pub reason: String,
 }
 
-/// Errors in mm that numerical methods are to stay below.
-const GOAL_MM: f64 = 0.1;
-/// Mean errors in mm that published predictions of patients have.
-const PUBLISHED_MM: [f64; 2] = [0.6, 1.2];
-
-const WIDTH: f64 = 1120.0;
+const WIDTH: f64 = 1160.0;
 const LEFT: f64 = 104.0;
-const RIGHT: f64 = 266.0;
+const RIGHT: f64 = 306.0;
 const HEAD: f64 = 92.0;
 const FAILURE_LINE: f64 = 22.0;
 const LEAST_HEIGHT: f64 = 470.0;
@@ -59,8 +54,6 @@ const AXIS_FOOT: f64 = 66.0;
 const NOTE_LINE: f64 = 17.0;
 
 const FINE: &str = "#eceef1";
-const GOAL: &str = "#00704f";
-const PUBLISHED: &str = "#f6ead0";
 const FAILED: &str = "#faeeee";
 
 impl LadderPicture<'_> {
@@ -72,7 +65,6 @@ impl LadderPicture<'_> {
         document.text([28.0, 40.0], room, Style::of(22.0).bold(), self.title);
         document.text([28.0, 64.0], room, Style::of(13.0).faint(), self.subtitle);
         self.write_failures(&mut document, &layout);
-        layout.write_bands(&mut document);
         layout.write_grid(&mut document);
         let front = self.write_front(&mut document, &layout);
         self.write_marks(&mut document, &layout);
@@ -243,11 +235,6 @@ impl LadderPicture<'_> {
         for corner in front.windows(2) {
             taken.add_line(corner[0], corner[1]);
         }
-        for place in
-            layout.band_words().map(|(place, ..)| place).into_iter().chain([layout.corner()])
-        {
-            taken.add(place);
-        }
         let mut wanted: Vec<&LadderMark> = self.marks.iter().filter(|mark| mark.on_front).collect();
         wanted.sort_by(|a, b| a.wall_s.total_cmp(&b.wall_s));
         let on_front: Vec<usize> = wanted.iter().map(|mark| mark.series).collect();
@@ -300,9 +287,8 @@ impl Layout {
         let runs = || picture.marks.iter().flat_map(|mark| mark.runs.iter().copied());
         let own = || picture.marks.iter().map(|mark| [mark.wall_s, mark.error_mm]);
         let all = || runs().chain(own());
-        let time =
-            LogAxis::covering(all().map(|run| run[0]), [0.05, 0.1], [plot.x, plot.x + plot.width]);
-        let error = LogAxis::covering(all().map(|run| run[1]), [0.07, 1.8], [foot, plot.y]);
+        let time = LogAxis::covering(all().map(|run| run[0]), [plot.x, plot.x + plot.width]);
+        let error = LogAxis::covering(all().map(|run| run[1]), [foot, plot.y]);
         let notes: Vec<String> = picture
             .notes
             .iter()
@@ -314,41 +300,6 @@ impl Layout {
 
     fn place(&self, wall_s: f64, error_mm: f64) -> [f64; 2] {
         [self.time.place(wall_s), self.error.place(error_mm)]
-    }
-
-    /// Errors that systems of this kind are published with, and those that numbers are to stay below.
-    fn write_bands(&self, document: &mut Document) {
-        let Place { x, width, .. } = self.plot;
-        let [low, high] = PUBLISHED_MM.map(|error| self.error.place(error));
-        let band = Place { x, y: high, width, height: low - high };
-        document.rectangle(band, PUBLISHED, 0.0);
-        let goal = self.error.place(GOAL_MM);
-        let line = format!("M{x:.1} {goal:.1}L{:.1} {goal:.1}", x + width);
-        document.path(&line, Paint { dashes: "7 4", ..Paint::line(GOAL, 1.6) });
-    }
-
-    /// The words of the bands and where they stand, at the right end of the plot.
-    fn band_words(&self) -> [(Place, &'static str, &'static str); 2] {
-        let right = self.plot.x + self.plot.width - 10.0;
-        let [low, high] = PUBLISHED_MM.map(|error| self.error.place(error));
-        let words = [
-            (
-                (low + high) / 2.0 + 4.0,
-                "#7a5b13",
-                "mean errors published for patients: 0.6 to 1.2 mm",
-            ),
-            (self.error.place(GOAL_MM) - 6.0, GOAL, "goal for numerical error: 0.1 mm"),
-        ];
-        words.map(|(base, ink, words)| {
-            let width = estimated_width(words, Style::of(11.5));
-            (Place { x: right - width, y: base - 12.0, width, height: 16.0 }, ink, words)
-        })
-    }
-
-    /// Where the words in the lower left corner stand.
-    fn corner(&self) -> Place {
-        let (x, y) = (self.plot.x, self.plot.y + self.plot.height - 26.0);
-        Place { x, y, width: 190.0, height: 26.0 }
     }
 
     fn write_grid(&self, document: &mut Document) {
@@ -374,20 +325,14 @@ impl Layout {
         }
         let frame = format!("M{x:.1} {y:.1}H{right:.1}V{foot:.1}H{x:.1}Z");
         document.path(&frame, Paint::line(INK, 1.2));
-        for (place, ink, words) in self.band_words() {
-            let style = Style::of(11.5).end().edged().coloured(ink);
-            document.text([place.x + place.width, place.y + 12.0], place.width + 1.0, style, words);
-        }
         let axis = Style::of(13.0).bold();
         let below = foot + 46.0;
         let words = "wall time of one prediction on one thread";
         document.text([x + width / 2.0, below], width, axis.middle(), words);
         document.text([x, below], 120.0, Style::of(12.5).faint(), "← faster");
         document.text([right, below], 120.0, Style::of(12.5).faint().end(), "slower →");
-        let words = "error of the skin, 95th percentile by area";
+        let words = "error of the skin, 95th percentile by area: lower is better";
         document.text_upwards([24.0, y + height / 2.0], height, axis, words);
-        let corner = [x + 10.0, foot - 10.0];
-        document.text(corner, width, Style::of(12.0).faint(), "↙ faster and more exact");
     }
 }
 

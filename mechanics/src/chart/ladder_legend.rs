@@ -14,7 +14,7 @@ pub struct Legend<'a> {
 }
 
 const LINE: f64 = 23.0;
-const ROOM: f64 = 206.0;
+const ROOM: f64 = 264.0;
 /// For the levels, the front, failures and runs below the methods.
 const KEYS: f64 = 226.0;
 

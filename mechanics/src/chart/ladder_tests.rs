@@ -1,6 +1,7 @@
 //! Tests of the chart of speed and accuracy.
 
 use super::*;
+use crate::chart::drawing::Item;
 
 fn mark(series: usize, level: u32, [wall_s, error_mm]: [f64; 2], on_front: bool) -> LadderMark {
     LadderMark { series, level, wall_s, error_mm, on_front, runs: Vec::new() }
@@ -131,6 +132,63 @@ fn everything_lies_inside_the_picture() {
         if element == "text" {
             let [x, y] = ["x", "y"].map(|name| number(attributes, name).unwrap());
             assert!((0.0..=WIDTH).contains(&x) && (-1.0..=height).contains(&y), "{x} {y}");
+        }
+    }
+}
+
+#[test]
+fn captions_lie_over_no_mark_and_over_no_caption() {
+    // A cloud that is dense where captions used to stand: in the lower left corner and at the right end.
+    let marks: Vec<LadderMark> = (0..40)
+        .map(|n| {
+            let (across, upwards) = (f64::from(n % 8), f64::from(n / 8));
+            let place = [1e-3 * 3.0_f64.powf(across), 2e-3 * 4.0_f64.powf(upwards)];
+            mark(n as usize % 3, (n % 2) as u32, place, n == 0)
+        })
+        .collect();
+    let series = names(&["linear FEM, stabilised", "springs", "mass-tensor, damped Jacobi"]);
+    let picture = LadderPicture {
+        title: "t",
+        subtitle: "s",
+        series: &series,
+        marks: &marks,
+        failures: &[],
+        notes: &[],
+    };
+    let layout = Layout::of(&picture);
+    let plot = layout.plot;
+    let is_inside = |at: &[f64; 2]| {
+        (plot.x..plot.x + plot.width).contains(&at[0])
+            && (plot.y..plot.y + plot.height).contains(&at[1])
+    };
+    let document = picture.to_drawing();
+    let captions: Vec<Place> = document
+        .items
+        .iter()
+        .filter_map(|item| match item {
+            Item::Text { at, style, words, .. } if is_inside(at) => {
+                let (width, height) = (estimated_width(words, *style) * 0.93, style.size * 1.25);
+                Some(Place { x: at[0] - width / 2.0, y: at[1] - 0.76 * height, width, height })
+            }
+            _ => None,
+        })
+        .collect();
+    assert!(!captions.is_empty());
+    for (index, caption) in captions.iter().enumerate() {
+        for mark in &marks {
+            let [x, y] = layout.place(mark.wall_s, mark.error_mm);
+            let beside = x + 6.0 < caption.x
+                || caption.x + caption.width < x - 6.0
+                || y + 6.0 < caption.y
+                || caption.y + caption.height < y - 6.0;
+            assert!(beside, "a caption lies over the mark at {x:.0}, {y:.0}");
+        }
+        for other in &captions[..index] {
+            let beside = other.x + other.width <= caption.x + 1e-9
+                || caption.x + caption.width <= other.x + 1e-9
+                || other.y + other.height <= caption.y + 1e-9
+                || caption.y + caption.height <= other.y + 1e-9;
+            assert!(beside);
         }
     }
 }

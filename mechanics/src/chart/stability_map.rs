@@ -65,40 +65,58 @@ impl StabilityMap<'_> {
         let subtitle = wrapped(self.subtitle, room, Style::of(13.0));
         let head = 62.0 + 18.0 * subtitle.len() as f64;
         let legend = 40.0;
-        let band = PANEL_HEAD + ROW * self.rows.len() as f64 + 16.0;
-        let mut document = Document::new(WIDTH, head + legend + band * bands.len() as f64 + 8.0);
+        let heights = bands.iter().map(|band| PANEL_HEAD + ROW * band.rows.len() as f64 + 16.0);
+        let heights: Vec<f64> = heights.collect();
+        let height = head + legend + heights.iter().sum::<f64>() + 8.0;
+        let mut document = Document::new(WIDTH, height);
         document.text([MARGIN, 42.0], room, Style::of(22.0).bold(), self.title);
         for (line, words) in subtitle.iter().enumerate() {
             let y = 66.0 + 18.0 * line as f64;
             document.text([MARGIN, y], room, Style::of(13.0).faint(), words);
         }
         draw_legend(&mut document, head + 2.0);
-        for (number, axes) in bands.iter().enumerate() {
-            self.draw_band(&mut document, head + legend + band * number as f64, axes);
+        let mut top = head + legend;
+        for (band, height) in bands.iter().zip(heights) {
+            self.draw_band(&mut document, top, band);
+            top += height;
         }
         svg(&document, self.title)
     }
 
-    /// Axes side by side as far as there is room.
-    fn bands(&self) -> Vec<Vec<&StabilityAxis>> {
-        let mut bands: Vec<Vec<&StabilityAxis>> = Vec::new();
+    /// Axes side by side as far as there is room, and as long as most methods of a band have them. A method without any of them
+    /// has no row there, and what no method has is not drawn.
+    fn bands(&self) -> Vec<Band<'_>> {
+        let mut bands: Vec<Band> = Vec::new();
         let mut x = f64::INFINITY;
         for axis in self.axes {
-            if x + axis.width() > WIDTH - MARGIN {
-                bands.push(Vec::new());
+            let rows = axis.rows();
+            if rows.is_empty() {
+                continue;
+            }
+            let is_alike = |band: &Band| {
+                let (fewer, more) =
+                    (rows.len().min(band.rows.len()), rows.len().max(band.rows.len()));
+                2 * fewer > more
+            };
+            if x + axis.width() > WIDTH - MARGIN || !bands.last().is_some_and(is_alike) {
+                bands.push(Band::default());
                 x = MARGIN + NAMES;
             }
             x += axis.width() + GAP;
             if let Some(band) = bands.last_mut() {
-                band.push(axis);
+                band.axes.push(axis);
+                band.rows.extend(rows);
+                band.rows.sort_unstable();
+                band.rows.dedup();
             }
         }
         bands
     }
 
-    fn draw_band(&self, document: &mut Document, top: f64, axes: &[&StabilityAxis]) {
+    fn draw_band(&self, document: &mut Document, top: f64, band: &Band) {
         let first = top + PANEL_HEAD;
-        for (row, name) in self.rows.iter().enumerate() {
+        let names = band.rows.iter().filter_map(|row| self.rows.get(*row));
+        for (row, name) in names.enumerate() {
             let y = first + ROW * row as f64;
             if row % 2 == 0 {
                 let stripe = Place {
@@ -116,19 +134,33 @@ impl StabilityMap<'_> {
             }
         }
         let mut x = MARGIN + NAMES;
-        for axis in axes {
-            axis.draw(document, [x, top]);
+        for axis in &band.axes {
+            axis.draw(document, [x, top], &band.rows);
             x += axis.width() + GAP;
         }
     }
 }
 
+/// Axes side by side.
+#[derive(Default)]
+struct Band<'a> {
+    axes: Vec<&'a StabilityAxis>,
+    /// Methods that have one of them, by their places.
+    rows: Vec<usize>,
+}
+
 impl StabilityAxis {
+    /// The methods that a value means something to, by their places.
+    fn rows(&self) -> Vec<usize> {
+        let marks = self.marks.iter().enumerate();
+        marks.filter(|(_, marks)| marks.iter().any(Option::is_some)).map(|(row, _)| row).collect()
+    }
+
     fn width(&self) -> f64 {
         (CELL[0] * self.values.len() as f64).max(NARROWEST)
     }
 
-    fn draw(&self, document: &mut Document, [x, top]: [f64; 2]) {
+    fn draw(&self, document: &mut Document, [x, top]: [f64; 2], rows: &[usize]) {
         let room = self.width() + GAP - 4.0;
         document.text([x, top + 16.0], room, Style::of(14.0).bold(), &self.title);
         document.text([x, top + 31.0], room, Style::of(11.0).faint(), &self.unit);
@@ -138,7 +170,8 @@ impl StabilityAxis {
             let at = [x + CELL[0] * (place as f64 + 0.42), first - 7.0];
             document.rising_text(at, 52.0, Style::of(11.0), words);
         }
-        for (row, marks) in self.marks.iter().enumerate() {
+        let own = rows.iter().filter_map(|row| self.marks.get(*row)).enumerate();
+        for (row, marks) in own.filter(|(_, marks)| marks.iter().any(Option::is_some)) {
             let y = first + ROW * row as f64;
             for (place, mark) in marks.iter().enumerate() {
                 let at = [x + CELL[0] * place as f64, y];
@@ -167,9 +200,6 @@ impl StabilityAxis {
             let place = marks.iter().position(|mark| mark.is_some_and(wanted));
             place.and_then(|place| Some((self.values.get(place)?, marks[place]?)))
         };
-        if marks.iter().all(Option::is_none) {
-            return "does not apply".to_owned();
-        }
         let not_right = |mark: Mark| !matches!(mark, Mark::Good | Mark::Cautious);
         let not_good = |mark: Mark| mark != Mark::Good;
         let worst = first(&|mark| mark == Mark::Wrong).or_else(|| first(&not_right));
@@ -265,7 +295,37 @@ mod tests {
         assert!(drawn(vec![cautious, good, warned]).contains("wrong, warns from v2"));
         assert!(drawn(vec![good, cautious]).contains(">warns from v1"));
         assert!(drawn(vec![good, good]).contains("right throughout"));
-        assert!(drawn(vec![None, None]).contains("does not apply"));
+    }
+
+    #[test]
+    fn what_means_nothing_to_a_method_has_no_row_and_what_means_nothing_to_any_no_panel() {
+        let axis = |title: &str, marks| StabilityAxis {
+            title: title.to_owned(),
+            unit: String::new(),
+            bound: String::new(),
+            values: vec!["1".to_owned()],
+            marks,
+        };
+        let good = || vec![Some(Mark::Good)];
+        let axes = [
+            axis("Movement", vec![good(), good(), good()]),
+            axis("Fibres", vec![vec![None], good(), vec![None]]),
+            axis("Nothing", vec![vec![None]; 3]),
+        ];
+        let rows = ["linear", "fibred", "springs"].map(str::to_owned);
+        let map = StabilityMap { title: "map", subtitle: "", rows: &rows, axes: &axes };
+        let bands = map.bands();
+        assert_eq!(
+            bands.iter().map(|band| band.rows.clone()).collect::<Vec<_>>(),
+            [vec![0, 1, 2], vec![1]]
+        );
+        let svg = map.to_svg();
+        assert_eq!(
+            ["linear", "fibred", "springs"].map(|row| svg.matches(&format!(">{row}<")).count()),
+            [1, 2, 1]
+        );
+        assert!(svg.contains("Fibres") && !svg.contains("Nothing"));
+        assert_eq!(svg.matches("right throughout").count(), 4);
     }
 
     #[test]
@@ -275,11 +335,11 @@ mod tests {
             unit: String::new(),
             bound: String::new(),
             values: vec![String::new(); 9],
-            marks: Vec::new(),
+            marks: vec![vec![Some(Mark::Good); 9]],
         };
         let axes: Vec<StabilityAxis> = (0..8).map(|_| axis()).collect();
         let map = StabilityMap { title: "", subtitle: "", rows: &[], axes: &axes };
-        let bands: Vec<usize> = map.bands().iter().map(Vec::len).collect();
+        let bands: Vec<usize> = map.bands().iter().map(|band| band.axes.len()).collect();
         assert_eq!(bands.iter().sum::<usize>(), 8);
         assert!(bands.iter().all(|axes| (1..=5).contains(axes)), "{bands:?}");
     }

@@ -65,6 +65,23 @@ pub fn equilibrium(
     Ok((equilibrium, contact))
 }
 
+/// What the mesh and what linearity leave out of the answer of a scene, which is solved for that; why not, where that is known
+/// before.
+pub fn estimates(
+    scene: &Scene,
+    progress: &dyn Progress,
+) -> Result<(Result<NumericalError, NotEstimated>, Estimated), ModelError> {
+    let of_mesh = numerical_error::reason_for_none(scene);
+    let of_linearity = nonlinearity::reason_for_none(scene);
+    if let (Some(of_mesh), Some(of_linearity)) = (&of_mesh, &of_linearity) {
+        return Ok((Err(of_mesh.clone()), Err(of_linearity.clone())));
+    }
+    Ok(match answered(scene, Unknown { of_mesh, of_linearity }, progress)? {
+        Linear::Solved(answer) => (answer.numerical_error, answer.nonlinearity),
+        Linear::Other(answer) => (answer.numerical_error, answer.nonlinearity),
+    })
+}
+
 /// Why what a mesh and what linearity leaves out is not estimated; nothing where it is.
 struct Unknown {
     of_mesh: Option<NotEstimated>,

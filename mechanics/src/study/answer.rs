@@ -7,11 +7,14 @@ use rayon::ThreadPool;
 
 use super::Stopwatch;
 use super::deadline::Deadline;
-use crate::mesh::Vector;
+use super::estimated::Estimates;
+use super::variant::{Strain, Variant};
+use crate::mesh::{CellShape, Vector};
 use crate::model::fem::strain::deformations;
 use crate::model::problem::{Equilibrium, ModelError};
 use crate::prediction::{
-    Case, Plan, Scene, SceneErrorCode, SceneErrors, Settings, equilibrium, inverted_cells,
+    Accepted, Adequate, Case, ElementChoice, Laws, Method, Plan, Rung, Scene, SceneErrorCode,
+    SceneErrors, Settings, Watched, equilibrium, estimates, inverted_cells, predict_adequately,
 };
 use crate::progress::Progress;
 use crate::solver::SolverError;
@@ -34,15 +37,25 @@ pub(super) struct Bench<'a> {
 pub(super) struct Answer {
     /// In mm, at the nodes that were asked for.
     pub displacement: Vec<Vector>,
+    pub estimates: Estimates,
+    pub strain: Strain,
     pub elements: String,
     pub unknowns: usize,
     pub iterations: usize,
+    pub time: Time,
+    pub smallest_det_f: f64,
+    /// The model, where it was chosen by its error.
+    pub chosen: Option<String>,
+    /// Codes.
+    pub warnings: Vec<String>,
+}
+
+/// What solving took.
+pub(super) struct Time {
+    /// Median of the repeats.
     pub wall_s: f64,
     pub repeats: usize,
     pub peak_mb: Option<f64>,
-    pub smallest_det_f: f64,
-    /// Codes.
-    pub warnings: Vec<String>,
 }
 
 /// Why there is no answer, or no truth: a stable word, and the sentence with its numbers.
@@ -119,28 +132,27 @@ impl Bench<'_> {
         &self,
         case: &Case,
         plan: &Plan,
+        variant: &Variant,
+        nodes: &[u32],
+    ) -> Result<Answer, NoAnswer> {
+        match &variant.accepted {
+            Some(accepted) => self.chosen(case, plan, (variant, accepted), nodes),
+            None => self.solved(case, plan, &variant.settings, nodes),
+        }
+    }
+
+    fn solved(
+        &self,
+        case: &Case,
+        plan: &Plan,
         settings: &Settings,
         nodes: &[u32],
     ) -> Result<Answer, NoAnswer> {
-        let mut times: Vec<f64> = Vec::new();
-        let mut peak_mb = None;
-        self.stopwatch.forget_peak();
-        let (scene, equilibrium) = loop {
-            let begin = self.stopwatch.seconds();
-            let deadline = Deadline::after(self.row_s, self.stopwatch, self.progress);
-            let solved = self.pool.install(|| solve(case, plan, settings, &deadline));
-            let solved = solved.map_err(|why| self.too_late(why))?;
-            times.push(self.stopwatch.seconds() - begin);
-            if times.len() == 1 {
-                peak_mb = self.stopwatch.peak_mb();
-            }
-            if times.len() >= self.repeats || times.iter().sum::<f64>() > LONG_S {
-                break solved;
-            }
-        };
+        let ((scene, equilibrium), time) =
+            self.timed(|deadline| solve(case, plan, settings, deadline))?;
         check_sane(&scene, &equilibrium.displacement)?;
         let deformation = deformations(&scene.mesh, &equilibrium.displacement);
-        let mut warnings: Vec<String> = scene
+        let warnings = scene
             .warnings
             .iter()
             .chain(&equilibrium.warnings)
@@ -148,18 +160,111 @@ impl Bench<'_> {
             .chain(&scene.nothing_moves())
             .map(|warning| warning.code.to_owned())
             .collect();
-        warnings.sort_unstable();
-        warnings.dedup();
+        let displacement = at(nodes, &equilibrium.displacement);
         Ok(Answer {
-            displacement: nodes.iter().map(|&n| equilibrium.displacement[n as usize]).collect(),
+            estimates: self.estimates(&scene, nodes)?,
+            strain: strain_of(&settings.method),
+            displacement,
             elements: scene.elements().join(", "),
             unknowns: equilibrium.solver.unknowns,
             iterations: equilibrium.solver.iterations,
-            repeats: times.len(),
-            wall_s: median(times),
-            peak_mb,
             smallest_det_f: deformation.iter().map(|c| c.det_f).fold(f64::INFINITY, f64::min),
-            warnings,
+            chosen: None,
+            warnings: distinct(warnings),
+            time,
+        })
+    }
+
+    /// By the cheapest model whose estimated error is accepted; timed is the way to it, with its estimates.
+    fn chosen(
+        &self,
+        case: &Case,
+        plan: &Plan,
+        (variant, accepted): (&Variant, &Accepted),
+        nodes: &[u32],
+    ) -> Result<Answer, NoAnswer> {
+        let accepted = Accepted { time_s: self.row_s, ..accepted.clone() };
+        let stopwatch = || self.stopwatch.seconds();
+        let ((linear, adequate), time) = self.timed(|progress| {
+            let scene = Scene::new(case, plan, &variant.settings)?;
+            let watched = Watched { stopwatch: &stopwatch, progress };
+            let adequate = predict_adequately(case, plan, &scene, &accepted, watched)?;
+            Ok((scene, adequate))
+        })?;
+        let Adequate { prediction, scene, rung, considered, .. } = adequate;
+        let scene = scene.as_ref().unwrap_or(&linear);
+        check_sane(scene, &prediction.displacement)?;
+        let taken = considered.iter().find(|considered| considered.rung == rung);
+        let expected = taken.and_then(|taken| taken.error.as_ref()).map(|error| error.skin_mm);
+        let mesh = prediction.numerical_error.as_ref().ok();
+        let linearity = prediction.nonlinearity.as_ref().ok();
+        let deformation = prediction.deformation.iter();
+        let warnings = prediction.warnings.iter().map(|warning| warning.code.to_owned());
+        Ok(Answer {
+            displacement: at(nodes, &prediction.displacement),
+            estimates: Estimates {
+                mesh: mesh.map(|error| at(nodes, &error.missing)),
+                linearity: linearity.map(|left| at(nodes, &left.left_out)),
+                of_moving: expected,
+            },
+            strain: match rung {
+                Rung::Linear | Rung::Corrected => Strain::Small,
+                Rung::SecondOrder
+                | Rung::SecondOrderCorrected
+                | Rung::FiniteStrain
+                | Rung::FiniteStrainCorrected => Strain::Finite,
+            },
+            elements: prediction.elements.join(", "),
+            unknowns: prediction.solver.unknowns,
+            iterations: prediction.solver.iterations,
+            smallest_det_f: deformation.map(|c| c.det_f).fold(f64::INFINITY, f64::min),
+            chosen: Some(rung.name().to_owned()),
+            warnings: distinct(warnings.collect()),
+            time,
+        })
+    }
+
+    /// What a work takes: as often as is asked for, or until it took long.
+    fn timed<T: Send>(
+        &self,
+        work: impl Fn(&dyn Progress) -> Result<T, NoAnswer> + Sync,
+    ) -> Result<(T, Time), NoAnswer> {
+        let mut times: Vec<f64> = Vec::new();
+        let mut peak_mb = None;
+        self.stopwatch.forget_peak();
+        loop {
+            let begin = self.stopwatch.seconds();
+            let deadline = Deadline::after(self.row_s, self.stopwatch, self.progress);
+            let done = self.pool.install(|| work(&deadline)).map_err(|why| self.too_late(why))?;
+            times.push(self.stopwatch.seconds() - begin);
+            if times.len() == 1 {
+                peak_mb = self.stopwatch.peak_mb();
+            }
+            if times.len() >= self.repeats || times.iter().sum::<f64>() > LONG_S {
+                let repeats = times.len();
+                return Ok((done, Time { wall_s: median(times), repeats, peak_mb }));
+            }
+        }
+    }
+
+    /// What an answer is estimated to leave out, as far as that is known; no part of its time.
+    fn estimates(&self, scene: &Scene, nodes: &[u32]) -> Result<Estimates, NoAnswer> {
+        let has_tetrahedra = scene.mesh.cells.iter().any(|(shape, _)| shape == CellShape::Tet4);
+        if scene.settings.element == ElementChoice::Quadratic && has_tetrahedra {
+            return Ok(Estimates::default());
+        }
+        let deadline = Deadline::after(self.row_s, self.stopwatch, self.progress);
+        let (mesh, linearity) = match self.pool.install(|| estimates(scene, &deadline)) {
+            Ok(found) => found,
+            Err(ModelError::Solver(SolverError::Stopped)) if self.progress.is_cancelled() => {
+                return Err(NoAnswer::Cancelled);
+            }
+            Err(_) => return Ok(Estimates::default()),
+        };
+        Ok(Estimates {
+            mesh: mesh.ok().map(|error| at(nodes, &error.missing)),
+            linearity: linearity.ok().map(|left| at(nodes, &left.left_out)),
+            of_moving: None,
         })
     }
 
@@ -195,6 +300,24 @@ fn check_sane(scene: &Scene, displacement: &[Vector]) -> Result<(), NoAnswer> {
         return Err(Refusal::new("answer-absurd", detail).into());
     }
     Ok(())
+}
+
+/// Finite where a method has laws of finite strain.
+fn strain_of(method: &Method) -> Strain {
+    match method.properties().laws {
+        Laws::AtRest => Strain::Small,
+        Laws::SaintVenantKirchhoff | Laws::Any => Strain::Finite,
+    }
+}
+
+fn at(nodes: &[u32], vectors: &[Vector]) -> Vec<Vector> {
+    nodes.iter().map(|&node| vectors[node as usize]).collect()
+}
+
+fn distinct(mut codes: Vec<String>) -> Vec<String> {
+    codes.sort_unstable();
+    codes.dedup();
+    codes
 }
 
 /// The smallest time that at least half of them do not exceed.

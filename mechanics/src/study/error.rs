@@ -6,8 +6,10 @@
 
 use std::collections::BTreeMap;
 
-use super::answer::Refusal;
+use super::answer::{Answer, Refusal};
+use super::estimated::{True, lengths};
 use super::report::Errors;
+use super::variant::Strain;
 use crate::mesh::{SurfaceSearch, TriangleSurface, Vector};
 use crate::prediction::Skin;
 use crate::validation::{Statistics, StatisticsError};
@@ -17,6 +19,8 @@ pub(super) struct DisplacedSkin<'a> {
     skin: &'a Skin,
     areas: Vec<f64>,
     displacement: &'a [Vector],
+    /// None where it is not known what the truth takes for strain.
+    pub strain: Option<Strain>,
     search: SurfaceSearch,
 }
 
@@ -26,8 +30,17 @@ pub(super) struct Measured {
     pub closest_point: Errors,
     pub regions: BTreeMap<String, Errors>,
     pub skin_mean_mm: f64,
+    pub estimated: Estimated,
     /// Share of the moving skin's area that has a scan opposite; none where displacements are compared.
     pub covered_share: Option<f64>,
+}
+
+/// What an answer tells of its own error.
+#[derive(Default)]
+pub(super) struct Estimated {
+    pub numerical_error: Option<Errors>,
+    pub linearity_error: Option<Errors>,
+    pub effectivity: Option<f64>,
 }
 
 impl<'a> DisplacedSkin<'a> {
@@ -35,6 +48,7 @@ impl<'a> DisplacedSkin<'a> {
     pub(super) fn of(
         skin: &'a Result<Skin, Refusal>,
         truth: &'a Result<Vec<Vector>, Refusal>,
+        strain: Option<Strain>,
     ) -> Result<Self, Refusal> {
         let skin = skin.as_ref().map_err(Refusal::clone)?;
         let displacement = truth.as_ref().map_err(|refusal| {
@@ -42,11 +56,12 @@ impl<'a> DisplacedSkin<'a> {
         })?;
         let search = SurfaceSearch::new(&moved(&skin.surface, displacement))
             .map_err(|error| Refusal::new("truth-failed", error.to_string()))?;
-        Ok(DisplacedSkin { skin, areas: skin.surface.point_areas(), displacement, search })
+        Ok(DisplacedSkin { skin, areas: skin.surface.point_areas(), displacement, strain, search })
     }
 
-    /// The errors of another displacement of the same nodes.
-    pub(super) fn measure(&self, found: &[Vector]) -> Result<Measured, StatisticsError> {
+    /// The errors of an answer at the same nodes.
+    pub(super) fn measure(&self, answer: &Answer) -> Result<Measured, StatisticsError> {
+        let found = &answer.displacement;
         let length: Vec<f64> = found.iter().map(|u| u.norm()).collect();
         let apart: Vec<f64> =
             found.iter().zip(self.displacement).map(|(u, truth)| (u - truth).norm()).collect();
@@ -60,7 +75,15 @@ impl<'a> DisplacedSkin<'a> {
             };
             regions.insert(name.clone(), errors(&of(&apart), &of(&self.areas))?);
         }
+        let Answer { estimates, strain, .. } = answer;
+        let truth = True { errors: &apart, areas: &self.areas, strain: self.strain };
+        let estimated = Estimated {
+            numerical_error: errors_of(estimates.mesh.as_ref(), &self.areas),
+            linearity_error: errors_of(estimates.linearity.as_ref(), &self.areas),
+            effectivity: estimates.effectivity(found, *strain, &truth),
+        };
         Ok(Measured {
+            estimated,
             error: errors(&apart, &self.areas)?,
             closest_point: errors(&closest, &self.areas)?,
             regions,
@@ -74,6 +97,11 @@ impl<'a> DisplacedSkin<'a> {
 pub(super) fn errors(values: &[f64], areas: &[f64]) -> Result<Errors, StatisticsError> {
     let Statistics { mean, p95, max, .. } = Statistics::weighted(values, areas)?;
     Ok(Errors { mean, p95, max })
+}
+
+/// Of an estimate, in mm by area; none where it is not known.
+fn errors_of(estimate: Option<&Vec<Vector>>, areas: &[f64]) -> Option<Errors> {
+    errors(&lengths(estimate?), areas).ok()
 }
 
 /// A surface after its points have moved.

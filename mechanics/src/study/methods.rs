@@ -5,7 +5,9 @@ use crate::model::fem::mass_tensor::{Iterations, MassTensorSettings};
 use crate::model::mass_spring::{MassSpringSettings, Search};
 use crate::model::spline::{Stiffness, VolumeSpline};
 use crate::model::thickness_warp::ThicknessWarp;
-use crate::prediction::{ElementChoice, Laws, Method, MethodKind, Settings};
+use crate::prediction::{
+    Accepted, ElementChoice, Method, MethodKind, Settings, USUALLY_ACCEPTED_MM,
+};
 use crate::solver::stationary::{Iteration, Stationary};
 
 /// The residual at which the papers' own iterations end: their answer is then within 0.01 mm of rest on the skin
@@ -15,14 +17,25 @@ const OWN_ITERATIONS_RESIDUAL: f64 = 1e-5;
 /// Sweeps after which the papers' own iterations are given up.
 const OWN_ITERATIONS: usize = 50_000;
 
+/// The method that is chosen by its error, as documents call it.
+pub const AUTO: &str = "auto";
+
 /// Links of the lattice in mN/mm, which is N/m (Ulusoy et al. 2010).
 const PAPER_STIFFNESS: f64 = 80.0;
 
-/// All that answer the question of the truths, which are linear, each with its usual settings: finite strain is compared
-/// where it is asked for by name.
+/// All of every method, each with its usual settings.
 pub fn available() -> Vec<Variant> {
-    let at_rest = |method: &&MethodKind| method.properties().laws == Laws::AtRest;
-    MethodKind::ALL.iter().filter(at_rest).flat_map(|method| of_method(*method)).collect()
+    MethodKind::ALL.iter().flat_map(|method| of_method(*method)).collect()
+}
+
+/// The cheapest model whose estimated error is accepted.
+pub fn auto() -> Variant {
+    let accepted = Accepted { skin_mm: USUALLY_ACCEPTED_MM, ..Accepted::default() };
+    Variant {
+        method: AUTO.to_owned(),
+        accepted: Some(accepted),
+        ..variant(AUTO, Method::FemLinear)
+    }
 }
 
 /// Those of one method.
@@ -70,6 +83,7 @@ fn variant(label: &str, method: Method) -> Variant {
         method: method.kind().name().to_owned(),
         label: label.to_owned(),
         settings: Settings { method, ..Settings::default() },
+        accepted: None,
         may_fail: false,
     }
 }

@@ -6,6 +6,7 @@ pub mod constant_map;
 pub mod convergence;
 mod deadline;
 mod error;
+mod estimated;
 mod failure;
 mod levels;
 pub mod methods;
@@ -25,12 +26,15 @@ mod truth_words;
 pub mod variant;
 
 pub use answer::LONG_S;
+pub use estimated::LINEAR_TRUTH;
 pub use failure::StudyError;
 pub use levels::{MOST_CELLS, cells_at};
 pub use report::{Errors, Outcome, Report, Row, SceneReport, Skipped, Solved};
 pub use run::{NOT_RUN, run};
 pub use truth_cost::{TruthCost, TruthMesh, truth_cost};
-pub use variant::{ClosedForm, Materials, Scan, ScanMetric, Study, StudyScene, Truth, Variant};
+pub use variant::{
+    ClosedForm, Materials, Scan, ScanMetric, Strain, Study, StudyScene, Truth, Variant,
+};
 
 /// What the caller measures while the study computes: numerics know neither clock nor memory.
 pub trait Stopwatch: Sync {

@@ -96,6 +96,15 @@ pub struct Solved {
     pub closest_point: Errors,
     /// The error of each named part of the skin.
     pub regions: BTreeMap<String, Errors>,
+    /// What the mesh leaves out of the answer, as estimated without the truth; none where it is not.
+    pub numerical_error: Option<Errors>,
+    /// What linearity leaves out, the same.
+    pub linearity_error: Option<Errors>,
+    /// The mean error that is expected of the answer, over the true one: of mesh, and of linearity where the truth is one of
+    /// finite strain; none without both.
+    pub effectivity: Option<f64>,
+    /// Of a model that was chosen by its error: which, as documents call it.
+    pub chosen: Option<String>,
     pub smallest_det_f: f64,
     /// Share of the moving skin's area that has a scan opposite; none without a scan.
     pub covered_share: Option<f64>,

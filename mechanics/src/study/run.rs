@@ -4,12 +4,13 @@ use super::Stopwatch;
 use super::answer::{Answer, Bench, NoAnswer, Refusal};
 use super::cell_sizes::cell_size;
 use super::error::{DisplacedSkin, Measured};
+use super::estimated::LINEAR_TRUTH;
 use super::failure::StudyError;
 use super::levels::Levels;
 use super::report::{Outcome, Report, Row, SceneReport, Skipped, Solved};
 use super::scan::{ScannedSkin, before_operation, is_partial};
 use super::truth::{Asked, is_the_truth};
-use super::variant::{Materials, Study, StudyScene, Truth, Variant};
+use super::variant::{Materials, Strain, Study, StudyScene, Truth, Variant};
 use crate::mesh::{Vector, Warning};
 use crate::prediction::{Plan, Scene, Settings, Skin};
 use crate::progress::Progress;
@@ -125,7 +126,12 @@ impl<'a> SceneWork<'a> {
                     Some(scanned) => {
                         scanned.as_ref().map(TrueSkin::Scanned).map_err(Refusal::clone)
                     }
-                    None => DisplacedSkin::of(skin, truth).map(Box::new).map(TrueSkin::Displaced),
+                    None => {
+                        let strain = self.scene.truth.strain();
+                        DisplacedSkin::of(skin, truth, strain)
+                            .map(Box::new)
+                            .map(TrueSkin::Displaced)
+                    }
                 };
                 for attempt in attempts.next().into_iter().flatten() {
                     rows.push(self.row(plan, materials, attempt, &truth));
@@ -201,7 +207,7 @@ impl<'a> SceneWork<'a> {
                 if self.bench.progress.is_cancelled() {
                     return Err(StudyError::Cancelled);
                 }
-                if is_the_truth(self.scene, &variant.settings, level) {
+                if is_the_truth(self.scene, variant, level) {
                     continue;
                 }
                 let unserved = skipped.iter().find(|other: &&Skipped| other.label == variant.label);
@@ -257,7 +263,7 @@ impl<'a> SceneWork<'a> {
         }
         let skin = skin.as_ref().map_err(Refusal::clone)?;
         let case = levels.case(level, materials)?;
-        self.bench.answer(&case, plan, &variant.settings, skin.nodes())
+        self.bench.answer(&case, plan, variant, skin.nodes())
     }
 
     fn row(
@@ -325,31 +331,47 @@ enum TrueSkin<'a> {
 }
 
 impl TrueSkin<'_> {
-    fn measure(&self, found: &[Vector]) -> Result<Measured, Refusal> {
+    fn measure(&self, answer: &Answer) -> Result<Measured, Refusal> {
         match self {
             TrueSkin::Displaced(skin) => {
-                let measured = skin.measure(found);
+                let measured = skin.measure(answer);
                 measured.map_err(|error| Refusal::new("not-measured", error.to_string()))
             }
-            TrueSkin::Scanned(skin) => skin.measure(found),
+            TrueSkin::Scanned(skin) => skin.measure(&answer.displacement),
+        }
+    }
+
+    /// Whether an answer is one of finite strain, and the truth is not.
+    fn is_linear_beside(&self, answer: &Answer) -> bool {
+        match self {
+            TrueSkin::Displaced(skin) => {
+                skin.strain == Some(Strain::Small) && answer.strain == Strain::Finite
+            }
+            TrueSkin::Scanned(_) => false,
         }
     }
 }
 
 fn solved(mut answer: Answer, truth: &Result<TrueSkin, Refusal>) -> Result<Solved, Refusal> {
     let truth = truth.as_ref().map_err(Refusal::clone)?;
-    let measured = truth.measure(&answer.displacement)?;
+    let measured = truth.measure(&answer)?;
+    let is_beside = truth.is_linear_beside(&answer);
+    answer.warnings.extend(is_beside.then(|| LINEAR_TRUTH.to_owned()));
     answer.warnings.extend(is_partial(measured.covered_share).then(|| PARTIAL.to_owned()));
     Ok(Solved {
         unknowns: answer.unknowns,
         iterations: answer.iterations,
-        wall_s: answer.wall_s,
-        repeats: answer.repeats,
-        peak_mb: answer.peak_mb,
+        wall_s: answer.time.wall_s,
+        repeats: answer.time.repeats,
+        peak_mb: answer.time.peak_mb,
         skin_mean_mm: measured.skin_mean_mm,
         error: measured.error,
         closest_point: measured.closest_point,
         regions: measured.regions,
+        numerical_error: measured.estimated.numerical_error,
+        linearity_error: measured.estimated.linearity_error,
+        effectivity: measured.estimated.effectivity,
+        chosen: answer.chosen,
         smallest_det_f: answer.smallest_det_f,
         warnings: answer.warnings,
         covered_share: measured.covered_share,

@@ -9,7 +9,7 @@
 use std::collections::BTreeMap;
 
 use super::answer::Refusal;
-use super::error::{Measured, errors as errors_of, moved};
+use super::error::{Estimated, Measured, errors as errors_of, moved};
 use super::report::{Errors, Outcome, Row};
 use super::scan_points::Partners;
 use super::variant::Scan;
@@ -138,6 +138,7 @@ impl<'a> ScannedSkin<'a> {
         };
         Ok(Measured {
             error,
+            estimated: Estimated::default(),
             closest_point: errors(&there).map_err(failed)?,
             regions,
             skin_mean_mm: Statistics::weighted(&length, &self.areas).map_err(failed)?.mean,

@@ -4,20 +4,21 @@ mod half_head;
 mod slab;
 mod sphere;
 
-pub use half_head::half_head;
-pub use slab::{slab, slab_hex, slab_wedge};
+pub use half_head::{half_head, half_head_far};
+pub use slab::{slab, slab_far, slab_hex, slab_wedge};
 pub use sphere::{sphere, sphere_of};
 
 use std::collections::BTreeMap;
 
-use super::variant::{Materials, StudyScene, Truth};
+use super::variant::{Materials, Strain, StudyScene, Truth};
 use crate::material::LinearElastic;
 use crate::mesh::{CellShape, Vector, VolumeMesh};
 use crate::plan::{PlannedSegment, RigidMovement};
 use crate::prediction::{Case, ElementChoice, Plan};
 
 /// What `scene_of` knows.
-pub const SCENES: [&str; 4] = ["sphere", "slab", "slab_hex", "half_head"];
+pub const SCENES: [&str; 6] =
+    ["sphere", "slab", "slab_hex", "slab_far", "half_head", "half_head_far"];
 
 /// Cells up to which a truth of hexahedra halves every edge twice.
 const HALVED_TWICE: usize = 16_000;
@@ -28,7 +29,9 @@ pub fn scene_of(name: &str) -> Option<StudyScene> {
         "sphere" => Some(sphere()),
         "slab" => Some(slab()),
         "slab_hex" => Some(slab_hex()),
+        "slab_far" => Some(slab_far()),
         "half_head" => Some(half_head()),
+        "half_head_far" => Some(half_head_far()),
         _ => None,
     }
 }
@@ -39,7 +42,7 @@ pub fn usual_truth(case: &Case) -> Truth {
     let element = usual_truth_element(case);
     let is_small = case.volume.cells.len() <= HALVED_TWICE;
     let times = if is_small && element != ElementChoice::Quadratic { 2 } else { 1 };
-    Truth::Refined { times, element }
+    Truth::Refined { times, element, strain: Strain::Small }
 }
 
 /// The most accurate element that serves every cell of a case.

@@ -1,6 +1,6 @@
 //! Reference solution of a scene, at the skin nodes of level 0.
 //!
-//! A refined truth is linear finite elements on a finer mesh. It is linear in the movements of segments, so
+//! A refined truth is finite elements on a finer mesh. At small strain it is linear in the movements of segments, so
 //! that twelve load cases a segment serve every plan that is made of movements (`response`).
 //! Its own error is told by extrapolation from the mesh before it:
 //!
@@ -14,16 +14,18 @@ use super::answer::{NoAnswer, Refusal, solve};
 use super::error;
 use super::levels::Levels;
 use super::truth_words::{grouped, halved};
-use super::variant::{ClosedForm, Materials, StudyScene, Truth};
+use super::variant::{ClosedForm, Materials, Strain, StudyScene, Truth, Variant};
 use crate::mesh::{CellShape, Vector, VolumeMesh};
 use crate::plan::RigidMovement;
-use crate::prediction::{Case, ElementChoice, Method, ModelError, Plan, Scene, Settings, Skin};
+use crate::prediction::{Case, ElementChoice, ModelError, Plan, Scene, Settings, Skin};
 use crate::progress::Progress;
 use crate::response::{self, Columns, ResponseError};
 use crate::solver::SolverError;
 
-/// Refined truths are solved to this relative residual, and may take this much memory.
+/// Linear truths are solved to this relative residual, those at finite strain to that of every prediction.
 const RESIDUAL: f64 = 1e-10;
+
+/// Of a refined truth.
 const MEMORY_MB: f64 = 12_000.0;
 
 /// Plans for each segment from which on twelve columns cost less than a solve for each plan.
@@ -53,12 +55,14 @@ pub(super) struct Asked<'a> {
 }
 
 /// Whether a variant at a level is the discretisation that is held for true, or a finer one of its kind.
-pub(super) fn is_the_truth(scene: &StudyScene, settings: &Settings, level: u32) -> bool {
+pub(super) fn is_the_truth(scene: &StudyScene, variant: &Variant, level: u32) -> bool {
+    let settings = &variant.settings;
     let mesh = &scene.case.volume;
     match &scene.truth {
-        Truth::Refined { times, element } => {
+        Truth::Refined { times, element, strain } => {
             level >= *times
-                && settings.method == Method::FemLinear
+                && variant.accepted.is_none()
+                && settings.method == strain.method()
                 && settings.membrane.is_none()
                 && in_effect(settings.element, mesh) == in_effect(*element, mesh)
         }
@@ -82,7 +86,9 @@ impl Asked<'_> {
             Truth::ClosedForm(formula) => Ok(self.closed_form(formula)),
             Truth::Known(displacement) => Ok(self.known(displacement)),
             Truth::Scan(_) => Ok(self.scanned()),
-            Truth::Refined { times, element } => self.refined(levels, *times, *element),
+            Truth::Refined { times, element, strain } => {
+                self.refined(levels, *times, (*element, *strain))
+            }
         }
     }
 
@@ -136,7 +142,7 @@ impl Asked<'_> {
         &self,
         levels: &mut Levels,
         times: u32,
-        element: ElementChoice,
+        how: (ElementChoice, Strain),
     ) -> Result<Truths, StudyError> {
         // 1. The finest mesh and, for its error, one or two before it.
         let mut fields: Vec<Vec<Vec<Found>>> = Vec::new();
@@ -148,7 +154,7 @@ impl Asked<'_> {
             for materials in &self.scene.materials {
                 self.progress.step(solved_meshes, of);
                 solved_meshes += 1;
-                let solved = self.solve_plans(levels, (level, materials), element)?;
+                let solved = self.solve_plans(levels, (level, materials), how)?;
                 words = solved.words;
                 for (plan, found) in of_level.iter_mut().zip(solved.skins) {
                     plan.push(found);
@@ -167,7 +173,11 @@ impl Asked<'_> {
             Some(_) => "own error extrapolated with order 1, which is assumed".to_owned(),
             None => "own error not known".to_owned(),
         };
-        let words = format!("{words}, {}; {own_words}", halved(times));
+        let strain = match how.1 {
+            Strain::Small => "",
+            Strain::Finite => " at finite strain",
+        };
+        let words = format!("{words}{strain}, {}; {own_words}", halved(times));
         Ok(Truths { skins: finest, words, error_mm: own.map(|own| own.mean_and_p95) })
     }
 
@@ -175,14 +185,15 @@ impl Asked<'_> {
         &self,
         levels: &mut Levels,
         (level, materials): (u32, &Materials),
-        element: ElementChoice,
+        (element, strain): (ElementChoice, Strain),
     ) -> Result<Solved, StudyError> {
-        let settings = Settings {
-            element,
-            relative_residual: RESIDUAL,
-            memory_mb: MEMORY_MB,
-            ..Settings::default()
+        let usual = Settings::default();
+        let relative_residual = match strain {
+            Strain::Small => RESIDUAL,
+            Strain::Finite => usual.relative_residual,
         };
+        let (method, memory_mb) = (strain.method(), MEMORY_MB);
+        let settings = Settings { method, element, relative_residual, memory_mb, ..usual };
         let case = match levels.case(level, materials) {
             Ok(case) => case,
             Err(refusal) => {
@@ -191,7 +202,10 @@ impl Asked<'_> {
             }
         };
         let finer = Finer { case, settings, progress: self.progress };
-        let columns = finer.columns(&self.scene.plans)?;
+        let columns = match strain {
+            Strain::Small => finer.columns(&self.scene.plans)?,
+            Strain::Finite => None,
+        };
         let mut words = columns.as_ref().map_or_else(String::new, |columns| {
             let elements = columns.elements.join(", ");
             described(&elements, columns.solver.unknowns, ", plans summed from unit movements")

@@ -2,7 +2,7 @@
 
 use super::levels::cells_at;
 use super::truth::{PLANS_A_SEGMENT, coarsest, is_of_segments, moved_segments};
-use super::variant::{StudyScene, Truth};
+use super::variant::{Strain, StudyScene, Truth};
 use crate::mesh::CellShape;
 use crate::prediction::{ElementChoice, Plan};
 
@@ -14,6 +14,7 @@ const WITH_EDGES: f64 = 8.0;
 pub struct TruthCost {
     /// Coarsest first: the finest, and one or two before it that tell its error.
     pub meshes: Vec<TruthMesh>,
+    pub strain: Strain,
 }
 
 /// One mesh of a refined truth.
@@ -28,9 +29,9 @@ pub struct TruthMesh {
 
 /// The cost of the truth of a scene; none where nothing is solved for it.
 pub fn truth_cost(scene: &StudyScene) -> Option<TruthCost> {
-    let Truth::Refined { times, element } = scene.truth else { return None };
+    let Truth::Refined { times, element, strain } = scene.truth else { return None };
     let volume = &scene.case.volume;
-    let solves = solves(scene) * scene.materials.len();
+    let solves = solves(scene, strain) * scene.materials.len();
     let is_quadratic = element == ElementChoice::Quadratic
         && volume.cells.iter().any(|(shape, _)| shape == CellShape::Tet4);
     let per_node = if is_quadratic { 3.0 * WITH_EDGES } else { 3.0 };
@@ -39,11 +40,14 @@ pub fn truth_cost(scene: &StudyScene) -> Option<TruthCost> {
         unknowns: per_node * cells_at(volume.nodes.len(), level),
         solves,
     };
-    Some(TruthCost { meshes: (coarsest(times)..=times).map(mesh).collect() })
+    Some(TruthCost { meshes: (coarsest(times)..=times).map(mesh).collect(), strain })
 }
 
 /// Solves on one mesh with one material.
-fn solves(scene: &StudyScene) -> usize {
+fn solves(scene: &StudyScene, strain: Strain) -> usize {
+    if strain == Strain::Finite {
+        return scene.plans.len();
+    }
     let plans: Vec<&Plan> = scene.plans.iter().map(|(_, plan)| plan).collect();
     let sums = plans.iter().filter(|plan| is_of_segments(plan, &scene.case)).count();
     let columns = PLANS_A_SEGMENT * moved_segments(&scene.plans, &scene.case).len();

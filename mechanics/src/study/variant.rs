@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use crate::material::LinearElastic;
 use crate::mesh::{TriangleSurface, Vector, VolumeMesh};
-use crate::prediction::{Case, ElementChoice, FibreDirection, Plan, Settings};
+use crate::prediction::{Accepted, Case, ElementChoice, FibreDirection, Method, Plan, Settings};
 use crate::validation::{Alignment, LandmarkPair};
 
 /// Every scene with every variant, or with its own, and with every material, plan and level.
@@ -57,12 +57,16 @@ pub struct Materials {
 }
 
 /// A way of modelling under a name for the row.
+#[derive(Clone)]
 pub struct Variant {
     /// The method as documents call it.
     pub method: String,
     /// What tells this variant from others of the same method; the method where nothing does.
     pub label: String,
     pub settings: Settings,
+    /// The error that chooses the model, where the settings are those of its cheapest one (`predict_adequately`); its time is
+    /// that of a row.
+    pub accepted: Option<Accepted>,
     /// Whether a failure says nothing against a study: only of the program's own variants, whatever a client's are
     /// called.
     pub may_fail: bool,
@@ -71,15 +75,27 @@ pub struct Variant {
 /// Where the displacement that errors are measured against comes from.
 pub enum Truth {
     ClosedForm(ClosedForm),
-    /// Linear finite elements on the mesh of level 0 with every edge halved `times` times.
+    /// Finite elements on the mesh of level 0 with every edge halved `times` times.
     Refined {
         times: u32,
+        /// One that the method of this strain has.
         element: ElementChoice,
+        strain: Strain,
     },
     /// Displacement in mm at each skin node of level 0, from elsewhere.
     Known(Vec<Vector>),
     /// A surface that shows where the skin went, but not which point went where.
     Scan(Box<Scan>),
+}
+
+/// What a truth takes for strain.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Strain {
+    /// Linear finite elements: no truth where movements are large.
+    #[default]
+    Small,
+    /// Nonlinear finite elements, each tissue with its law.
+    Finite,
 }
 
 /// A scanned surface.
@@ -109,10 +125,31 @@ pub enum ScanMetric {
     Landmarks(Vec<LandmarkPair>),
 }
 
-/// A formula, and the walls between which it holds.
+/// A formula of linear elasticity, and the walls between which it holds.
 pub struct ClosedForm {
     /// In mm at a point of the scene, for a plan and materials of the scene.
     pub displacement: fn(&Vector, &Plan, &Materials) -> Vector,
     /// Brings the nodes of a refined mesh onto the walls: new nodes lie on chords of curved ones.
     pub walls: fn(&mut VolumeMesh),
+}
+
+impl Strain {
+    /// The method of finite elements with this strain.
+    pub fn method(self) -> Method {
+        match self {
+            Strain::Small => Method::FemLinear,
+            Strain::Finite => Method::FemNonlinear,
+        }
+    }
+}
+
+impl Truth {
+    /// What it takes for strain; none of displacements and surfaces from elsewhere.
+    pub fn strain(&self) -> Option<Strain> {
+        match self {
+            Truth::ClosedForm(_) => Some(Strain::Small),
+            Truth::Refined { strain, .. } => Some(*strain),
+            Truth::Known(_) | Truth::Scan(_) => None,
+        }
+    }
 }

@@ -285,6 +285,7 @@ impl Finished<'_> {
                 .map(|why| why.to_string()),
             cephalometry: head.measures,
             symmetry: head.symmetry,
+            reaction_millinewton: triples(&self.prediction.reactions),
             reaction_mn: triples(&self.prediction.reactions),
             reactions: self.prediction.condition_reactions.iter().map(Into::into).collect(),
             ..ResultDocument::new(input.job.clone(), files, provenance, warnings)

@@ -3,6 +3,7 @@
 use std::fmt::Write;
 
 use super::files::cell;
+use super::words::{in_words, scene_in_words, variant_in_words};
 use crate::schema::study::cell_sizes::CellSizesDocument;
 use crate::schema::study::report::ReportDocument;
 use mechanics::chart::{CellSizesPicture, CellSizesSeries};
@@ -58,7 +59,7 @@ pub fn cell_sizes_chart(report: &ReportDocument, group: [&str; 3]) -> String {
     };
     let own: Vec<&CellSizesDocument> = report.cell_sizes.iter().filter(is_own).collect();
     let drawn = own.iter().map(|of| CellSizesSeries {
-        name: of.label.clone(),
+        name: variant_in_words(&of.label),
         points: of.meshes.iter().map(|mesh| [mesh.cell_mm, mesh.skin_mean_mm]).collect(),
         fit: of.order.zip(of.limit_mm).map(|(order, limit)| [limit, order]),
         fitted: of.fit_meshes.unwrap_or_default() as usize,
@@ -71,8 +72,8 @@ pub fn cell_sizes_chart(report: &ReportDocument, group: [&str; 3]) -> String {
     notes.extend(own.iter().map(|of| settled_words(of)));
     let series_of: Vec<CellSizesSeries> = drawn.collect();
     let picture = CellSizesPicture {
-        title: &format!("Convergence over cell sizes: {series}"),
-        subtitle: &format!("{plan}, {material}"),
+        title: &format!("Convergence over cell sizes: {}", scene_in_words(series)),
+        subtitle: &in_words(&format!("{plan}, {material}")),
         series: &series_of,
         notes: &notes,
     };
@@ -97,5 +98,5 @@ pub fn settled_words(of: &CellSizesDocument) -> String {
         Some(size) => format!("from {size:.2} mm on no mesh changes the skin by more than .3 %"),
         None => "the finest step changes the skin by more than .3 %".to_owned(),
     };
-    format!("{}: {fit}; {settled}.", of.label)
+    format!("{}: {fit}; {settled}.", variant_in_words(&of.label))
 }

@@ -1,10 +1,11 @@
-//! Charts of a report: one for each scene, and one over all.
+//! Charts of a report: speed and accuracy of each scene and over all, and estimated against true errors.
 
+use super::words::{in_words, scene_in_words, variant_in_words};
 use crate::schema::study::report::{ReportDocument, RowDocument, RowStatus};
 use mechanics::chart::drawing::Document;
 use mechanics::chart::svg::svg;
-use mechanics::chart::{LadderFailure, LadderMark, LadderPicture};
-use mechanics::study::pareto;
+use mechanics::chart::{EstimateMark, EstimatesPicture, LadderFailure, LadderMark, LadderPicture};
+use mechanics::study::{LINEAR_TRUTH, pareto};
 
 /// The longest reason that a chart tells; the report has it in full.
 const REASON: usize = 110;
@@ -18,16 +19,11 @@ pub fn chart(report: &ReportDocument, scene: Option<&str>) -> String {
 pub fn chart_drawing(report: &ReportDocument, scene: Option<&str>) -> Document {
     let rows: Vec<&RowDocument> =
         report.rows.iter().filter(|row| scene.is_none_or(|scene| row.scene == scene)).collect();
-    let mut series: Vec<String> = Vec::new();
-    for row in &rows {
-        if !series.contains(&row.label) {
-            series.push(row.label.clone());
-        }
-    }
+    let labels = labels(&rows);
     let (mut marks, mut failures) = (Vec::new(), Vec::new());
-    for (place, label) in series.iter().enumerate() {
+    for (place, &label) in labels.iter().enumerate() {
         for level in levels(&rows, label) {
-            let of = |row: &&RowDocument| row.label == *label && row.level == level;
+            let of = |row: &&RowDocument| row.label == label && row.level == level;
             let own: Vec<&RowDocument> = rows.iter().copied().filter(of).collect();
             marks.extend(mark(&own, place, level));
             failures.extend(failed(&own, place, level));
@@ -40,12 +36,62 @@ pub fn chart_drawing(report: &ReportDocument, scene: Option<&str>) -> Document {
     let picture = LadderPicture {
         title: &title(report, scene),
         subtitle: &subtitle(report, &rows, scene),
-        series: &series,
+        series: &in_words_of(&labels),
         marks: &marks,
         failures: &failures,
-        notes: &notes(report, scene),
+        notes: &notes(report, &rows, scene),
     };
     picture.to_drawing()
+}
+
+/// Estimated against true errors of all rows that have both, as SVG; none where no row has.
+pub fn estimates_chart(report: &ReportDocument) -> Option<String> {
+    let known = |row: &&RowDocument| row.numbers.as_ref().is_some_and(|n| n.effectivity.is_some());
+    let rows: Vec<&RowDocument> = report.rows.iter().filter(known).collect();
+    let labels = labels(&rows);
+    let mark = |row: &&RowDocument| {
+        let numbers = row.numbers.as_ref()?;
+        let series = labels.iter().position(|label| *label == row.label)?;
+        let true_mm = numbers.mean_mm;
+        Some(EstimateMark { series, true_mm, estimated_mm: numbers.effectivity? * true_mm })
+    };
+    let marks: Vec<EstimateMark> = rows.iter().filter_map(mark).collect();
+    let within =
+        marks.iter().filter(|mark| (0.5..=2.0).contains(&(mark.estimated_mm / mark.true_mm)));
+    let title = "Estimated against true error";
+    let picture = EstimatesPicture {
+        title,
+        subtitle: &format!(
+            "{} of {} answers are within a factor of two of the truth",
+            within.count(),
+            marks.len()
+        ),
+        series: &in_words_of(&labels),
+        marks: &marks,
+        notes: &[
+            "Estimated without the truth: what the mesh leaves out, and what linearity does where the truth is one of finite \
+             strain. A mark is a row: a plan, a material and a mesh. What is chosen by its error estimates it over the skin that \
+             moves, and is drawn by the ratio to the true error there."
+                .to_owned(),
+            engine_words(report),
+        ],
+    };
+    (!marks.is_empty()).then(|| svg(&picture.to_drawing(), title))
+}
+
+/// Labels of rows, each once.
+fn labels<'a>(rows: &[&'a RowDocument]) -> Vec<&'a str> {
+    let mut labels: Vec<&str> = Vec::new();
+    for row in rows {
+        if !labels.contains(&row.label.as_str()) {
+            labels.push(&row.label);
+        }
+    }
+    labels
+}
+
+fn in_words_of(labels: &[&str]) -> Vec<String> {
+    labels.iter().map(|label| variant_in_words(label)).collect()
 }
 
 fn levels(rows: &[&RowDocument], label: &str) -> Vec<u32> {
@@ -85,7 +131,7 @@ fn failed(rows: &[&RowDocument], series: usize, level: u32) -> Vec<LadderFailure
         } else {
             String::new()
         };
-        let words: String = detail.chars().take(REASON).collect();
+        let words: String = in_words(detail).chars().take(REASON).collect();
         LadderFailure { series, level, reason: format!("{kind}{of}: {words}") }
     };
     found.into_iter().map(failure).collect()
@@ -93,8 +139,8 @@ fn failed(rows: &[&RowDocument], series: usize, level: u32) -> Vec<LadderFailure
 
 fn title(report: &ReportDocument, scene: Option<&str>) -> String {
     match (scene, report.scenes.as_slice()) {
-        (Some(name), _) => format!("Speed and accuracy: {name}"),
-        (None, [only]) => format!("Speed and accuracy: {}", only.name),
+        (Some(name), _) => format!("Speed and accuracy: {}", scene_in_words(name)),
+        (None, [only]) => format!("Speed and accuracy: {}", scene_in_words(&only.name)),
         (None, scenes) => format!("Speed and accuracy over {} scenes", scenes.len()),
     }
 }
@@ -119,7 +165,8 @@ fn subtitle(report: &ReportDocument, rows: &[&RowDocument], scene: Option<&str>)
             about.nodes, about.cells, about.skin_nodes
         ),
         None => {
-            let names: Vec<&str> = report.scenes.iter().map(|scene| scene.name.as_str()).collect();
+            let names: Vec<String> =
+                report.scenes.iter().map(|scene| scene_in_words(&scene.name)).collect();
             format!("{}; {plans}, {materials}", names.join(", "))
         }
     }
@@ -128,12 +175,12 @@ fn subtitle(report: &ReportDocument, rows: &[&RowDocument], scene: Option<&str>)
 /// The only name, or how many there are.
 fn counted(names: &[&str], what: &str) -> String {
     match names {
-        [only] => format!("{what} {only}"),
+        [only] => format!("{what} {}", in_words(only)),
         names => format!("{} {what}s", names.len()),
     }
 }
 
-fn notes(report: &ReportDocument, scene: Option<&str>) -> Vec<String> {
+fn notes(report: &ReportDocument, rows: &[&RowDocument], scene: Option<&str>) -> Vec<String> {
     let mut notes = vec![
         "Error: how far a skin node is from where the truth has it; 95 % of the skin's area lie below the value drawn. \
          Time: median of the repeats of a row, mesh in memory to displacement in memory, one thread. A mark is the \
@@ -145,19 +192,31 @@ fn notes(report: &ReportDocument, scene: Option<&str>) -> Vec<String> {
         let error = about.truth_error_mm.map_or_else(String::new, |error| {
             format!("; itself off by {:.4} mm (mean) and {:.4} mm (p95)", error.mean, error.p95)
         });
-        notes.push(format!("Truth of {}: {}{error}.", about.name, about.truth));
+        let (name, truth) = (scene_in_words(&about.name), in_words(&about.truth));
+        notes.push(format!("Truth of the {name}: {truth}{error}."));
+    }
+    let is_beside = |row: &&RowDocument| row.warnings.iter().any(|code| code == LINEAR_TRUTH);
+    if rows.iter().any(is_beside) {
+        let words = "Answers of finite strain are held against a linear truth: what linearity leaves out of it counts as their error.";
+        notes.push(words.to_owned());
     }
     let left_out = report.skipped.iter();
     for skipped in left_out.filter(|skipped| scene.is_none_or(|scene| skipped.scene == scene)) {
         notes.push(format!(
             "{} does not apply to {}: {}.",
-            skipped.label, skipped.scene, skipped.reason
+            variant_in_words(&skipped.label),
+            scene_in_words(&skipped.scene),
+            in_words(&skipped.reason)
         ));
     }
-    let engine = &report.engine;
-    notes.push(format!(
-        "{} {} ({}, {}), {}. Not a medical device.",
-        engine.name, engine.version, engine.profile, engine.target, report.created
-    ));
+    notes.push(engine_words(report));
     notes
+}
+
+fn engine_words(report: &ReportDocument) -> String {
+    let engine = &report.engine;
+    format!(
+        "{} {} ({}), {}. Not a medical device.",
+        engine.name, engine.version, engine.profile, report.created
+    )
 }

@@ -1,5 +1,6 @@
 //! Charts of distance over swept constants.
 
+use super::words::{in_words, scene_in_words, variant_in_words};
 use crate::jobs::failure::JobError;
 use crate::schema::study::constants::{
     ConstantCellDocument, ConstantMapDocument, SweptAxisDocument,
@@ -42,8 +43,13 @@ pub fn constants_chart(
         .collect();
     let best = places.iter().position(|place| is_at(&map.best, place)).unwrap_or_default();
     let picture = ContourPicture {
-        title: &format!("Distance from the scan: {}", map.scene),
-        subtitle: &format!("{}, {}, level {}", map.plan, map.label, map.level),
+        title: &format!("Distance from the scan: {}", scene_in_words(&map.scene)),
+        subtitle: &format!(
+            "{}, {}, level {}",
+            in_words(&map.plan),
+            variant_in_words(&map.label),
+            map.level
+        ),
         across,
         upwards: drawn.get(1),
         distances: &distances,
@@ -58,7 +64,7 @@ pub fn constants_chart(
 fn drawn(axis: &SweptAxisDocument) -> ContourAxis {
     let mut values = axis.values.clone();
     values.sort_by(f64::total_cmp);
-    ContourAxis { name: axis.words(), values }
+    ContourAxis { name: in_words(&axis.words()), values }
 }
 
 fn notes(report: &ReportDocument, map: &ConstantMapDocument, held: &[usize]) -> Vec<String> {
@@ -68,10 +74,11 @@ fn notes(report: &ReportDocument, map: &ConstantMapDocument, held: &[usize]) -> 
         .zip(&map.best.values)
         .map(|(axis, value)| format!("{} {value}", axis.words()))
         .collect();
-    let mut notes = vec![format!("Least: {:.4} mm at {}.", map.best.mean_mm, best.join("; "))];
+    let mut notes =
+        vec![in_words(&format!("Least: {:.4} mm at {}.", map.best.mean_mm, best.join("; ")))];
     if !held.is_empty() {
         let names: Vec<String> = held.iter().map(|&at| map.axes[at].words()).collect();
-        notes.push(format!("Held at the best value: {}.", names.join("; ")));
+        notes.push(in_words(&format!("Held at the best value: {}.", names.join("; "))));
     }
     let scene = report.scenes.iter().find(|scene| scene.name == map.scene);
     if let Some(unmoved) = scene.and_then(|scene| scene.unmoved_mm) {
@@ -84,7 +91,9 @@ fn notes(report: &ReportDocument, map: &ConstantMapDocument, held: &[usize]) -> 
         None => "What registration left is not known.".to_owned(),
     });
     notes.extend(
-        map.warnings.iter().map(|warning| format!("{}: {}.", warning.code, warning.detail)),
+        map.warnings
+            .iter()
+            .map(|warning| in_words(&format!("{}: {}.", warning.code, warning.detail))),
     );
     notes.push(
         "Mean distance between scan and predicted skin, both ways, where the skin moves."

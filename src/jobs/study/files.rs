@@ -10,14 +10,15 @@ pub const REPORT_JSON: &str = "report.json";
 pub const REPORT_CSV: &str = "report.csv";
 pub const REPORT_JUNIT: &str = "report.junit.xml";
 pub const CHART_SVG: &str = "chart.svg";
+pub const ESTIMATES_SVG: &str = "estimates.svg";
 
 pub const JSON_MEDIA_TYPE: &str = "application/json";
 pub const CSV_MEDIA_TYPE: &str = "text/csv; charset=utf-8";
 pub const JUNIT_MEDIA_TYPE: &str = "application/xml";
 pub const SVG_MEDIA_TYPE: &str = "image/svg+xml";
 
-/// The columns of `report.csv`.
-pub const COLUMNS: [&str; 24] = [
+/// The columns of `report.csv`; further ones are added at the end. Errors that are estimated are means over the skin.
+pub const COLUMNS: [&str; 28] = [
     "scene",
     "plan",
     "method",
@@ -42,6 +43,10 @@ pub const COLUMNS: [&str; 24] = [
     "on_front",
     "verdict",
     "reasons",
+    "numerical_error_mm",
+    "linearity_error_mm",
+    "effectivity",
+    "chosen",
 ];
 
 /// The rows as comma-separated values (RFC 4180), numbers in full.
@@ -86,6 +91,10 @@ fn csv_cells(row: &RowDocument) -> [String; COLUMNS.len()] {
         row.on_front.to_string(),
         row.verdict.name().to_owned(),
         cell(&row.reasons.join("; ")),
+        number(|n| Some(n.numerical_error_mm?.mean)),
+        number(|n| Some(n.linearity_error_mm?.mean)),
+        number(|n| n.effectivity),
+        numbers.and_then(|n| n.chosen.as_deref()).map_or_else(String::new, cell),
     ]
 }
 

@@ -3,11 +3,11 @@
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use super::cell_sizes::{CELL_SIZES_CSV, cell_size_groups, cell_sizes_chart, cell_sizes_csv};
-use super::chart::chart;
+use super::chart::{chart, estimates_chart};
 use super::constants::constants_chart;
 use super::files::{
-    CHART_SVG, CSV_MEDIA_TYPE, JSON_MEDIA_TYPE, JUNIT_MEDIA_TYPE, REPORT_CSV, REPORT_JSON,
-    REPORT_JUNIT, SVG_MEDIA_TYPE, csv, junit,
+    CHART_SVG, CSV_MEDIA_TYPE, ESTIMATES_SVG, JSON_MEDIA_TYPE, JUNIT_MEDIA_TYPE, REPORT_CSV,
+    REPORT_JSON, REPORT_JUNIT, SVG_MEDIA_TYPE, csv, junit,
 };
 use super::input::StudyInput;
 use super::prepare::{PreparedStudy, most_rows, truth_meshes};
@@ -167,6 +167,9 @@ fn write_report(report: &ReportDocument, folder: &mut ResultFolder) -> Result<()
     folder.add_file(REPORT_CSV, CSV_MEDIA_TYPE, csv(report).as_bytes())?;
     folder.add_file(REPORT_JUNIT, JUNIT_MEDIA_TYPE, junit(report).as_bytes())?;
     folder.add_file(CHART_SVG, SVG_MEDIA_TYPE, chart(report, None).as_bytes())?;
+    if let Some(chart) = estimates_chart(report) {
+        folder.add_file(ESTIMATES_SVG, SVG_MEDIA_TYPE, chart.as_bytes())?;
+    }
     if report.scenes.len() > 1 {
         for (index, scene) in report.scenes.iter().enumerate() {
             let file = format!("chart-{}-{}.svg", index + 1, file_name(&scene.name));

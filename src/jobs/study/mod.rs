@@ -14,8 +14,9 @@ mod scenes;
 pub mod stopwatch;
 mod truth;
 pub mod verdict;
+pub mod words;
 
-pub use chart::chart_drawing;
+pub use chart::{chart, chart_drawing, estimates_chart};
 pub use input::StudyInput;
 pub use job::study_job;
 pub use prepare::ALL_METHODS;

@@ -202,6 +202,10 @@ fn numbers(solved: &Solved) -> NumbersDocument {
         closest_point_mm: errors(&solved.closest_point),
         regions_mm: solved.regions.iter().map(|(name, of)| (name.clone(), errors(of))).collect(),
         skin_mean_mm: solved.skin_mean_mm,
+        numerical_error_mm: solved.numerical_error.as_ref().map(errors),
+        linearity_error_mm: solved.linearity_error.as_ref().map(errors),
+        effectivity: solved.effectivity,
+        chosen: solved.chosen.clone(),
         smallest_det_f: solved.smallest_det_f.is_finite().then_some(solved.smallest_det_f),
         covered_share: solved.covered_share,
     }

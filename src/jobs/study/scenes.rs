@@ -37,21 +37,13 @@ const OF_THE_STUDY: [&str; 10] = [
 ];
 
 /// Fields of a `predict` spec that rows do without, and why.
-const NOT_OF_ROWS: [(&str, &str); 6] = [
-    (
-        "accept_mm",
-        "a row is the answer of one model, and an accepted error chooses between models: state `method` and `element`",
-    ),
-    (
-        "accept_regions_mm",
-        "a row is the answer of one model, and an accepted error chooses between models: state `method` and `element`",
-    ),
+const NOT_OF_ROWS: [(&str, &str); 4] = [
+    ("accept_regions_mm", "rows are judged over the whole skin: state `accept_mm`"),
     ("refine", "a row is the answer on the mesh of its level: state `levels`"),
     (
         "corrected",
         "a row is the answer of a model as it is, without what its mesh is estimated to leave out",
     ),
-    ("estimate", "a row is measured against the truth of the study, and nothing is estimated"),
     ("range_mm", "a row has no file with colours"),
 ];
 
@@ -60,7 +52,10 @@ impl Documents<'_> {
     pub fn variants(&self, faults: &mut Faults) -> Vec<Variant> {
         let at = spec_at().key("methods");
         let mut variants: Vec<Variant> = match &self.spec.methods {
-            None => MethodKind::ALL.iter().flat_map(|method| self.named(*method)).collect(),
+            None => {
+                let named = MethodKind::ALL.iter().flat_map(|method| self.named(*method));
+                named.chain([methods::auto()]).collect()
+            }
             Some(entries) => {
                 let entries = entries.iter().enumerate();
                 entries
@@ -107,8 +102,12 @@ impl Documents<'_> {
 
     fn entry(&self, entry: &Value, at: &Pointer, faults: &mut Faults) -> Vec<Variant> {
         let parsed = match entry {
-            Value::String(_) => strict::from_value::<MethodName>(entry.clone())
-                .map(|method| self.named(method.chosen())),
+            Value::String(_) => {
+                strict::from_value::<MethodName>(entry.clone()).map(|method| match method {
+                    MethodName::Auto => vec![methods::auto()],
+                    MethodName::Named(kind) => self.named(kind),
+                })
+            }
             entry => self.stated(entry.clone(), at, faults).map(|variant| vec![variant]),
         };
         parsed.unwrap_or_else(|problem| {
@@ -128,7 +127,7 @@ impl Documents<'_> {
                     let mut settings = first.settings.clone();
                     settings.element = element.choice();
                     let label = format!("{name} {}", element.name());
-                    Variant { method: name.to_owned(), label, settings, may_fail: first.may_fail }
+                    Variant { label, settings, ..first.clone() }
                 })
                 .collect(),
             _ => usual,
@@ -168,18 +167,25 @@ impl Documents<'_> {
                 None
             }
         };
+        // Without a word of the method an entry is one of linear finite elements, as it always was.
+        let chooses = entry.get("method").is_some() || entry.get("accept_mm").is_some();
         let spec: PredictDocument = strict::from_value(entry)?;
         let mut own = Faults::default();
         let settings = spec.to_settings(self.limits, &mut own);
+        spec.check_accepted(&Pointer::root().key("spec"), &mut own);
         if let Err(problem) = own.into_result() {
             faults.join(problem.moved("/spec", at.as_str()));
         }
-        let method = spec.method.chosen().name();
+        let accepted = spec.accepted().filter(|_| chooses);
+        let method = match accepted {
+            Some(_) => methods::AUTO,
+            None => spec.method.chosen().name(),
+        };
         let label = label.unwrap_or_else(|| match spec.element == ElementName::default() {
             true => method.to_owned(),
             false => format!("{method} {}", spec.element.name()),
         });
-        Ok(Variant { method: method.to_owned(), label, settings, may_fail: false })
+        Ok(Variant { method: method.to_owned(), label, settings, accepted, may_fail: false })
     }
 
     /// Every scene of the spec.

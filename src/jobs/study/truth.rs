@@ -8,12 +8,12 @@ use crate::jobs::predict::Prepared;
 use crate::jobs::source::StoredMesh;
 use crate::schema::compare::document::{CompareToDocument, MeshReference};
 use crate::schema::methods::ElementName;
-use crate::schema::study::truth::{TruthDocument, TruthMetric};
+use crate::schema::study::truth::{TruthDocument, TruthMethodName, TruthMetric};
 use crate::schema::{ErrorCode, Faults, Pointer, Problem, Triple};
 use mechanics::mesh::{Frame, TriangleSurface, Vector};
 use mechanics::prediction::ElementChoice;
 use mechanics::study::scenes::usual_truth_element;
-use mechanics::study::{MOST_CELLS, Scan, ScanMetric, StudyScene, Truth, cells_at};
+use mechanics::study::{MOST_CELLS, Scan, ScanMetric, Strain, StudyScene, Truth, cells_at};
 use mechanics::validation::LandmarkPair;
 
 impl Documents<'_> {
@@ -21,12 +21,16 @@ impl Documents<'_> {
     pub(super) fn truth(&self, scene: &mut StudyScene, faults: &mut Faults) {
         let at = spec_at().key("truth");
         match &self.spec.truth {
-            Some(TruthDocument { refine: Some(times), element, .. }) => {
-                let usual = usual_truth_element(&scene.case);
+            Some(TruthDocument { refine: Some(times), element, method, .. }) => {
+                let strain = method.map_or(Strain::Small, TruthMethodName::strain);
+                let usual = match strain {
+                    Strain::Small => usual_truth_element(&scene.case),
+                    Strain::Finite => strain.method().properties().usual_element,
+                };
                 let element = element.map_or(usual, ElementName::choice);
-                check_element(element, scene, &at.key("element"), faults);
+                check_element((element, strain), scene, &at.key("element"), faults);
                 check_cells(*times, scene, &at.key("refine"), faults);
-                scene.truth = Truth::Refined { times: *times, element };
+                scene.truth = Truth::Refined { times: *times, element, strain };
             }
             Some(TruthDocument { closed_form: true, .. })
                 if !matches!(scene.truth, Truth::ClosedForm(_)) =>
@@ -149,7 +153,18 @@ fn metric(
 }
 
 /// A truth that cannot be solved would be found out after all rows.
-fn check_element(element: ElementChoice, scene: &StudyScene, at: &Pointer, faults: &mut Faults) {
+fn check_element(
+    (element, strain): (ElementChoice, Strain),
+    scene: &StudyScene,
+    at: &Pointer,
+    faults: &mut Faults,
+) {
+    let method = strain.method().properties();
+    if !method.elements.contains(&element) {
+        let detail = format!("{} has no element `{}`", method.title, element.name());
+        faults.add(at, ErrorCode::MethodNotAvailable, detail);
+        return;
+    }
     let mut cells = scene.case.volume.cells.iter();
     let shapes = element.shapes();
     if let Some((shape, _)) = cells.find(|(shape, _)| !shapes.contains(shape)) {

@@ -23,7 +23,7 @@ use crate::schema::wire::canonical;
 use crate::schema::wire::fault::{Faults, Pointer};
 use crate::schema::wire::limits::Limits;
 use crate::schema::wire::names::check_tags;
-use mechanics::prediction::{Accepted, ElementChoice, MethodKind, Settings};
+use mechanics::prediction::{Accepted, ElementChoice, MethodKind, Settings, USUALLY_ACCEPTED_MM};
 
 pub use super::budget::BudgetDocument;
 pub use super::contact::ContactName;
@@ -33,9 +33,6 @@ pub use super::tolerance::ToleranceDocument;
 
 /// The displacement in mm at which colours end where nothing else is said.
 pub const USUAL_RANGE_MM: f64 = 10.0;
-
-/// The mean error over the skin that is accepted where nothing else is said, in mm.
-const USUALLY_ACCEPTED_MM: f64 = 0.1;
 
 /// Ranges of colours that make sense, in mm.
 pub const RANGES_MM: std::ops::RangeInclusive<f64> = 1e-3..=1e3;
@@ -235,7 +232,8 @@ impl PredictDocument {
         faults.add(&at, ErrorCode::MethodNotAvailable, detail);
     }
 
-    fn check_accepted(&self, at: &Pointer, faults: &mut Faults) {
+    /// Refuses an accepted error that is out of range, or that nothing chooses by.
+    pub fn check_accepted(&self, at: &Pointer, faults: &mut Faults) {
         let place = at.key("accept_mm");
         if let Some(accepted) = self.accept_mm {
             faults.check_range(&place, accepted, ACCEPTED_MM, "mm");

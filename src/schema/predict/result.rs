@@ -132,6 +132,10 @@ pub struct ResultDocument {
     /// The forces in mN that the nodes of each segment, and all `fixed`, `sliding` and `prescribed` nodes, exert on the
     /// tissue: what pulls tissue upwards points upwards.
     #[serde(default)]
+    pub reaction_millinewton: BTreeMap<String, Triple>,
+    /// `reaction_millinewton` under its earlier name, until the next version of this document.
+    #[serde(default)]
+    #[schema(deprecated)]
     pub reaction_mn: BTreeMap<String, Triple>,
     /// The same for each condition of the case and the plan by itself.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -173,6 +177,7 @@ impl ResultDocument {
             nonlinearity_mm: None,
             nonlinearity_unknown: None,
             numerical_error_unknown: None,
+            reaction_millinewton: BTreeMap::new(),
             reaction_mn: BTreeMap::new(),
             reactions: Vec::new(),
             provenance,

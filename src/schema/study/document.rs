@@ -9,7 +9,7 @@ use utoipa::ToSchema;
 
 use super::batch::ItemDocument;
 pub use super::reference::{CaseReference, PlanReference, SceneReference};
-pub use super::truth::TruthDocument;
+pub use super::truth::{TruthDocument, TruthMethodName};
 use crate::schema::case::material::{MaterialDocument, MaterialDocuments};
 use crate::schema::methods::{ElementName, MethodName};
 use crate::schema::plan::document::PlanDocument;
@@ -41,7 +41,7 @@ pub struct StudyDocument {
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub scenes: Vec<SceneReference>,
     /// Of a batch, in place of `scenes`, `plans`, `methods`, `elements`, `materials` and `sweep`: `predict` specs without
-    /// `budget`, `outputs`, `keep`, `compare_to`, `tags`, `accept_mm`, `corrected`, `estimate` and `range_mm`, of which each is a row
+    /// `budget`, `outputs`, `keep`, `compare_to`, `tags`, `accept_regions_mm`, `corrected` and `range_mm`, of which each is a row
     /// at each level; `label` is what rows call its way of modelling. Items of the same case, plan and materials are one scene.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     #[schema(value_type = Vec<PredictDocument>)]
@@ -50,7 +50,8 @@ pub struct StudyDocument {
     /// wanted, by name (default: all).
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub plans: Vec<PlanReference>,
-    /// Default: every method that is built, each in its usual variants.
+    /// Default: every method that is built, each in its usual variants, and `auto`, which takes the cheapest model whose
+    /// estimated error is accepted (`accept_mm`).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false, value_type = Option<Vec<MethodReference>>, min_items = 1)]
     pub methods: Option<Vec<Value>>,
@@ -120,6 +121,10 @@ pub struct VariantDocument {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub label: Option<String>,
+    /// Of `auto`, as in a `predict` spec.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub accept_mm: Option<f64>,
     pub element: ElementName,
     pub contact: ContactName,
     pub tolerance: ToleranceDocument,

@@ -5,10 +5,8 @@ use utoipa::ToSchema;
 
 use crate::schema::methods::time_band;
 use crate::schema::predict::time_band::TimeBandDocument;
-use mechanics::study::{StudyScene, TruthCost, truth_cost};
-
-/// The method whose times those of truths are told from.
-const METHOD: &str = "fem_linear";
+use mechanics::prediction::NEWTON_MAY_TAKE;
+use mechanics::study::{Strain, StudyScene, TruthCost, truth_cost};
 
 /// The cost of the truth of one scene that is solved on finer meshes; no part of any row.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
@@ -16,6 +14,9 @@ pub struct TruthCostDocument {
     pub scene: String,
     /// The finest mesh, and one or two before it that tell its error.
     pub meshes: u64,
+    /// With which it is solved: `fem_linear`, or `fem_nonlinear` at finite strain.
+    #[serde(default = "linear")]
+    pub method: String,
     /// Of the finest.
     pub cells: u64,
     /// Of the finest.
@@ -26,6 +27,10 @@ pub struct TruthCostDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub time_s: Option<TimeBandDocument>,
+}
+
+fn linear() -> String {
+    Strain::Small.method().kind().name().to_owned()
 }
 
 /// The truths of scenes that are solved for.
@@ -40,6 +45,7 @@ fn document(scene: &str, cost: &TruthCost) -> TruthCostDocument {
     TruthCostDocument {
         scene: scene.to_owned(),
         meshes: cost.meshes.len() as u64,
+        method: cost.strain.method().kind().name().to_owned(),
         cells: of_finest(finest.map(|mesh| mesh.cells)),
         unknowns: of_finest(finest.map(|mesh| mesh.unknowns)),
         solves: finest.map_or(0, |mesh| mesh.solves as u64),
@@ -50,22 +56,32 @@ fn document(scene: &str, cost: &TruthCost) -> TruthCostDocument {
 fn time_s(cost: &TruthCost) -> Option<TimeBandDocument> {
     let mut all = TimeBandDocument { low: 0.0, high: 0.0 };
     for mesh in &cost.meshes {
-        let band = time_band(METHOD, mesh.unknowns as u64)?;
+        let band = of_one(cost.strain, mesh.unknowns as u64)?;
         all.low += band.low * mesh.solves as f64;
         all.high += band.high * mesh.solves as f64;
     }
     Some(all)
 }
 
+/// Of one solve. Where Newton's method was not measured, as many linear solves as it may take.
+fn of_one(strain: Strain, unknowns: u64) -> Option<TimeBandDocument> {
+    let method = strain.method().kind().name();
+    time_band(method, unknowns).or_else(|| {
+        let linear = time_band(&linear(), unknowns)?;
+        let [low, high] = NEWTON_MAY_TAKE;
+        Some(TimeBandDocument { low: low * linear.low, high: high * linear.high })
+    })
+}
+
 impl TruthCostDocument {
     /// In one line.
     pub fn sentence(&self) -> String {
-        let TruthCostDocument { scene, meshes, cells, unknowns, solves, time_s } = self;
+        let TruthCostDocument { scene, meshes, method, cells, unknowns, solves, time_s } = self;
         let time = time_s.map_or_else(String::new, |time| {
             format!(": {:.0} to {:.0} s on one thread", time.low, time.high)
         });
         format!(
-            "the truth of {scene} is solved on {meshes} meshes, {solves} times each, the finest with {cells} cells and {unknowns} unknowns{time}"
+            "the truth of {scene} is solved by `{method}` on {meshes} meshes, {solves} times each, the finest with {cells} cells and {unknowns} unknowns{time}"
         )
     }
 }

@@ -6,7 +6,8 @@ use utoipa::ToSchema;
 use crate::schema::plan::document::PlanDocument;
 use crate::schema::wire::text_or_object::TextOrObject;
 
-/// A scene that the program makes itself, by its name (`sphere`, `slab`, `slab_hex`, `half_head`), or a case.
+/// A scene that the program makes itself, by its name (`sphere`, `slab`, `slab_hex`, `half_head`, and moved by up to 25 mm
+/// `slab_far` and `half_head_far`), or a case.
 #[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
 #[serde(untagged)]
 pub enum SceneReference {

@@ -260,6 +260,23 @@ pub struct NumbersDocument {
     /// How far the skin moves, mean by area.
     #[schema(required = false)]
     pub skin_mean_mm: f64,
+    /// What the mesh leaves out of the answer, as estimated without the truth; absent where that is not estimated.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub numerical_error_mm: Option<ErrorsDocument>,
+    /// What linearity leaves out of the answer, as estimated without the truth; absent where that is not estimated.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub linearity_error_mm: Option<ErrorsDocument>,
+    /// The mean error that is expected of the answer, over the true one: of its mesh, and of linearity too where the truth is
+    /// one of finite strain; of `auto` over the skin that moves. Absent where one of the two is not known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub effectivity: Option<f64>,
+    /// Of `auto`: the model that it took, as in `adequacy` of a prediction.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub chosen: Option<String>,
     /// Absent where there are no cells.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]

@@ -11,6 +11,7 @@ use crate::schema::compare::align::{AlignDocument, AlignMethod, AlignReference, 
 use crate::schema::methods::ElementName;
 use crate::schema::wire::fault::{Faults, Pointer};
 use crate::schema::wire::limits::Limits;
+use mechanics::study::Strain;
 
 /// Halving every edge once more makes eight cells of one.
 const MOST_LEVEL: u32 = 4;
@@ -26,14 +27,19 @@ const FARTHEST_MM: f64 = 100.0;
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TruthDocument {
-    /// Linear finite elements with every edge of level 0 halved so often.
+    /// Finite elements with every edge of level 0 halved so often.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false, minimum = 0, maximum = 4)]
     pub refine: Option<u32>,
-    /// Of `refine`. Default: `quadratic` where all cells are tetrahedra, else `mean_dilatation`.
+    /// Of `refine`. Default: of `fem_linear` `quadratic` where all cells are tetrahedra, else `mean_dilatation`; of
+    /// `fem_nonlinear` the usual one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub element: Option<ElementName>,
+    /// Of `refine`. A linear truth is none where movements are large. Default: `fem_linear`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub method: Option<TruthMethodName>,
     /// The formula of the scene; `true` or absent.
     #[serde(default, skip_serializing_if = "is_false")]
     pub closed_form: bool,
@@ -86,6 +92,24 @@ fn is_both(metric: &TruthMetric) -> bool {
     *metric == TruthMetric::Both
 }
 
+/// The method of a truth that is solved for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum TruthMethodName {
+    FemLinear,
+    /// At finite strain, each tissue with its law.
+    FemNonlinear,
+}
+
+impl TruthMethodName {
+    pub fn strain(self) -> Strain {
+        match self {
+            TruthMethodName::FemLinear => Strain::Small,
+            TruthMethodName::FemNonlinear => Strain::Finite,
+        }
+    }
+}
+
 fn is_false(value: &bool) -> bool {
     !value
 }
@@ -101,8 +125,14 @@ impl TruthDocument {
             [self.refine.is_some(), self.closed_form, self.job.is_some(), self.mesh.is_some()];
         let given = forms.into_iter().filter(|&form| form).count();
         faults.check_one_of(at, given, "`refine`, `closed_form`, `job`, `mesh`");
-        if self.element.is_some() && self.refine.is_none() {
-            faults.add(&at.key("element"), ErrorCode::WrongType, "`element` belongs to `refine`");
+        let of_refine = [("element", self.element.is_some()), ("method", self.method.is_some())];
+        for (name, _) in of_refine.into_iter().filter(|(_, given)| *given && self.refine.is_none())
+        {
+            faults.add(
+                &at.key(name),
+                ErrorCode::WrongType,
+                format!("`{name}` belongs to `refine`"),
+            );
         }
         let refine = f64::from(self.refine.unwrap_or_default());
         faults.check_range(&at.key("refine"), refine, 0.0..=f64::from(MOST_LEVEL), "");

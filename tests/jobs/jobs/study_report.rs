@@ -2,6 +2,7 @@
 
 use facies::jobs::study::files::{COLUMNS, csv, junit};
 use facies::jobs::study::verdict::{Baseline, judge};
+use facies::jobs::study::{chart, estimates_chart};
 use facies::schema::ReportDocument;
 use facies::schema::study::report::{OutcomeName, RowVerdict};
 use serde_json::{Value, json};
@@ -336,4 +337,57 @@ fn the_table_has_every_row_and_no_cell_is_a_formula() {
     assert!(text.contains("slab,\"a, \"\"b\"\"\nc\",fem_linear,'=cmd|' /C calc',tet4,case,0,100,1,,0.05,0.1,0.2,solved,"));
     assert!(text.ends_with("\r\n") && text.contains(",failed,\"x: it <did> & \"\"more\"\"\","));
     assert!(text.contains("slab,4 mm,msm,msm,,case,0,,,,,,,failed,"));
+}
+
+/// What a reader of an SVG sees.
+fn visible(svg: &str) -> Vec<&str> {
+    let parts = svg.split("<text").skip(1);
+    parts.filter_map(|part| part.split('>').nth(1)?.split('<').next()).collect()
+}
+
+#[test]
+fn charts_speak_in_words() {
+    let labels = ["fem_linear stabilised", "mtm damped_jacobi", "my_own", "thickness_warp"];
+    let mut rows: Vec<Value> =
+        (1..).zip(labels).map(|(n, label)| solved(label, 0, [f64::from(n), 0.1])).collect();
+    for row in &mut rows {
+        row["scene"] = json!("half_head");
+        row["plan"] = json!("my_plan");
+        row["effectivity"] = json!(0.8);
+        row["warnings"] = json!(["linear-truth"]);
+    }
+    let mut broken = failed("fem_nonlinear plain", "failed", "no-equilibrium");
+    broken["scene"] = json!("half_head");
+    broken["error"]["detail"] = json!("`fem_nonlinear` found none");
+    rows.push(broken);
+    let mut report = report(&rows, usual());
+    report.engine.target = "x86_64-unknown-linux-gnu".to_owned();
+    let scene = json!([{
+        "name": "half_head", "nodes": 1, "cells": 1, "skin_nodes": 1, "truth_s": 0.0, "truth": "mean_dilatation",
+    }]);
+    report.scenes = serde_json::from_value(scene).unwrap();
+    let skipped = json!([{
+        "scene": "half_head", "method": "mtm_ti", "label": "mtm_ti", "rows": 1, "reason": "`mtm_ti` is not",
+    }]);
+    report.skipped = serde_json::from_value(skipped).unwrap();
+    let charts = [chart(&report, None), chart(&report, Some("half_head"))];
+    for svg in charts.into_iter().chain(estimates_chart(&report)) {
+        let words = visible(&svg);
+        assert!(words.len() > 15, "{words:?}");
+        assert!(words.iter().all(|words| !words.contains('_')), "{words:?}");
+        assert!(words.contains(&"mass-tensor, damped Jacobi"), "{words:?}");
+    }
+    let words = chart(&report, None);
+    for wanted in ["half head", "nonlinear FEM, plain", "no-equilibrium", "against a linear truth"]
+    {
+        assert!(words.contains(wanted), "{wanted}");
+    }
+}
+
+#[test]
+fn rows_of_earlier_programs_have_no_estimates_and_no_chart_of_them() {
+    let report = report(&[solved("fem", 0, [1.0, 0.1])], usual());
+    assert!(estimates_chart(&report).is_none());
+    let line = csv(&report).lines().nth(1).unwrap().to_owned();
+    assert!(line.ends_with(",,,,"), "{line}");
 }

@@ -69,7 +69,10 @@ async fn a_study_is_told_as_document_table_test_results_and_chart() {
         .iter()
         .map(|file| file["name"].as_str().unwrap())
         .collect();
-    assert_eq!(files, ["report.json", "report.csv", "report.junit.xml", "chart.svg"]);
+    assert_eq!(
+        files,
+        ["report.json", "report.csv", "report.junit.xml", "chart.svg", "estimates.svg"]
+    );
     assert!(job["links"].as_array().unwrap().iter().any(|link| link["rel"] == "describedby"));
 
     let answer = report(&server, &job, "").await;
@@ -431,7 +434,7 @@ fn bad_methods() -> Vec<Row> {
         ),
         (
             "an accepted error",
-            method(json!({"label": "a", "accept_mm": 0.02})),
+            method(json!({"label": "a", "accept_mm": -1})),
             invalid,
             "/methods/1/accept_mm",
         ),

@@ -15,7 +15,7 @@ mod duration;
 mod rung;
 mod shortfall;
 
-pub use accepted::{Accepted, MeanErrors};
+pub use accepted::{Accepted, MeanErrors, USUALLY_ACCEPTED_MM};
 pub use climb::{Adequate, Watched, predict_adequately};
 pub use duration::{NEWTON_MAY_TAKE, SECOND_ORDER_TAKES};
 pub use rung::{Considered, Errors, Rung, Together};

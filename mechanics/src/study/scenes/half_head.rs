@@ -9,7 +9,7 @@ use crate::boundary::NodeSelection;
 use crate::mesh::half_head::{LAYERS, half_head as made};
 use crate::mesh::{Frame, Vector, VolumeMesh};
 use crate::prediction::{Bone, Case, CaseSegment, ElementChoice, Plan, RegionNames};
-use crate::study::variant::{StudyScene, Truth};
+use crate::study::variant::{Strain, StudyScene, Truth};
 
 /// 15 552 tetrahedra.
 const FINENESS: usize = 3;
@@ -48,8 +48,26 @@ pub fn half_head() -> StudyScene {
         case,
         plans,
         materials: vec![tissue],
-        truth: Truth::Refined { times: 1, element: ElementChoice::Quadratic },
+        truth: Truth::Refined {
+            times: 1,
+            element: ElementChoice::Quadratic,
+            strain: Strain::Small,
+        },
     }
+}
+
+/// The same head with the mandible moved as far as jaws are moved; the truth is stabilised tetrahedra of half the size at finite
+/// strain.
+pub fn half_head_far() -> StudyScene {
+    let near = half_head();
+    let forward = -Vector::y();
+    let pivot = middle(&near.case.volume, "mandible");
+    let mut plans: Vec<(String, Plan)> =
+        [10.0, 15.0, 25.0].map(|length| shift("mandible", length, forward)).into();
+    plans.push(turn("mandible", 20.0, Vector::x(), pivot));
+    let (element, strain) = (ElementChoice::Stabilised, Strain::Finite);
+    let truth = Truth::Refined { times: 1, element, strain };
+    StudyScene { name: "half_head_far".to_owned(), plans, truth, ..near }
 }
 
 /// The mandible forward and turned up about the axis across its middle, the maxilla forward, and the jaws against each

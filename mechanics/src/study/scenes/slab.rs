@@ -11,7 +11,7 @@ use crate::boundary::NodeSelection;
 use crate::mesh::sample::block;
 use crate::mesh::{CellShape, TriangleSurface, Vector, VolumeMesh};
 use crate::prediction::{Bone, Case, CaseSegment, ElementChoice, Plan, Sliding, SlidingNormal};
-use crate::study::variant::{StudyScene, Truth};
+use crate::study::variant::{Strain, StudyScene, Truth};
 
 /// In mm; x is centred.
 const SIZE: [f64; 3] = [60.0, 30.0, 12.0];
@@ -28,18 +28,36 @@ const FRAME: [&str; 3] = ["frame_left", "frame_right", "frame_back"];
 
 /// Of tetrahedra; the truth is quadratic ones of 1.5 mm.
 pub fn slab() -> StudyScene {
-    slab_of(CellShape::Tet4, Truth::Refined { times: 2, element: ElementChoice::Quadratic })
+    slab_of(
+        CellShape::Tet4,
+        Truth::Refined { times: 2, element: ElementChoice::Quadratic, strain: Strain::Small },
+    )
+}
+
+/// Of tetrahedra, moved as far as jaws are moved; the truth is stabilised ones of 1.5 mm at finite strain.
+pub fn slab_far() -> StudyScene {
+    let strain = Strain::Finite;
+    let truth = Truth::Refined { times: 2, element: ElementChoice::Stabilised, strain };
+    let near = slab_of(CellShape::Tet4, truth);
+    let materials = near.materials.iter().take(1).cloned().collect();
+    let along = Vector::new(4.0, 0.0, 8.0);
+    let mut plans: Vec<(String, Plan)> =
+        [10.0, 15.0, 25.0].map(|length| shift("patch", length, along)).into();
+    plans.push(turn("patch", 20.0, Vector::y(), Vector::zeros()));
+    StudyScene { name: "slab_far".to_owned(), plans, materials, ..near }
 }
 
 /// Of hexahedra; the truth is mean-dilatation ones of 0.75 mm.
 pub fn slab_hex() -> StudyScene {
-    let truth = Truth::Refined { times: 3, element: ElementChoice::MeanDilatation };
+    let truth =
+        Truth::Refined { times: 3, element: ElementChoice::MeanDilatation, strain: Strain::Small };
     StudyScene { name: "slab_hex".to_owned(), ..slab_of(CellShape::Hex8, truth) }
 }
 
 /// Of wedges; the truth is mean-dilatation ones of 0.75 mm.
 pub fn slab_wedge() -> StudyScene {
-    let truth = Truth::Refined { times: 3, element: ElementChoice::MeanDilatation };
+    let truth =
+        Truth::Refined { times: 3, element: ElementChoice::MeanDilatation, strain: Strain::Small };
     StudyScene { name: "slab_wedge".to_owned(), ..slab_of(CellShape::Wedge6, truth) }
 }
 

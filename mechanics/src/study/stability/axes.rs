@@ -1,9 +1,11 @@
 //! Axes of the map of failures that every method has; what only some have is in `own_axes`.
 
 use super::axis::FINER;
+use super::axis::FINER_OF_ITS_STRAIN;
 use super::axis::RING;
 use super::axis::TENTH_OF_MOVEMENT;
 use super::axis::finer;
+use super::axis::finer_at_finite_strain;
 use super::axis::found;
 use super::axis::material;
 use super::axis::moved;
@@ -47,13 +49,16 @@ fn poisson_ratio() -> Axis {
         title: "Poisson ratio",
         unit: "",
         scene: "layer of 12 mm, patch of 16 x 16 mm moved by (1, 0, 2) mm",
-        reference: FINER,
+        reference: FINER_OF_ITS_STRAIN,
         bound_mm: TENTH_OF_MOVEMENT,
         values: numbers(&[0.3, 0.4, 0.45, 0.46, 0.49, 0.499, 0.4999, 0.5]),
         probe: |nu, variant| {
             found(case_of_nu(nu, shape_for(&variant.settings))?, jaw(shift(moved())), variant)
         },
         truth: |nu| finer(case_of_nu(nu, CellShape::Tet4), jaw(shift(moved()))),
+        finite_truth: Some(|nu| {
+            finer_at_finite_strain(case_of_nu(nu, CellShape::Tet4), jaw(shift(moved())))
+        }),
     }
 }
 
@@ -80,14 +85,17 @@ fn movement() -> Axis {
             let (case, plan) = swelling(by, material, shape_for(&variant.settings));
             found(case, plan, variant)
         },
-        truth: |by| {
-            Truth::Formula(Box::new(move |x| {
-                let r = x.norm();
-                let cubed = r.powi(3) + (60.0 + by).powi(3) - 60.0_f64.powi(3);
-                x * (cubed.cbrt() / r - 1.0)
-            }))
-        },
+        truth: swollen,
+        finite_truth: Some(swollen),
     }
+}
+
+fn swollen(by: f64) -> Truth {
+    Truth::Formula(Box::new(move |x| {
+        let r = x.norm();
+        let cubed = r.powi(3) + (60.0 + by).powi(3) - 60.0_f64.powi(3);
+        x * (cubed.cbrt() / r - 1.0)
+    }))
 }
 
 // Rotation.
@@ -108,8 +116,13 @@ fn rotation() -> Axis {
             case.allow_unfixed = true;
             found(case, jaw(turn(degrees)), variant)
         },
-        truth: |degrees| Truth::Formula(Box::new(move |x| turn(degrees).displacement(x))),
+        truth: turned,
+        finite_truth: Some(turned),
     }
+}
+
+fn turned(degrees: f64) -> Truth {
+    Truth::Formula(Box::new(move |x| turn(degrees).displacement(x)))
 }
 
 fn turn(degrees: f64) -> RigidMovement {
@@ -134,8 +147,13 @@ fn sliding() -> Axis {
             let case = around_ball(material, shape_for(&variant.settings));
             found(case, jaw(about_z(degrees)), variant)
         },
-        truth: |degrees| Truth::Formula(Box::new(move |x| about_z(degrees).displacement(x))),
+        truth: turned_about_z,
+        finite_truth: Some(turned_about_z),
     }
+}
+
+fn turned_about_z(degrees: f64) -> Truth {
+    Truth::Formula(Box::new(move |x| about_z(degrees).displacement(x)))
 }
 
 fn about_z(degrees: f64) -> RigidMovement {
@@ -174,6 +192,7 @@ fn aspect() -> Axis {
             flatter if flatter > 0.0 => Truth::First { times: 1.0 },
             _ => Truth::Impossible,
         },
+        finite_truth: None,
     }
 }
 
@@ -185,7 +204,7 @@ fn stiffness_contrast() -> Axis {
         title: "Stiffness contrast",
         unit: "times 15 kPa",
         scene: "the layer of `poisson_ratio`, nu 0.43, its middle third ever stiffer",
-        reference: FINER,
+        reference: FINER_OF_ITS_STRAIN,
         bound_mm: TENTH_OF_MOVEMENT,
         values: values(&[
             (1.0, "1"),
@@ -201,6 +220,9 @@ fn stiffness_contrast() -> Axis {
             found(case, jaw(shift(moved())), variant)
         },
         truth: |contrast| finer(stiff_case(contrast, CellShape::Tet4), jaw(shift(moved()))),
+        finite_truth: Some(|contrast| {
+            finer_at_finite_strain(stiff_case(contrast, CellShape::Tet4), jaw(shift(moved())))
+        }),
     }
 }
 
@@ -230,6 +252,7 @@ fn jump() -> Axis {
             0.5 => finer(usual_case(&LEVELS, CELL, CellShape::Tet4), jaw(shift(Vector::x() * by))),
             more => Truth::First { times: more / 0.5 },
         },
+        finite_truth: None,
     }
 }
 
@@ -252,6 +275,7 @@ fn loose_parts() -> Axis {
             true => finer(case_with_part(shared as usize, CellShape::Tet4), jaw(shift(moved()))),
             false => Truth::Impossible,
         },
+        finite_truth: None,
     }
 }
 
@@ -315,5 +339,6 @@ fn contradiction() -> Axis {
             rounding if rounding < 1e-9 => Truth::First { times: 1.0 },
             _ => Truth::Impossible,
         },
+        finite_truth: None,
     }
 }

@@ -4,7 +4,7 @@ use super::scenes::{POISSON_RATIO, YOUNG_MODULUS, halved, layer, on_bone, tissue
 use super::{Probe, Refusal, Truth, Variant};
 use crate::material::{LinearElastic, MaterialError};
 use crate::mesh::{CellShape, Vector};
-use crate::prediction::{Case, ElementChoice, Plan, Settings};
+use crate::prediction::{Case, ElementChoice, Method, Plan, Settings};
 
 /// A tenth of the movement of 2.24 mm that linear axes make.
 pub(super) const TENTH_OF_MOVEMENT: f64 = 0.22;
@@ -13,6 +13,10 @@ pub(super) const TENTH_OF_MOVEMENT: f64 = 0.22;
 pub(super) const RING: f64 = 8.0;
 
 pub(super) const FINER: &str = "linear finite elements, quadratic, every edge halved";
+
+/// The same for both kinds of strain.
+pub(super) const FINER_OF_ITS_STRAIN: &str = "linear finite elements, quadratic, every edge halved; for methods of finite \
+    strain nonlinear ones, stabilised, on the same mesh";
 
 pub(super) type Found = Result<Option<Probe>, Refusal>;
 
@@ -52,6 +56,16 @@ pub(super) fn found(case: Case, plan: Plan, variant: &Variant) -> Found {
 /// The truth of a case of tetrahedra on a mesh of half the size; impossible where there is no such case.
 pub(super) fn finer(case: Result<Case, Refusal>, plan: Plan) -> Truth {
     let settings = Settings { element: ElementChoice::Quadratic, ..Settings::default() };
+    halved_by(case, plan, settings)
+}
+
+/// The same at finite strain.
+pub(super) fn finer_at_finite_strain(case: Result<Case, Refusal>, plan: Plan) -> Truth {
+    let (method, element) = (Method::FemNonlinear, ElementChoice::Stabilised);
+    halved_by(case, plan, Settings { method, element, ..Settings::default() })
+}
+
+fn halved_by(case: Result<Case, Refusal>, plan: Plan, settings: Settings) -> Truth {
     case.map_or(Truth::Impossible, |case| {
         Truth::Solved(Box::new(Probe { case: halved(case), plan, settings }))
     })

@@ -5,7 +5,7 @@ use std::rc::Rc;
 
 use super::{Answer, Axis, AxisMap, Bounds, Finding, Map, Probe, Refusal, Truth, Variant, Verdict};
 use crate::mesh::{Vector, Warning};
-use crate::prediction::{ModelError, Prediction, Scene, predict};
+use crate::prediction::{Laws, ModelError, Prediction, Scene, predict};
 use crate::progress::Unobserved;
 use crate::solver::SolverError;
 use crate::study::deadline::Deadline;
@@ -26,15 +26,19 @@ pub fn map(variants: &[Variant], axes: &[Axis], bounds: &Bounds, told: &dyn Fn(&
 
 fn sweep(axis: &Axis, variants: &[Variant], bounds: &Bounds) -> AxisMap {
     let mut findings: Vec<Vec<Option<Finding>>> = vec![Vec::new(); variants.len()];
-    let mut first = None;
+    let (mut first, mut first_finite) = (None, None);
+    let is_finite = |variant: &Variant| variant.settings.method.properties().laws != Laws::AtRest;
+    let finite_truth = axis.finite_truth.filter(|_| variants.iter().any(is_finite));
     for (value, _) in &axis.values {
         let truth = Known::of((axis.truth)(*value), &mut first);
+        let finite = finite_truth.map(|truth| Known::of(truth(*value), &mut first_finite));
         for (row, variant) in findings.iter_mut().zip(variants) {
-            row.push(match (axis.probe)(*value, variant) {
+            let truth = if is_finite(variant) { finite.as_ref() } else { Some(&truth) };
+            row.push(truth.and_then(|truth| match (axis.probe)(*value, variant) {
                 Ok(None) => None,
-                Ok(Some(probe)) => Some(judged(&probe, &truth, axis.bound_mm, bounds)),
+                Ok(Some(probe)) => Some(judged(&probe, truth, axis.bound_mm, bounds)),
                 Err(refusal) => Some(refused(refusal)),
-            });
+            }));
         }
     }
     AxisMap {

@@ -35,6 +35,8 @@ pub struct Axis {
     pub probe: fn(f64, &Variant) -> Result<Option<Probe>, Refusal>,
     /// The right answer at a value.
     pub truth: fn(f64) -> Truth,
+    /// The right answer for methods of finite strain; none where the axis says nothing of them.
+    pub finite_truth: Option<fn(f64) -> Truth>,
 }
 
 /// What a method is given.

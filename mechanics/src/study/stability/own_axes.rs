@@ -32,6 +32,7 @@ fn fibre_ratio() -> Axis {
         truth: |ratio| {
             finer(fibred(ratio, FibreLaw::Engineering, CellShape::Tet4), jaw(shift(moved())))
         },
+        finite_truth: None,
     }
 }
 
@@ -48,6 +49,7 @@ fn fibre_ratio_of_paper() -> Axis {
         truth: |ratio| {
             finer(fibred(ratio, FibreLaw::Paper002, CellShape::Tet4), jaw(shift(moved())))
         },
+        finite_truth: None,
     }
 }
 
@@ -95,6 +97,7 @@ fn time_step() -> Axis {
         values: numbers(&[0.1, 1.0, 10.0, 100.0, 1000.0, 3000.0]),
         probe: |step, variant| stepped(step, Scheme::BackwardEuler, variant),
         truth: |_| at_once(),
+        finite_truth: None,
     }
 }
 
@@ -116,6 +119,7 @@ fn explicit_time_step() -> Axis {
         ]),
         probe: |step, variant| stepped(step, Scheme::Explicit, variant),
         truth: |_| at_once(),
+        finite_truth: None,
     }
 }
 

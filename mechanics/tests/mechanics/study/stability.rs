@@ -26,6 +26,7 @@ fn variants() -> Vec<Variant> {
         method: "fem_linear".to_owned(),
         label: format!("fem_linear {name}"),
         settings: Settings { element, ..Settings::default() },
+        accepted: None,
         may_fail: false,
     };
     vec![

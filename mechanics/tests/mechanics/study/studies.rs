@@ -17,8 +17,8 @@ use mechanics::study::report::Solved;
 use mechanics::study::scenes::{SCENES, scene_of, slab, slab_hex, sphere_of, usual_truth};
 use mechanics::study::sweep::{Judged, SweepError, Values, best, combinations};
 use mechanics::study::{
-    Errors, Materials, NOT_RUN, Outcome, Report, Row, Stopwatch, Study, StudyError, StudyScene,
-    Truth, Variant, convergence, methods, pareto, run, truth_cost,
+    Errors, LINEAR_TRUTH, Materials, NOT_RUN, Outcome, Report, Row, Stopwatch, Strain, Study,
+    StudyError, StudyScene, Truth, Variant, convergence, methods, pareto, run, truth_cost,
 };
 
 use crate::scenes::{StopsAfter, case_of, material, set, solve};
@@ -38,7 +38,13 @@ impl Stopwatch for Still {
 
 fn variant(label: &str, element: ElementChoice) -> Variant {
     let settings = Settings { method: Method::FemLinear, element, ..Settings::default() };
-    Variant { method: "fem_linear".to_owned(), label: label.to_owned(), settings, may_fail: false }
+    Variant {
+        method: "fem_linear".to_owned(),
+        label: label.to_owned(),
+        settings,
+        accepted: None,
+        may_fail: false,
+    }
 }
 
 fn study(scene: StudyScene, variants: Vec<Variant>, levels: &[u32]) -> Study {
@@ -69,7 +75,8 @@ fn slab_with(plans: impl Fn(&str) -> bool) -> StudyScene {
     let mut scene = slab();
     scene.plans.retain(|(name, _)| plans(name));
     scene.materials.truncate(1);
-    scene.truth = Truth::Refined { times: 1, element: ElementChoice::Quadratic };
+    scene.truth =
+        Truth::Refined { times: 1, element: ElementChoice::Quadratic, strain: Strain::Small };
     scene
 }
 
@@ -198,7 +205,8 @@ fn a_row_that_fails_is_a_row_and_what_does_not_apply_is_none() {
     ];
     let mut scene = slab_hex();
     scene.materials.truncate(1);
-    scene.truth = Truth::Refined { times: 1, element: ElementChoice::MeanDilatation };
+    scene.truth =
+        Truth::Refined { times: 1, element: ElementChoice::MeanDilatation, strain: Strain::Small };
     scene.plans.truncate(1);
     let segments =
         vec![PlannedSegment { name: "nowhere".to_owned(), movement: RigidMovement::default() }];
@@ -259,7 +267,8 @@ fn what_a_truth_costs_is_known_before_and_told_while_it_is_solved() {
     let mut hexahedra = slab_hex();
     hexahedra.plans.truncate(2);
     hexahedra.materials.truncate(1);
-    hexahedra.truth = Truth::Refined { times: 2, element: ElementChoice::MeanDilatation };
+    hexahedra.truth =
+        Truth::Refined { times: 2, element: ElementChoice::MeanDilatation, strain: Strain::Small };
     let cost = truth_cost(&hexahedra).unwrap();
     let (cells, nodes) = (hexahedra.case.volume.cells.len(), hexahedra.case.volume.nodes.len());
     assert_eq!((cost.meshes.len(), cost.meshes[2].solves), (3, 2));
@@ -506,6 +515,10 @@ fn row(label: &str, level: u32, wall_s: f64, p95: f64, skin_mean_mm: f64) -> Row
             error: errors,
             closest_point: errors,
             regions: BTreeMap::new(),
+            numerical_error: None,
+            linearity_error: None,
+            effectivity: None,
+            chosen: None,
             smallest_det_f: 1.0,
             covered_share: None,
             warnings: Vec::new(),
@@ -557,9 +570,8 @@ fn every_method_has_variants_of_its_own_name_and_no_label_comes_twice() {
         assert!(own.iter().all(is_own), "{method:?}");
         all.extend(own);
     }
-    let of_finite_strain = [MethodKind::FemNonlinear, MethodKind::MassTensorNonlinear];
-    let apart: usize = of_finite_strain.map(|method| methods::of_method(method).len()).iter().sum();
-    assert_eq!(methods::available().len() + apart, all.len(), "the truths of studies are linear");
+    assert_eq!(methods::available().len(), all.len());
+    all.push(methods::auto());
     for (place, variant) in all.iter().enumerate() {
         assert!(all[..place].iter().all(|other| other.label != variant.label), "{}", variant.label);
     }
@@ -624,8 +636,58 @@ fn a_case_without_a_truth_of_its_own_gets_a_finer_mesh() {
     };
     let quadratic = ElementChoice::Quadratic;
     assert!(
-        matches!(of(CellShape::Tet4), Truth::Refined { times: 1, element } if element == quadratic)
+        matches!(of(CellShape::Tet4), Truth::Refined { times: 1, element, strain: Strain::Small } if element == quadratic)
     );
     let mean = ElementChoice::MeanDilatation;
-    assert!(matches!(of(CellShape::Hex8), Truth::Refined { times: 2, element } if element == mean));
+    assert!(
+        matches!(of(CellShape::Hex8), Truth::Refined { times: 2, element, strain: Strain::Small } if element == mean)
+    );
+}
+
+#[test]
+fn a_truth_of_finite_strain_is_near_finite_strain_and_far_from_linearity() {
+    let mut scene = slab_with(|name| name == "patch 8 mm");
+    let (element, strain) = (ElementChoice::Stabilised, Strain::Finite);
+    scene.truth = Truth::Refined { times: 1, element, strain };
+    let nonlinear = |label: &str, element| {
+        let settings = Settings { method: Method::FemNonlinear, element, ..Settings::default() };
+        Variant { settings, ..variant(label, element) }
+    };
+    let variants = vec![
+        variant("linear", element),
+        nonlinear("nonlinear", element),
+        Variant { label: "auto".to_owned(), ..methods::auto() },
+    ];
+    let study = study(scene, variants, &[0, 1]);
+    let cost = truth_cost(&study.scenes[0]).unwrap();
+    assert_eq!((cost.strain, cost.meshes[0].solves), (Strain::Finite, 1));
+    let report = of(&study);
+    assert!(report.scenes[0].truth.contains("at finite strain"), "{}", report.scenes[0].truth);
+    let rows: Vec<(&str, u32)> =
+        report.rows.iter().map(|row| (row.label.as_str(), row.level)).collect();
+    // What the truth is made of has no row.
+    let all = [("linear", 0), ("nonlinear", 0), ("auto", 0), ("linear", 1), ("auto", 1)];
+    assert_eq!(rows, all);
+    let [linear, own, auto, finer, _] = [0, 1, 2, 3, 4].map(|row| solved(&report.rows[row]));
+    assert!(finer.error.mean > 3.0 * own.error.mean, "{finer:?} {own:?}");
+    assert!(auto.error.mean < 0.5 * linear.error.mean, "{auto:?}");
+    assert!(auto.chosen.as_deref().is_some_and(|rung| rung != "linear"));
+    for (name, row) in [("linear", linear), ("nonlinear", own), ("finer", finer)] {
+        let effectivity = row.effectivity.unwrap();
+        assert!((0.4..2.5).contains(&effectivity), "{name}: {effectivity}");
+        assert!(row.numerical_error.is_some() && row.chosen.is_none());
+    }
+    assert!(linear.linearity_error.is_some() && own.linearity_error.is_none());
+}
+
+#[test]
+fn answers_of_finite_strain_say_that_their_truth_is_linear() {
+    let scene = slab_with(|name| name == "patch 8 mm");
+    let own = |kind| methods::of_method(kind).remove(0);
+    let variants = vec![own(MethodKind::FemLinear), own(MethodKind::FemNonlinear)];
+    let report = of(&study(scene, variants, &[0]));
+    let [linear, nonlinear] = [0, 1].map(|row| solved(&report.rows[row]));
+    let is_told = |row: &Solved| row.warnings.iter().any(|code| code == LINEAR_TRUTH);
+    assert_eq!([linear, nonlinear].map(is_told), [false, true]);
+    assert!(linear.effectivity.is_some() && nonlinear.effectivity.is_none());
 }
