@@ -11,11 +11,12 @@ pub enum Phase {
     Contact,
     Surface,
     Compare,
+    Correct,
     Write,
 }
 
 impl Phase {
-    const ALL: [Phase; 9] = [
+    const ALL: [Phase; 10] = [
         Phase::Validate,
         Phase::Mesh,
         Phase::Assemble,
@@ -24,6 +25,7 @@ impl Phase {
         Phase::Contact,
         Phase::Surface,
         Phase::Compare,
+        Phase::Correct,
         Phase::Write,
     ];
 
@@ -42,6 +44,7 @@ impl Phase {
             Phase::Contact => "contact",
             Phase::Surface => "surface",
             Phase::Compare => "compare",
+            Phase::Correct => "correct",
             Phase::Write => "write",
         }
     }

@@ -12,8 +12,11 @@ use super::screen::{print_files, print_warnings, work_in_sight};
 use crate::jobs::{JobInput, LearnInput, LearnedCase, PredictInput, Workplace};
 use crate::schema::case::document::LengthUnit;
 use crate::schema::learn::document::VirtualCohortDocument;
-use crate::schema::learn::result::LearningDocument;
+use crate::schema::learn::result::{
+    CurveDocument, LearningDocument, ValidationDocument, WidthDocument,
+};
 use crate::schema::{CaseDocument, LearnDocument, Limits, PlanDocument, PredictDocument};
+use mechanics::learning::virtual_cohort::USUAL_MAPPING;
 
 #[derive(Debug, Args)]
 pub struct Arguments {
@@ -40,6 +43,14 @@ pub struct Arguments {
     /// Of the virtual faces: 1728 times its square in tetrahedra
     #[arg(long, value_name = "NUMBER", default_value_t = 2, help_heading = "What is learned from")]
     fineness: u32,
+    /// By how much their mapped skin is off in the mean
+    #[arg(
+        long,
+        value_name = "MM",
+        default_value_t = USUAL_MAPPING,
+        help_heading = "What is learned from"
+    )]
+    mapping: f64,
     /// The folder for the model, the picture and the result
     #[arg(long, visible_alias = "output", value_name = "FOLDER", help_heading = "Result")]
     out: PathBuf,
@@ -61,7 +72,8 @@ pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
         (Some(path), _) => (read(path)?, path.parent().unwrap_or(Path::new("")).to_owned()),
         (None, patients) => {
             let (patients, seed) = (patients.unwrap_or_default(), arguments.seed);
-            let made = VirtualCohortDocument { patients, seed, fineness: arguments.fineness };
+            let (fineness, mapping_mm) = (arguments.fineness, arguments.mapping);
+            let made = VirtualCohortDocument { patients, seed, fineness, mapping_mm };
             (LearnDocument { made: Some(made), ..LearnDocument::default() }, PathBuf::new())
         }
     };
@@ -93,12 +105,16 @@ fn print_learning(found: &LearningDocument) {
     let regions: Vec<&String> =
         found.table.first().map(|own| own.regions.keys().collect()).unwrap_or_default();
     let heads: String = regions.iter().map(|name| format!(" {name:>8}")).collect();
-    println!("{:<30} {:>8} {:>8}{heads}", "error in mm", "mean", "p95");
-    for column in &found.table {
+    println!("   {:<36} {:>8} {:>8}{heads}", "error in mm", "mean", "p95");
+    for (number, column) in (1..).zip(&found.table) {
         let of = |name: &&String| format!(" {:>8.3}", column.regions.get(*name).unwrap_or(&0.0));
         let regions: String = regions.iter().map(of).collect();
-        println!("{:<30} {:>8.3} {:>8.3}{regions}", column.name, column.mean, column.p95);
+        println!(
+            "{number:>2} {:<36} {:>8.3} {:>8.3}{regions}",
+            column.name, column.mean, column.p95
+        );
     }
+    print_patients(found);
     for test in &found.tests {
         let p = test.p.map_or_else(|| "no p".to_owned(), |p| format!("p {p:.4}"));
         println!(
@@ -106,24 +122,77 @@ fn print_learning(found: &LearningDocument) {
             test.first, test.second, test.median_difference_mm, test.smallest_p
         );
     }
-    for own in &found.validation {
-        let coverage = own.coverage.map_or_else(
-            || "no band".to_owned(),
-            |share| format!("{:.1} % in the band of 80 %", 100.0 * share),
-        );
-        let (refused, harmed) = (own.refused.len(), own.harmed.len());
-        println!("{}: {coverage}, {refused} refused, {harmed} harmed", own.method);
+    found.validation.iter().for_each(print_validation);
+    if let Some(width) = &found.width {
+        print_width(&found.method, width);
     }
-    for curve in &found.curve {
-        let points: String =
-            curve.points.iter().map(|own| format!(" {}: {:.3}", own.cases, own.error_mm)).collect();
-        println!("{} by cases learned from{points}", curve.method);
-    }
+    print_curves(&found.curve, "cases learned from");
+    print_curves(&found.curve_of_other_classes, "cases of other classes");
     for own in &found.thetas {
         let known = if own.is_determined { "" } else { ", which the data do not determine" };
         println!(
             "theta of {}: {:.2}{known} ({:.3} mm, {:.3} over 0.5 to 1.5)",
             own.class, own.theta, own.error_mm, own.spread_mm
         );
+    }
+}
+
+/// A row for each patient, methods by their numbers in the table above.
+fn print_patients(found: &LearningDocument) {
+    let heads: String = (1..=found.table.len()).map(|number| format!(" {number:>6}")).collect();
+    println!("{:<20} {:<12} {:>7}{heads}", "patient", "class", "bone");
+    for (place, patient) in found.patients.iter().enumerate() {
+        let errors = found.table.iter().filter_map(|own| own.cases.get(place));
+        let errors: String = errors.map(|case| format!(" {:>6.3}", case.mean)).collect();
+        println!(
+            "{:<20} {:<12} {:>7.3}{errors}",
+            patient.name, patient.class, patient.largest_bone_movement_mm
+        );
+    }
+}
+
+fn print_validation(own: &ValidationDocument) {
+    let coverage = own.coverage.map_or_else(
+        || "no band".to_owned(),
+        |share| format!("{:.1} % in the band of 80 %", 100.0 * share),
+    );
+    let gains = |refused: Option<f64>, others: Option<f64>| {
+        let told = |gain: Option<f64>| gain.map_or("-".to_owned(), |own| format!("{own:.3}"));
+        format!("gain {} mm of these, {} of the others", told(refused), told(others))
+    };
+    let (refused, harmed) = (own.refused.len(), own.harmed.len());
+    let gained = gains(own.gain_of_refused_mm, own.gain_of_others_mm);
+    println!("{}: {coverage}, {harmed} harmed, {refused} refused ({gained})", own.method);
+    if let Some(modes) = own.modes {
+        let limited =
+            if modes.is_limited_by_cases { ": limited by the number of cases" } else { "" };
+        println!("{}: {} modes of {} at most{limited}", own.method, modes.count, modes.most);
+    }
+    if let Some(other) = &own.other_classes {
+        let (refused, harmed) = (other.refused.len(), other.harmed.len());
+        let gained = gains(other.gain_of_refused_mm, other.gain_of_others_mm);
+        println!(
+            "{} of other classes: {:.3} mm, {harmed} harmed, {refused} refused ({gained})",
+            own.method, other.mean
+        );
+    }
+}
+
+fn print_width(method: &str, width: &WidthDocument) {
+    let told = width.width.map_or_else(|| "none".to_owned(), |own| format!("{own:.4}"));
+    println!("{method}: width {told} ({:?}), rmse {:.4}", width.end, width.rmse);
+    if let Some(climb) = &width.climb {
+        println!(
+            "{method}: the climb of Zhang et al. from 1 by .01: width {:.2} after {} steps ({:?}), rmse {:.4}",
+            climb.width, climb.steps, climb.end, climb.rmse
+        );
+    }
+}
+
+fn print_curves(curves: &[CurveDocument], by: &str) {
+    for curve in curves {
+        let points: String =
+            curve.points.iter().map(|own| format!(" {}: {:.3}", own.cases, own.error_mm)).collect();
+        println!("{} by {by}{points}", curve.method);
     }
 }

@@ -82,6 +82,7 @@ impl<'a> Observed<'a> {
             contact_s: of(Phase::Contact),
             surface_s: of(Phase::Surface),
             compare_s: of(Phase::Compare),
+            correction_s: of(Phase::Correct),
             write_s: of(Phase::Write),
             total_s: self.started.elapsed().as_secs_f64(),
         }

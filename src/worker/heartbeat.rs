@@ -66,6 +66,7 @@ fn percent(phase: Phase) -> i64 {
         Phase::Estimate | Phase::Contact => SOLVE_ENDS,
         Phase::Surface => 92,
         Phase::Compare => 94,
+        Phase::Correct => 96,
         Phase::Write => 97,
     }
 }

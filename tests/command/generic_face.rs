@@ -87,3 +87,92 @@ fn the_generic_face_conforms_to_a_patient_whose_case_smiles() {
     let corner = result(&out).statistics.unwrap().landmarks["corner"];
     assert!(corner.0[0] > 0.2 && corner.0[2] > 0.2, "{corner:?}");
 }
+
+/// A surface of a patient of a number, larger by some percent, and after an operation where the jaw goes forward and all skin
+/// half a millimetre further than it goes with it.
+fn scanned(sets: &[&str], number: usize, forward: Option<f64>) -> Vec<u8> {
+    let face =
+        generic_face(FaceSettings { lips: Lips::Closed, fineness: 1, shape: CellShape::Hex8 });
+    let mesh = &face.mesh;
+    let has = |node: &u32| sets.iter().any(|set| mesh.node_sets[*set].binary_search(node).is_ok());
+    let faces = mesh.boundary_faces().into_iter();
+    let faces: Vec<_> = faces.filter(|own| own.nodes().iter().all(has)).collect();
+    let mut surface = mesh.surface_of(&faces);
+    surface.points.iter_mut().for_each(|x| *x = of_scanned(x, number, forward));
+    vtp::write(&SurfaceOutput::plain(&surface, Frame::Lps)).unwrap()
+}
+
+/// Where a point of the generic face is in that patient.
+fn of_scanned(x: &Vector, number: usize, forward: Option<f64>) -> Vector {
+    let below = 1.0 / (1.0 + ((x.z + 20.0) / 8.0).exp());
+    let moved = forward.map_or(0.0, |forward| forward * below + 0.5);
+    *x * (1.02 + 0.02 * number as f64) - Vector::new(0.0, moved, 0.0)
+}
+
+/// docs/learning.md#scans-that-were-made-after-operations.
+#[test]
+fn skins_that_were_scanned_before_and_after_operations_are_learned_from_through_one_template() {
+    let folder = tempfile::tempdir().unwrap();
+    let face = folder.path().join("face");
+    assert!(facies(&["face", "--out", path(&face)]).status.success());
+    let template: Value =
+        serde_json::from_slice(&fs::read(face.join("conform.json")).unwrap()).unwrap();
+    let generic =
+        generic_face(FaceSettings { lips: Lips::Closed, fineness: 1, shape: CellShape::Hex8 });
+    let conformed = |name: &str, number: usize, forward: Option<f64>| {
+        let bone = ["maxilla", "mandible", "skull"];
+        for (part, sets) in [("skin", &["skin"][..]), ("bone", &bone)] {
+            let file = face.join(format!("{name}_{part}.vtp"));
+            fs::write(file, scanned(sets, number, forward)).unwrap();
+        }
+        let mut spec = template.clone();
+        spec["patient"] =
+            json!({"skin": format!("{name}_skin.vtp"), "bone": format!("{name}_bone.vtp")});
+        let pair = |(name, x): (&String, &Vector)| {
+            let of = of_scanned(x, number, forward);
+            let pair = json!({"template_mm": [x.x, x.y, x.z], "patient_mm": [of.x, of.y, of.z]});
+            (name.clone(), pair)
+        };
+        spec["landmarks"] = Value::Object(generic.landmarks.iter().map(pair).collect());
+        let file = face.join(format!("{name}.json"));
+        fs::write(&file, spec.to_string()).unwrap();
+        let out = folder.path().join(name);
+        let done = facies(&["conform", "--spec", path(&file), "--out", path(&out)]);
+        assert_eq!(done.status.code(), Some(0), "{}", text(&done.stderr));
+    };
+    let cases = (1..=3).map(|number| {
+        let forward = 1.5 + number as f64;
+        let [before, after] = ["before", "after"].map(|time| format!("{time}_{number}"));
+        conformed(&before, number, None);
+        conformed(&after, number, Some(forward));
+        let read = fs::read(folder.path().join(&before).join("case.json")).unwrap();
+        let mut case: Value = serde_json::from_slice(&read).unwrap();
+        case["case"]["volume"] = json!(format!("{before}/volume.vtu"));
+        case["plan"] =
+            json!({"segments": [{"name": "mandible", "translation_mm": [0, -forward, 0]}]});
+        case["spec"] = json!({"method": "fem_linear"});
+        fs::write(folder.path().join(format!("{before}.json")), case.to_string()).unwrap();
+        json!({"prediction": format!("{before}.json"), "actual": format!("{after}/volume.vtu")})
+    });
+    let spec = json!({"cases": cases.collect::<Vec<_>>()});
+    let file = folder.path().join("learn.json");
+    fs::write(&file, spec.to_string()).unwrap();
+    let model = folder.path().join("model");
+    let done = facies(&["learn", "--spec", path(&file), "--out", path(&model)]);
+    assert_eq!(done.status.code(), Some(0), "{}", text(&done.stderr));
+    let found = result(&model).learning.unwrap();
+    let of = |name: &str| found.table.iter().find(|own| own.name == name).unwrap();
+    // How far the skin went is known, to what the conformation misses of it.
+    let skin = &generic.mesh.node_sets["skin"];
+    for (number, case) in (1..).zip(&of("no movement").cases) {
+        let moved = |node: &u32| {
+            let x = &generic.mesh.nodes[*node as usize];
+            let [a, b] = [None, Some(1.5 + number as f64)].map(|own| of_scanned(x, number, own));
+            (b - a).norm()
+        };
+        let expected = skin.iter().map(moved).sum::<f64>() / skin.len() as f64;
+        assert!((case.mean - expected).abs() < 0.2, "{number}: {} of {expected}", case.mean);
+    }
+    assert!(of("fem_linear + GRNN").mean < of("fem_linear").mean, "{:?}", found.table);
+    assert!(text(&done.stdout).contains("fem_linear + GRNN"), "{}", text(&done.stdout));
+}

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::features::Features;
+use super::pairs::dot;
 
 /// Fewer cases leave none to learn from once one is left out.
 pub const LEAST_CASES: usize = 3;
@@ -28,7 +29,21 @@ pub struct Cohort {
     pub cases: Vec<LearningCase>,
     /// Named parts of the skin, as points.
     pub regions: BTreeMap<String, Vec<u32>>,
+    /// The method of the mechanical predictions, by which tables call them.
+    pub mechanical: String,
 }
+
+/// From whom a case is predicted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Pool {
+    /// All other cases.
+    Others,
+    /// Cases of other classes of surgery: what nobody who is learned from has had.
+    OtherClasses,
+}
+
+/// Cases that something is learned from are this many at least.
+pub const LEAST_TRAINING: usize = LEAST_CASES - 1;
 
 /// Why nothing can be learned from some cases; cases by their place.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -51,11 +66,20 @@ pub enum CohortError {
     NoSuchPoint { region: String, point: u32, points: usize },
 }
 
+impl LearningCase {
+    /// How far the node of bone goes that goes farthest, in mm.
+    pub fn largest_bone_movement(&self) -> f64 {
+        let lengths = self.bone.chunks_exact(3).map(|own| dot(own, own).sqrt());
+        lengths.fold(0.0, f64::max)
+    }
+}
+
 impl Cohort {
     /// Checks that the cases are several, different and of one mesh.
     pub fn new(
         cases: Vec<LearningCase>,
         regions: BTreeMap<String, Vec<u32>>,
+        mechanical: &str,
     ) -> Result<Self, CohortError> {
         if cases.len() < LEAST_CASES {
             return Err(CohortError::TooFew { cases: cases.len() });
@@ -70,7 +94,7 @@ impl Cohort {
                 return Err(CohortError::NoSuchPoint { region: region.clone(), point, points });
             }
         }
-        Ok(Cohort { cases, regions })
+        Ok(Cohort { cases, regions, mechanical: mechanical.to_owned() })
     }
 
     pub fn len(&self) -> usize {
@@ -84,6 +108,22 @@ impl Cohort {
     /// All cases but one.
     pub fn others(&self, case: usize) -> Vec<usize> {
         (0..self.len()).filter(|&other| other != case).collect()
+    }
+
+    /// Whom a case may be predicted from.
+    pub fn pool(&self, pool: Pool, case: usize) -> Vec<usize> {
+        match pool {
+            Pool::Others => self.others(case),
+            Pool::OtherClasses => {
+                let is_other = |other: &usize| self.cases[*other].class != self.cases[case].class;
+                (0..self.len()).filter(is_other).collect()
+            }
+        }
+    }
+
+    /// Of how many each case can be predicted at least.
+    pub fn smallest_pool(&self, pool: Pool) -> usize {
+        (0..self.len()).map(|case| self.pool(pool, case).len()).min().unwrap_or_default()
     }
 }
 
@@ -142,7 +182,14 @@ mod tests {
     }
 
     fn of(cases: &[LearningCase]) -> Result<Cohort, CohortError> {
-        Cohort::new(cases.to_vec(), BTreeMap::new())
+        Cohort::new(cases.to_vec(), BTreeMap::new(), "fem_linear")
+    }
+
+    #[test]
+    fn bone_moves_as_far_as_its_farthest_node() {
+        let mut own = case("a", 1.0);
+        own.bone = vec![1.0, -1.0, 0.5, 3.0, 0.0, -4.0, 0.0, 0.0, 4.9];
+        assert_eq!(own.largest_bone_movement(), 5.0);
     }
 
     #[test]
@@ -166,6 +213,6 @@ mod tests {
         assert_eq!(of(&bad), Err(CohortError::NotFinite { case: 1, what: "a feature" }));
         let regions = BTreeMap::from([("lips".to_owned(), vec![0, 2])]);
         let beyond = CohortError::NoSuchPoint { region: "lips".to_owned(), point: 2, points: 2 };
-        assert_eq!(Cohort::new(good.to_vec(), regions), Err(beyond));
+        assert_eq!(Cohort::new(good.to_vec(), regions, "fem_linear"), Err(beyond));
     }
 }

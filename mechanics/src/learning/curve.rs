@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::cohort::Cohort;
+use super::cohort::{Cohort, LEAST_TRAINING, Pool};
 use super::features::Distance;
 use super::learner::{Compared, Method};
 use super::validation::CaseErrors;
@@ -20,20 +20,25 @@ pub struct CurvePoint {
     pub error: f64,
 }
 
-/// Each case is predicted from so many of the others, drawn by the seed, and last from all of them.
+/// Each case is predicted from so many of those that it may be predicted from, drawn by the seed, and last from as many as each
+/// case has. Empty where a case has fewer than two.
 pub fn learning_curve(
     cohort: &Cohort,
     method: Method,
     distance: Distance,
+    pool: Pool,
     seed: u64,
 ) -> Vec<CurvePoint> {
     let compared = Compared::new(cohort, method.target, distance);
-    let most = cohort.len() - 1;
+    let most = cohort.smallest_pool(pool);
     let sizes = SIZES.into_iter().filter(|&size| size < most).chain([most]);
+    let sizes = sizes.filter(|&size| size >= LEAST_TRAINING);
     let point = |cases: usize| {
         let errors: Vec<f64> = (0..cohort.len())
             .into_par_iter()
-            .map(|case| error(&compared, method, case, &drawn(cohort, case, cases, seed)))
+            .map(|case| {
+                error(&compared, method, case, &drawn(cohort.pool(pool, case), cases, seed, case))
+            })
             .collect();
         CurvePoint { cases, error: errors.iter().sum::<f64>() / errors.len() as f64 }
     };
@@ -43,17 +48,16 @@ pub fn learning_curve(
 fn error(compared: &Compared, method: Method, case: usize, training: &[usize]) -> f64 {
     let fitted = compared.fit(method.learner, training);
     let told = compared.displacement(&fitted, case, training);
-    let Cohort { cases, regions } = compared.cohort;
+    let Cohort { cases, regions, .. } = compared.cohort;
     CaseErrors::of(&told, &cases[case].actual, regions).mean
 }
 
-/// So many of the other cases, ascending.
-fn drawn(cohort: &Cohort, case: usize, count: usize, seed: u64) -> Vec<usize> {
+/// So many of these cases, ascending.
+fn drawn(mut among: Vec<usize>, count: usize, seed: u64, case: usize) -> Vec<usize> {
     let mut draws = Draws::of(seed, case as u64);
-    let mut others = cohort.others(case);
-    while others.len() > count {
-        others.swap_remove(draws.below(others.len()));
+    while among.len() > count {
+        among.swap_remove(draws.below(among.len()));
     }
-    others.sort_unstable();
-    others
+    among.sort_unstable();
+    among
 }

@@ -4,9 +4,13 @@
 //! common with them: features there, bone here. What they answer is the displacement itself, or what mechanics missed, which is
 //! added to the mechanical prediction of the new case.
 
+use rayon::prelude::*;
+
 use super::bands::farthest;
 use super::cohort::{Cohort, LearningCase};
-use super::deformation_model::{DeformationModel, Fit};
+use super::deformation_model::{
+    DeformationModel, Fit, ModeCount, ModeRule, RIDGE, best_mode_count,
+};
 use super::features::{Distance, FeatureSpace, Features, Standard};
 use super::pairs::{Pairs, blended, dot};
 use super::regression::{LeaveOneOut, Width, weights};
@@ -16,8 +20,10 @@ use super::regression::{LeaveOneOut, Width, weights};
 pub enum Learner {
     /// General regression neural network.
     Regression,
-    /// Statistical deformation model.
+    /// Statistical deformation model with the modes that predict training cases best from each other.
     DeformationModel,
+    /// The same with the modes that hold 95 % of the variance.
+    DeformationModelByVariance,
 }
 
 /// What is learned.
@@ -37,20 +43,25 @@ pub struct Method {
 
 impl Method {
     /// Every method, in the order of tables.
-    pub const ALL: [Method; 4] = [
+    pub const ALL: [Method; 6] = [
         Method { learner: Learner::Regression, target: Target::Displacement },
         Method { learner: Learner::DeformationModel, target: Target::Displacement },
+        Method { learner: Learner::DeformationModelByVariance, target: Target::Displacement },
         Method { learner: Learner::Regression, target: Target::Residual },
         Method { learner: Learner::DeformationModel, target: Target::Residual },
+        Method { learner: Learner::DeformationModelByVariance, target: Target::Residual },
     ];
 
-    /// As tables call it.
-    pub fn name(self) -> &'static str {
-        match (self.learner, self.target) {
-            (Learner::Regression, Target::Displacement) => "GRNN",
-            (Learner::DeformationModel, Target::Displacement) => "SDM",
-            (Learner::Regression, Target::Residual) => "linear + GRNN",
-            (Learner::DeformationModel, Target::Residual) => "linear + SDM",
+    /// As tables call it, beside the method of mechanical predictions.
+    pub fn name(self, mechanical: &str) -> String {
+        let learner = match self.learner {
+            Learner::Regression => "GRNN",
+            Learner::DeformationModel => "SDM",
+            Learner::DeformationModelByVariance => "SDM of 95 %",
+        };
+        match self.target {
+            Target::Displacement => learner.to_owned(),
+            Target::Residual => format!("{mechanical} + {learner}"),
         }
     }
 }
@@ -103,6 +114,16 @@ pub enum Rule {
     DeformationModel(DeformationModel),
 }
 
+impl Rule {
+    /// Of a deformation model.
+    pub fn modes(&self) -> Option<ModeCount> {
+        match self {
+            Rule::Regression(_) => None,
+            Rule::DeformationModel(model) => Some(model.modes),
+        }
+    }
+}
+
 impl Fitted {
     /// Of training cases at these distances, whose bone has these scalar products with that of the new case.
     pub fn weights(&self, distances: &[f64], bone: &[f64]) -> Vec<f64> {
@@ -132,19 +153,45 @@ impl<'a> Compared<'a> {
 
     /// A rule fitted to some cases and to nothing else.
     pub fn fit(&self, learner: Learner, training: &[usize]) -> Fitted {
-        let distances = self.space.distances(training);
-        let (standard, farthest) = (self.space.standard(training), farthest(&distances));
-        let products = self.products.among(training);
         let rule = match learner {
-            Learner::Regression => {
-                Rule::Regression(LeaveOneOut::new(distances, products).best_width())
-            }
+            Learner::Regression => Rule::Regression(self.leave_one_out(training).best_width()),
             Learner::DeformationModel => {
-                let bone = self.bone.among(training);
-                Rule::DeformationModel(DeformationModel::new(&products, &bone, Fit::default()))
+                let [skin, bone] = [&self.products, &self.bone].map(|own| own.among(training));
+                self.modes(training, ModeRule::Count(best_mode_count(&skin, &bone, RIDGE)))
             }
+            Learner::DeformationModelByVariance => self.modes(training, Fit::default().modes),
         };
-        Fitted { standard, rule, farthest }
+        self.standardised(rule, training)
+    }
+
+    /// What is not tuned fitted to some cases, with the width or the number of modes that were tuned on others.
+    pub fn fit_as_tuned(&self, tuned: &Rule, learner: Learner, training: &[usize]) -> Fitted {
+        let rule = match (tuned, learner) {
+            (Rule::Regression(_), _) => tuned.clone(),
+            (Rule::DeformationModel(model), Learner::DeformationModel) => {
+                self.modes(training, ModeRule::Count(model.modes.count))
+            }
+            (
+                Rule::DeformationModel(_),
+                Learner::Regression | Learner::DeformationModelByVariance,
+            ) => self.modes(training, Fit::default().modes),
+        };
+        self.standardised(rule, training)
+    }
+
+    /// Training cases predicted from each other by regression, of which a width is searched.
+    pub fn leave_one_out(&self, training: &[usize]) -> LeaveOneOut {
+        LeaveOneOut::new(self.space.distances(training), self.products.among(training))
+    }
+
+    fn modes(&self, training: &[usize], modes: ModeRule) -> Rule {
+        let [skin, bone] = [&self.products, &self.bone].map(|own| own.among(training));
+        Rule::DeformationModel(DeformationModel::new(&skin, &bone, Fit { ridge: RIDGE, modes }))
+    }
+
+    fn standardised(&self, rule: Rule, training: &[usize]) -> Fitted {
+        let farthest = farthest(&self.space.distances(training));
+        Fitted { standard: self.space.standard(training), rule, farthest }
     }
 
     /// The displacement of a case, from training cases among which it need not be.
@@ -160,30 +207,17 @@ impl<'a> Compared<'a> {
         self.space.row(case, training).into_iter().fold(f64::INFINITY, f64::min)
     }
 
-    /// Each training case predicted from the others; a tuned width stays as it is.
-    pub fn left_out(&self, learner: Learner, training: &[usize]) -> Vec<LeftOut> {
-        self.left_out_of(&self.fit(learner, training), learner, training)
-    }
-
-    /// The same where the rule is fitted to all of them already.
-    pub fn left_out_of(
-        &self,
-        whole: &Fitted,
-        learner: Learner,
-        training: &[usize],
-    ) -> Vec<LeftOut> {
+    /// Each training case predicted from the others by a rule that was tuned on all of them.
+    pub fn left_out(&self, whole: &Fitted, learner: Learner, training: &[usize]) -> Vec<LeftOut> {
         let of = |(place, &case): (usize, &usize)| {
             let others = without(training, place);
-            let fitted = match &whole.rule {
-                Rule::Regression(_) => whole.clone(),
-                Rule::DeformationModel(_) => self.fit(learner, &others),
-            };
+            let fitted = self.fit_as_tuned(&whole.rule, learner, &others);
             let told = self.displacement(&fitted, case, &others);
             let actual = &self.cohort.cases[case].actual;
             let missed = actual.iter().zip(&told).map(|(own, told)| own - told).collect();
             LeftOut { place, fitted, missed }
         };
-        training.iter().enumerate().map(of).collect()
+        training.par_iter().enumerate().map(of).collect()
     }
 }
 

@@ -1,9 +1,9 @@
 //! Features of a prediction: what mechanics says of a case, as numbers that correspond between cases.
 //!
-//! Three blocks: the deviatoric Cauchy stress over the shear modulus at each skin node (no unit, six numbers, the mean over its
-//! cells by volume); the displacement of each skin node in mm; and twelve numbers for each segment in mm: where its centre
-//! goes, and (R - I) by rows, times the radius of the segment about it, so that turning counts by what it moves. At small
-//! strain dev sigma / mu = 2 dev eps with the shear modulus of the cell, over that of the whole, its mean by volume.
+//! Three blocks: the deviatoric Cauchy stress at each skin node over the shear modulus of the whole face, its mean by volume (no
+//! unit, six numbers, the mean over the cells of the node by volume); the displacement of each skin node in mm; and twelve numbers
+//! for each segment in mm: where its centre goes, and (R - I) by rows, times the radius of the segment about it, so that turning
+//! counts by what it moves. At small strain dev sigma = 2 mu dev eps with the shear modulus mu of the cell.
 //! Source of the first block: Zhang et al. 2016, section 2.4, whose theta scales it as a whole.
 
 use nalgebra::{Matrix3, Vector6};
@@ -36,7 +36,12 @@ pub fn bone(scene: &Scene, displacement: &[Vector]) -> Vec<f64> {
     joined.flat_map(|own| [own.x, own.y, own.z]).collect()
 }
 
-/// dev sigma / mu of each node: xx, yy, zz, xy, yz, xz.
+/// The nodes that a segment carries, ascending.
+pub fn carried_by(scene: &Scene, segment: usize) -> Vec<u32> {
+    carried(scene, Some(segment)).map(|node| node as u32).collect()
+}
+
+/// dev sigma of each node over the mean shear modulus: xx, yy, zz, xy, yz, xz.
 fn nodal_stress(scene: &Scene, displacement: &[Vector]) -> Vec<Vector6<f64>> {
     let mesh = &*scene.mesh;
     let volumes: Vec<f64> = (0..mesh.cells.len()).map(|cell| volume(mesh, cell)).collect();

@@ -1,7 +1,5 @@
 //! A learned model: the cases that it learned from, and the corrected prediction of a new one.
 
-use rayon::prelude::*;
-
 use super::bands::band;
 use super::cohort::{Cohort, LearningCase};
 use super::features::{Distance, Features};
@@ -60,7 +58,7 @@ impl LearnedModel {
         LearnedModel {
             method,
             cases: cohort.cases.clone(),
-            left_out: compared.left_out_of(&fitted, method.learner, &all),
+            left_out: compared.left_out(&fitted, method.learner, &all),
             fitted,
             answers: compared.answers,
         }
@@ -83,17 +81,33 @@ impl LearnedModel {
         }
         let bone = bone_products(asked.bone, &self.cases);
         let known: Vec<&[f64]> = self.answers.iter().map(Vec::as_slice).collect();
-        let told = |weights: &[f64], known: &[&[f64]]| {
-            self.method.target.displacement(blended(weights, known), asked.predicted)
+        let weights = self.fitted.weights(&distances, &bone);
+        let told = blended(&weights, &known);
+        let displacement = self.method.target.displacement(told, asked.predicted);
+        Ok(Corrected {
+            displacement,
+            band: self.band(asked, [&distances, &bone]),
+            distance,
+            nearest,
+        })
+    }
+
+    /// What each training case makes of a case at these distances and with these products of bone.
+    fn band(&self, asked: Asked, of_cases: [&Vec<f64>; 2]) -> Option<Vec<[f64; 2]>> {
+        let weights = |left: &LeftOut| {
+            let [distances, bone] = of_cases.map(|all| without(all, left.place));
+            let mut weights = left.fitted.weights(&distances, &bone);
+            weights.insert(left.place, 0.0);
+            weights
         };
-        let value = |left: &LeftOut| {
-            let [distances, bone] = [&distances, &bone].map(|all| without(all, left.place));
-            let told = told(&left.fitted.weights(&distances, &bone), &without(&known, left.place));
-            told.iter().zip(&left.missed).map(|(told, missed)| told + missed).collect()
-        };
-        let values: Vec<Vec<f64>> = self.left_out.par_iter().map(value).collect();
-        let displacement = told(&self.fitted.weights(&distances, &bone), &known);
-        Ok(Corrected { displacement, band: band(&values), distance, nearest })
+        let weights: Vec<Vec<f64>> = self.left_out.iter().map(weights).collect();
+        band(self.left_out.len(), asked.predicted.len(), |place, range| {
+            let known = self.answers.iter().map(|own| &own[range.clone()]);
+            let known: Vec<&[f64]> = known.collect();
+            let told = blended(&weights[place], &known);
+            let told = self.method.target.displacement(told, &asked.predicted[range.clone()]);
+            blended(&[1.0, 1.0], &[&told, &self.left_out[place].missed[range]])
+        })
     }
 
     fn fits(&self, asked: Asked) -> Result<(), Refusal> {

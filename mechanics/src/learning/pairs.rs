@@ -49,6 +49,19 @@ impl Pairs {
         others.iter().map(|&other| self.at(case, other)).collect()
     }
 
+    /// |y - sum_j w_j y_j|^2 of a case y and others, of which these are the scalar products. Vectors may be taken from any point
+    /// where the sum of weights is 1.
+    pub fn squared_error(&self, case: usize, others: &[usize], weights: &[f64]) -> f64 {
+        let mut sum = self.at(case, case);
+        for (&one, &weight) in others.iter().zip(weights) {
+            if weight != 0.0 {
+                let row = others.iter().zip(weights).map(|(&other, own)| own * self.at(one, other));
+                sum += weight * (row.sum::<f64>() - 2.0 * self.at(case, one));
+            }
+        }
+        sum.max(0.0)
+    }
+
     /// The same among some of the cases, in their order.
     pub fn among(&self, cases: &[usize]) -> Pairs {
         Pairs {
@@ -75,7 +88,7 @@ pub fn mean(vectors: &[&[f64]]) -> Vec<f64> {
 /// Vectors weighted and added.
 pub fn blended(weights: &[f64], vectors: &[&[f64]]) -> Vec<f64> {
     let mut sum = vec![0.0; vectors.first().map_or(0, |own| own.len())];
-    for (&weight, own) in weights.iter().zip(vectors) {
+    for (&weight, own) in weights.iter().zip(vectors).filter(|(weight, _)| **weight != 0.0) {
         sum.iter_mut().zip(*own).for_each(|(sum, value)| *sum += weight * value);
     }
     sum

@@ -79,16 +79,7 @@ impl LeaveOneOut {
     fn squared_error(&self, case: usize, width: f64) -> f64 {
         let others: Vec<usize> = (0..self.distances.count()).filter(|&own| own != case).collect();
         let weights = weights(&self.distances.row(case, &others), width);
-        let product = |row: usize, column: usize| self.products.at(row, column);
-        let mut sum = product(case, case);
-        for (&one, &weight) in others.iter().zip(&weights) {
-            if weight > 0.0 {
-                let row =
-                    others.iter().zip(&weights).map(|(&other, own)| own * product(one, other));
-                sum += weight * (row.sum::<f64>() - 2.0 * product(case, one));
-            }
-        }
-        sum.max(0.0)
+        self.products.squared_error(case, &others, &weights)
     }
 
     /// The best of widths six to a decade, refined by golden section between its neighbours.

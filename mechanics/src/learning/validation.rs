@@ -2,6 +2,7 @@
 //!
 //! Each case is predicted by what was fitted to the others. Plain: the width of a regression is that of all cases, the held-out
 //! one among them, as in Zhang et al. 2016, which flatters. Nested: everything, width and standard, comes from the others alone.
+//! Out of distribution: each case is predicted from those of other classes of surgery, of which nobody had what the case has.
 //! Errors are E = 1/N sum_k |X_k - X'_k| over skin points (their equation 7), and the 95th percentile of the same lengths.
 
 use std::collections::BTreeMap;
@@ -9,9 +10,11 @@ use std::collections::BTreeMap;
 use rayon::prelude::*;
 
 use super::bands::band;
-use super::cohort::Cohort;
+use super::cohort::{Cohort, LEAST_TRAINING, Pool};
+use super::deformation_model::ModeCount;
 use super::features::Distance;
-use super::learner::{Compared, LeftOut, Method, Rule, without};
+use super::learner::{Compared, Fitted, Learner, Method, Rule, without};
+use super::pairs::blended;
 use crate::validation::Statistics;
 
 /// Errors of the prediction of one case in mm.
@@ -37,8 +40,8 @@ pub struct Column {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Validated {
     pub method: Method,
-    /// With what was tuned on all cases.
-    pub plain: Column,
+    /// With what was tuned on all cases; absent where the rule has nothing to tune.
+    pub plain: Option<Column>,
     pub nested: Column,
     /// Whether a case is farther from the others than 95 % of these are from each other, so that it would be refused.
     pub is_refused: Vec<bool>,
@@ -48,6 +51,18 @@ pub struct Validated {
     pub coverage: Option<f64>,
     /// The nested prediction of each case.
     pub displacement: Vec<Vec<f64>>,
+    /// Of a deformation model of all cases.
+    pub modes: Option<ModeCount>,
+    /// Absent where a case has fewer than two of other classes to be predicted from.
+    pub other_classes: Option<OtherClasses>,
+}
+
+/// Cases that are predicted from those of other classes of surgery.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OtherClasses {
+    pub column: Column,
+    /// Whether a prediction of the case would be refused.
+    pub is_refused: Vec<bool>,
 }
 
 impl CaseErrors {
@@ -133,52 +148,81 @@ pub fn validate(cohort: &Cohort, method: Method, distance: Distance) -> Validate
     let tuned = compared.fit(method.learner, &all).rule;
     let folds: Vec<Fold> =
         all.par_iter().map(|&case| fold(&compared, method, &tuned, case)).collect();
+    let name = method.name(&cohort.mechanical);
     let column = |suffix: &str, of: fn(&Fold) -> &Vec<f64>| {
         let told: Vec<Vec<f64>> = folds.iter().map(|fold| of(fold).clone()).collect();
-        Column::of(&format!("{}{suffix}", method.name()), &told, cohort)
+        Column::of(&format!("{name}{suffix}"), &told, cohort)
+    };
+    let is_tuned = match method.learner {
+        Learner::Regression | Learner::DeformationModel => true,
+        Learner::DeformationModelByVariance => false,
     };
     let covered: Option<Vec<f64>> = folds.iter().map(|fold| fold.coverage).collect();
     Validated {
         method,
-        plain: column(" (tuned on all)", |fold| &fold.plain),
+        plain: is_tuned.then(|| column(" (tuned on all)", |fold| &fold.plain)),
         nested: column("", |fold| &fold.nested),
         is_refused: folds.iter().map(|fold| fold.novelty > 1.0).collect(),
         novelty: folds.iter().map(|fold| fold.novelty).collect(),
         coverage: covered.map(|own| own.iter().sum::<f64>() / own.len() as f64),
         displacement: folds.into_iter().map(|fold| fold.nested).collect(),
+        modes: tuned.modes(),
+        other_classes: other_classes(&compared, method, &name),
     }
 }
 
 fn fold(compared: &Compared, method: Method, tuned: &Rule, case: usize) -> Fold {
     let others = compared.cohort.others(case);
     let fitted = compared.fit(method.learner, &others);
-    let nested = compared.displacement(&fitted, case, &others);
-    let mut flattered = fitted.clone();
-    if let Rule::Regression(_) = tuned {
-        flattered.rule = tuned.clone();
-    }
+    let flattered = compared.fit_as_tuned(tuned, method.learner, &others);
     let actual = &compared.cohort.cases[case].actual;
     Fold {
         plain: compared.displacement(&flattered, case, &others),
-        novelty: compared.nearest(case, &others) / fitted.farthest.max(f64::MIN_POSITIVE),
-        coverage: band_of(compared, method, case, &others).map(|band| covered(actual, &band)),
-        nested,
+        nested: compared.displacement(&fitted, case, &others),
+        novelty: novelty(compared, &fitted, case, &others),
+        coverage: band_of(compared, method, &fitted, case, &others)
+            .map(|band| covered(actual, &band)),
     }
+}
+
+/// How far a case is from the nearest training case, as a share of the distance beyond which it is refused.
+fn novelty(compared: &Compared, fitted: &Fitted, case: usize, training: &[usize]) -> f64 {
+    compared.nearest(case, training) / fitted.farthest.max(f64::MIN_POSITIVE)
+}
+
+fn other_classes(compared: &Compared, method: Method, name: &str) -> Option<OtherClasses> {
+    let cohort = compared.cohort;
+    if cohort.smallest_pool(Pool::OtherClasses) < LEAST_TRAINING {
+        return None;
+    }
+    let of = |case: usize| {
+        let training = cohort.pool(Pool::OtherClasses, case);
+        let fitted = compared.fit(method.learner, &training);
+        let is_refused = novelty(compared, &fitted, case, &training) > 1.0;
+        (compared.displacement(&fitted, case, &training), is_refused)
+    };
+    let (told, is_refused): (Vec<Vec<f64>>, Vec<bool>) =
+        (0..cohort.len()).into_par_iter().map(of).unzip();
+    let column = Column::of(&format!("{name} (of other classes)"), &told, cohort);
+    Some(OtherClasses { column, is_refused })
 }
 
 fn band_of(
     compared: &Compared,
     method: Method,
+    fitted: &Fitted,
     case: usize,
     others: &[usize],
 ) -> Option<Vec<[f64; 2]>> {
-    let value = |left: LeftOut| {
-        let told = compared.displacement(&left.fitted, case, &without(others, left.place));
-        told.iter().zip(&left.missed).map(|(told, missed)| told + missed).collect()
-    };
-    let values: Vec<Vec<f64>> =
-        compared.left_out(method.learner, others).into_iter().map(value).collect();
-    band(&values)
+    let left_out = compared.left_out(fitted, method.learner, others);
+    let told: Vec<Vec<f64>> = left_out
+        .iter()
+        .map(|left| compared.displacement(&left.fitted, case, &without(others, left.place)))
+        .collect();
+    band(left_out.len(), compared.cohort.cases[case].actual.len(), |place, range| {
+        let missed = &left_out[place].missed[range.clone()];
+        blended(&[1.0, 1.0], &[&told[place][range], missed])
+    })
 }
 
 /// The share of numbers that lie within their band.

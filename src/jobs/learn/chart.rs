@@ -2,6 +2,7 @@
 
 use crate::schema::learn::result::LearningDocument;
 use mechanics::chart::{LearningPicture, LearningSeries};
+use mechanics::prediction::MethodKind;
 
 /// An SVG of the learning curves.
 pub fn learning_chart(found: &LearningDocument, cases: usize) -> String {
@@ -9,16 +10,21 @@ pub fn learning_chart(found: &LearningDocument, cases: usize) -> String {
         let column = found.table.iter().find(|column| column.name == name)?;
         Some((column.name.clone(), column.mean))
     };
-    let levels: Vec<(String, f64)> = ["what happened", "no movement", "linear", "nonlinear"]
-        .into_iter()
-        .filter_map(level)
-        .collect();
-    let series: Vec<LearningSeries> = found
-        .curve
-        .iter()
-        .map(|curve| LearningSeries {
-            name: curve.method.clone(),
-            points: curve.points.iter().map(|own| (own.cases as f64, own.error_mm)).collect(),
+    let nonlinear = MethodKind::FemNonlinear.name();
+    let mut levels = vec!["what happened", "no movement", found.mechanical.as_str()];
+    if found.mechanical != nonlinear {
+        levels.push(nonlinear);
+    }
+    let levels: Vec<(String, f64)> = levels.into_iter().filter_map(level).collect();
+    // Of other classes the kept method alone: eight lines more would hide each other.
+    let other = found.curve_of_other_classes.iter().filter(|own| own.method == found.method);
+    let other = other.map(|own| (format!("{} of other classes", own.method), &own.points));
+    let own = found.curve.iter().map(|own| (own.method.clone(), &own.points));
+    let series: Vec<LearningSeries> = own
+        .chain(other)
+        .map(|(name, points)| LearningSeries {
+            name,
+            points: points.iter().map(|own| (own.cases as f64, own.error_mm)).collect(),
         })
         .collect();
     let title = format!("Mean error of {cases} cases by the number of cases learned from");

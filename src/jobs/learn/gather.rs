@@ -11,11 +11,13 @@ use crate::jobs::made::{refused_cohort, refused_virtual};
 use crate::jobs::output::Workplace;
 use crate::jobs::predict::Prepared;
 use crate::jobs::source::StoredShape;
+use crate::schema::learn::correspondence::CorrespondenceDocument;
 use crate::schema::predict::result::InputDocument;
 use crate::schema::{ErrorCode, Matrix4x4, Pointer, Problem};
 use mechanics::learning::classes::{ThetaOfClass, held_out, thetas};
+use mechanics::learning::measures::carried_by;
 use mechanics::learning::validation::Column;
-use mechanics::learning::virtual_cohort::virtual_cohort;
+use mechanics::learning::virtual_cohort::{Making, virtual_cohort};
 use mechanics::learning::{Cohort, LearningCase, measures};
 use mechanics::mesh::{Frame, TriangleSurface, Vector};
 use mechanics::prediction::{Scene, Skin, equilibrium};
@@ -25,17 +27,16 @@ use mechanics::registration::RigidTransform;
 /// What is learned from, and the columns of the table that are not learned.
 pub struct Gathered {
     pub cohort: Cohort,
-    /// The mechanical prediction is among them, called `linear`.
+    /// The mechanical prediction is among them, called by its method.
     pub mechanical: Vec<Column>,
     pub thetas: Vec<ThetaOfClass>,
     pub inputs: Vec<InputDocument>,
     pub frame: Frame,
     /// The skin of the first case at rest.
     pub face: TriangleSurface,
+    /// Of the meshes of operated cases.
+    pub correspondence: Option<CorrespondenceDocument>,
 }
-
-/// How the table calls the mechanical prediction that is corrected.
-pub const MECHANICAL: &str = "linear";
 
 pub fn gather(
     input: &LearnInput,
@@ -44,8 +45,12 @@ pub fn gather(
 ) -> Result<Gathered, JobError> {
     match &input.spec.made {
         Some(made) => {
-            let (patients, fineness) = (made.patients as usize, made.fineness as usize);
-            let cohort = virtual_cohort(patients, u64::from(made.seed), fineness, clock);
+            let making = Making {
+                seed: u64::from(made.seed),
+                fineness: made.fineness as usize,
+                mapping: made.mapping_mm,
+            };
+            let cohort = virtual_cohort(made.patients as usize, making, clock);
             let cohort = cohort.map_err(|error| refused_virtual(error, clock))?;
             Ok(Gathered {
                 cohort: cohort.cohort,
@@ -54,6 +59,7 @@ pub fn gather(
                 inputs: Vec::new(),
                 frame: Frame::Lps,
                 face: cohort.face,
+                correspondence: None,
             })
         }
         None => of_cases(input, place, clock),
@@ -92,29 +98,31 @@ fn of_cases(input: &LearnInput, place: &Workplace, clock: &Observed) -> Result<G
         clock.check()?;
         first.get_or_insert(prepared);
     }
+    let correspondence = first.as_ref().map(|own| CorrespondenceDocument::new(&own.scene));
     let nothing = (TriangleSurface::default(), BTreeMap::new(), Frame::Unspecified);
     let (face, regions, frame) = first.map_or(nothing, |own| {
         let Skin { surface, regions } = own.scene.skin;
         (surface, regions, own.case.frame)
     });
-    let cohort = Cohort::new(cases, regions).map_err(|error| refused_cohort(&error))?;
+    let cohort = Cohort::new(cases, regions, &input.predicted_by());
+    let cohort = cohort.map_err(|error| refused_cohort(&error))?;
     let column = |name: &str, of: &dyn Fn(&LearningCase) -> Vec<f64>| {
         let told: Vec<Vec<f64>> = cohort.cases.iter().map(of).collect();
         Column::of(name, &told, &cohort)
     };
     let mut mechanical = vec![
         column("no movement", &|case| vec![0.0; case.actual.len()]),
-        column(MECHANICAL, &|case| case.predicted.clone()),
+        column(&cohort.mechanical, &|case| case.predicted.clone()),
     ];
     let mut fitted = Vec::new();
     if input.spec.theta {
         mechanical.push(held_out(&cohort, &told));
         fitted = thetas(&cohort, &told);
     }
-    Ok(Gathered { mechanical, cohort, thetas: fitted, inputs, frame, face })
+    Ok(Gathered { mechanical, cohort, thetas: fitted, inputs, frame, face, correspondence })
 }
 
-/// Cases have the same cells, frame, skin and method.
+/// Cases have the same cells, frame, skin, bone and method.
 fn corresponds(first: &Prepared, other: &Prepared, at: &Pointer) -> Result<(), JobError> {
     let [one, two] = [first, other].map(|own| &own.scene);
     let conflict =
@@ -134,6 +142,9 @@ fn corresponds(first: &Prepared, other: &Prepared, at: &Pointer) -> Result<(), J
         );
         return conflict(ErrorCode::NotCorresponding, detail);
     }
+    if let Some(detail) = other_bone(one, two) {
+        return conflict(ErrorCode::NotCorresponding, detail);
+    }
     if first.case.frame != other.case.frame {
         let detail = format!(
             "its frame is {:?} and that of the first case {:?}",
@@ -151,6 +162,28 @@ fn corresponds(first: &Prepared, other: &Prepared, at: &Pointer) -> Result<(), J
             ),
         ),
     }
+}
+
+/// In what the segments of a case, in their order, differ from those of the first.
+fn other_bone(first: &Scene, other: &Scene) -> Option<String> {
+    let [a, b] = [first, other].map(|own| own.segments.len());
+    if a != b {
+        return Some(format!(
+            "its case has {b} segments and that of the first case {a}, and they have to be the same"
+        ));
+    }
+    let differing = (0..a).find_map(|number| {
+        let [one, two] =
+            [first, other].map(|own| (own.segments[number].name.as_str(), carried_by(own, number)));
+        (one != two).then_some((one, two))
+    });
+    let ((name, nodes), (own_name, own)) = differing?;
+    let common = own.iter().filter(|node| nodes.binary_search(node).is_ok()).count();
+    Some(format!(
+        "its segment {own_name:?} carries {} nodes, {common} of which are among the {} of segment {name:?} of the first case, and they have to be the same under the same name, in the same order: bone does not correspond",
+        own.len(),
+        nodes.len()
+    ))
 }
 
 /// Where the skin is in a mesh after the operation.

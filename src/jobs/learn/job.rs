@@ -3,9 +3,10 @@
 use rayon::prelude::*;
 
 use super::chart::learning_chart;
-use super::gather::{Gathered, MECHANICAL, gather};
+use super::gather::{Gathered, gather};
 use super::input::LearnInput;
 use super::maps::{ERRORS_FILE, error_maps};
+use super::table::{TABLE_FILE, table_csv};
 use crate::jobs::clock::Observed;
 use crate::jobs::cohort::tested_pair;
 use crate::jobs::failure::JobError;
@@ -21,14 +22,19 @@ use crate::schema::learn::result::{
 };
 use crate::schema::predict::document::OutputName;
 use crate::schema::predict::result::ResultDocument;
+use mechanics::learning::cohort::Pool;
 use mechanics::learning::curve::learning_curve;
-use mechanics::learning::learner::Rule;
+use mechanics::learning::hill_climb::{Climb, hill_climb};
+use mechanics::learning::learner::{Compared, Rule};
 use mechanics::learning::validation::{Column, Validated, validate};
-use mechanics::learning::{Distance, LearnedModel, Method};
+use mechanics::learning::{Cohort, Distance, LearnedModel, Method};
 use mechanics::progress::{Phase, Progress};
 
 /// The draw of the cases of a learning curve.
 const CURVE_SEED: u64 = 1;
+
+/// Of a climb that comes to no end.
+const MOST_STEPS: usize = 2000;
 
 /// Predicts the cases, learns from all but each, and keeps the model of all.
 pub fn learn_job(
@@ -75,6 +81,7 @@ pub fn learn_job(
         &error_maps(&gathered, &validated)?,
     )?;
     let chart = learning_chart(&found, gathered.cohort.len());
+    folder.add_file(TABLE_FILE, OutputName::SkinCsv.media_type(), table_csv(&found).as_bytes())?;
     folder.add_file("learning.svg", "image/svg+xml", chart.as_bytes())?;
     let warnings = model.warning().iter().map(Into::into).collect();
     let provenance = origin.provenance(&clock);
@@ -95,31 +102,41 @@ fn document(
     let cohort = &gathered.cohort;
     let names: Vec<String> = cohort.cases.iter().map(|case| case.name.clone()).collect();
     let mechanical = mechanical(gathered).map(Column::means).unwrap_or_default();
-    let learned = validated.iter().flat_map(|own| [&own.nested, &own.plain]);
+    let learned = validated.iter().flat_map(|own| {
+        let other = own.other_classes.as_ref().map(|other| &other.column);
+        [Some(&own.nested), own.plain.as_ref(), other].into_iter().flatten()
+    });
     let table = gathered.mechanical.iter().chain(learned);
     let tests: Result<Vec<CohortPairDocument>, JobError> = validated
         .iter()
-        .map(|own| tested_pair(MECHANICAL, &mechanical, own.method.name(), &own.nested.means()))
+        .map(|own| {
+            tested_pair(&cohort.mechanical, &mechanical, &own.nested.name, &own.nested.means())
+        })
         .collect();
-    let curve = |method: &Method| CurveDocument {
-        method: method.name().to_owned(),
-        points: learning_curve(cohort, *method, distance, CURVE_SEED)
-            .iter()
-            .map(Into::into)
-            .collect(),
+    let curves = |pool: Pool| -> Vec<CurveDocument> {
+        let curve = |method: &Method| CurveDocument {
+            method: method.name(&cohort.mechanical),
+            points: learning_curve(cohort, *method, distance, pool, CURVE_SEED)
+                .iter()
+                .map(Into::into)
+                .collect(),
+        };
+        Method::ALL.par_iter().map(curve).filter(|own| !own.points.is_empty()).collect()
     };
     let of = |method: Method| validated.iter().find(|own| own.method == method);
     let mean = mechanical.iter().sum::<f64>() / mechanical.len().max(1) as f64;
     Ok(LearningDocument {
         cohort: None,
-        method: model.method.name().to_owned(),
+        method: model.method.name(&cohort.mechanical),
+        mechanical: cohort.mechanical.clone(),
         width: match &model.fitted.rule {
-            Rule::Regression(found) => Some(WidthDocument {
-                end: found.end.into(),
-                width: (found.width.is_finite() && found.width > 0.0).then_some(found.width),
-            }),
+            Rule::Regression(found) => {
+                let climb = climb(cohort, model.method, distance);
+                Some(WidthDocument::new(*found, climb))
+            }
             Rule::DeformationModel(_) => None,
         },
+        patients: cohort.cases.iter().map(Into::into).collect(),
         helps: of(model.method).is_some_and(|own| own.nested.mean() < mean),
         table: table.map(|column| LearnedColumnDocument::new(column, &names)).collect(),
         tests: tests?,
@@ -127,13 +144,21 @@ fn document(
             .iter()
             .map(|own| ValidationDocument::new(own, &mechanical, &names))
             .collect(),
-        curve: Method::ALL.par_iter().map(curve).collect(),
+        curve: curves(Pool::Others),
+        curve_of_other_classes: curves(Pool::OtherClasses),
         thetas: gathered.thetas.iter().map(Into::into).collect(),
     })
 }
 
+/// The search of Zhang et al. 2016 over all cases.
+fn climb(cohort: &Cohort, method: Method, distance: Distance) -> Climb {
+    let all: Vec<usize> = (0..cohort.len()).collect();
+    let left_out = Compared::new(cohort, method.target, distance).leave_one_out(&all);
+    hill_climb(|width| left_out.rmse(width), MOST_STEPS)
+}
+
 fn mechanical(gathered: &Gathered) -> Option<&Column> {
-    gathered.mechanical.iter().find(|column| column.name == MECHANICAL)
+    gathered.mechanical.iter().find(|column| column.name == gathered.cohort.mechanical)
 }
 
 fn kept(input: &LearnInput, gathered: &Gathered, found: &LearningDocument) -> ModelDocument {
@@ -163,9 +188,10 @@ fn kept(input: &LearnInput, gathered: &Gathered, found: &LearningDocument) -> Mo
         cases: gathered.cohort.cases.iter().enumerate().map(case).collect(),
         regions: gathered.cohort.regions.clone(),
         frame: Some(gathered.frame.into()),
+        correspondence: gathered.correspondence.clone(),
         predicted_by: input.predicted_by(),
         helps: found.helps,
         error_mm: error(&found.method),
-        mechanical_mm: error(MECHANICAL),
+        mechanical_mm: error(&found.mechanical),
     }
 }

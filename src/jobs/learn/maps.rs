@@ -23,7 +23,7 @@ pub fn error_maps(gathered: &Gathered, validated: &[Validated]) -> Result<Vec<u8
     Ok(vtp::write(&output)?)
 }
 
-/// `linear + GRNN` as the name of an array: `mean_error_linear_GRNN_mm`.
+/// `fem_linear + GRNN` as the name of an array: `mean_error_fem_linear_GRNN_mm`.
 fn array(method: &str) -> String {
     let words = method.split(|letter: char| !letter.is_ascii_alphanumeric());
     let words: Vec<&str> = words.filter(|word| !word.is_empty()).collect();

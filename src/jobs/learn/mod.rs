@@ -5,6 +5,7 @@ mod gather;
 mod input;
 mod job;
 mod maps;
+mod table;
 mod thetas;
 
 pub use input::{LearnInput, LearnedCase};

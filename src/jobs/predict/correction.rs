@@ -4,6 +4,7 @@ use super::fitted_model::FittedModel;
 use super::input::{PredictInput, Prepared};
 use crate::jobs::failure::JobError;
 use crate::jobs::source::{MeshSource, SourceError};
+use crate::schema::learn::correspondence::CorrespondenceDocument;
 use crate::schema::learn::model::ModelDocument;
 use crate::schema::predict::correction::CorrectedDocument;
 use crate::schema::{ErrorCode, Pointer, Problem};
@@ -77,6 +78,13 @@ pub fn corrected(
         return Err(Problem::at(&at, ErrorCode::FrameConflict, detail).into());
     }
     let (scene, displacement) = (&prepared.scene, &prediction.displacement);
+    let own = CorrespondenceDocument::new(scene);
+    if let Some(part) = model.correspondence.as_ref().and_then(|known| known.difference(&own)) {
+        let detail = format!(
+            "the nodes of its {part} are not those of the cases that the model was learned from: nodes do not correspond"
+        );
+        return Err(Problem::at(&at, ErrorCode::NotCorresponding, detail).into());
+    }
     let features = measures::features(scene, displacement);
     let (bone, predicted) =
         (measures::bone(scene, displacement), measures::skin(scene, displacement));

@@ -89,9 +89,7 @@ impl Predicted {
         // 2. Against another surface, if asked.
         clock.phase(Phase::Compare);
         let compared = compare_skin(input, &prepared, &skin, clock)?;
-        let correction = corrected(input, &prepared, &prediction)?;
         let mut warnings = prepared.warnings.clone();
-        warnings.extend(correction.iter().flat_map(|own| own.warnings.iter().cloned()));
         warnings.extend(prediction.warnings.iter().cloned());
         let (case, scene) = (&prepared.case, &prepared.scene);
         warnings.extend(collisions(case, scene).iter().filter_map(Collision::warning));
@@ -104,7 +102,15 @@ impl Predicted {
         }
         clock.check()?;
 
-        // 3. Files.
+        // 3. What was learned, if asked.
+        let mut correction = None;
+        if input.spec.correction.is_some() {
+            clock.phase(Phase::Correct);
+            correction = corrected(input, &prepared, &prediction)?;
+        }
+        warnings.extend(correction.iter().flat_map(|own| own.warnings.iter().cloned()));
+
+        // 4. Files.
         clock.phase(Phase::Write);
         let finished = Finished {
             origin: Origin {
@@ -130,7 +136,7 @@ impl Predicted {
         let mut folder = ResultFolder::open(out)?;
         finished.write_files(input, clock, &mut folder)?;
 
-        // 4. The manifest.
+        // 5. The manifest.
         let result = finished.result(input, clock, &folder.files);
         folder.add(OutputName::ResultJson, &encode_result(&result)?)?;
         let meshes = finished.kept(&input.spec.kept());

@@ -12,11 +12,15 @@ use crate::schema::wire::fault::{Faults, Pointer};
 use crate::schema::wire::limits::Limits;
 use crate::schema::wire::names::check_tags;
 use mechanics::learning::cohort::LEAST_CASES;
+use mechanics::learning::virtual_cohort::USUAL_MAPPING;
 use mechanics::learning::{Distance, Learner, Method, Target};
 use mechanics::plan::RigidMovement;
 
 /// Virtual patients that one job may make.
 const MOST_VIRTUAL: f64 = 200.0;
+
+/// Beyond it faces fold.
+const MOST_MAPPING: f64 = 5.0;
 
 /// What every client's whole numbers hold.
 const MOST_SEED: f64 = 2_147_483_647.0;
@@ -101,6 +105,14 @@ pub struct VirtualCohortDocument {
     #[serde(default = "usual_fineness")]
     #[schema(default = 2, minimum = 1, maximum = 4)]
     pub fineness: u32,
+    /// By how much a mapped point of the skin is off in the mean, before the operation and after: smooth over 20 mm. Default: 0.2.
+    #[serde(default = "usual_mapping")]
+    #[schema(default = 0.2, minimum = 0, maximum = 5)]
+    pub mapping_mm: f64,
+}
+
+fn usual_mapping() -> f64 {
+    USUAL_MAPPING
 }
 
 fn usual_fineness() -> u32 {
@@ -114,8 +126,10 @@ pub enum LearnerName {
     /// General regression neural network.
     #[default]
     Regression,
-    /// Statistical deformation model.
+    /// Statistical deformation model, with as many modes, from none, as predict its cases best from each other.
     DeformationModel,
+    /// The same with the modes that hold 95 % of the variance, two fewer than cases at most.
+    DeformationModelByVariance,
 }
 
 /// What is learned.
@@ -155,6 +169,7 @@ impl LearnDocument {
         let learner = match self.learner {
             LearnerName::Regression => Learner::Regression,
             LearnerName::DeformationModel => Learner::DeformationModel,
+            LearnerName::DeformationModelByVariance => Learner::DeformationModelByVariance,
         };
         let target = match self.target {
             TargetName::Residual => Target::Residual,
@@ -189,6 +204,7 @@ impl LearnDocument {
             faults.check_range(&place.key("patients"), patients, 3.0..=MOST_VIRTUAL, "patients");
             faults.check_range(&place.key("fineness"), fineness, 1.0..=4.0, "");
             faults.check_range(&place.key("seed"), f64::from(made.seed), 0.0..=MOST_SEED, "");
+            faults.check_range(&place.key("mapping_mm"), made.mapping_mm, 0.0..=MOST_MAPPING, "mm");
         }
         if !self.cases.is_empty() {
             self.check_cases(&at.key("cases"), limits, faults);

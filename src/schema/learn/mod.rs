@@ -1,5 +1,6 @@
 //! The spec of what is learned from operated cases, its model and its result.
 
+pub mod correspondence;
 pub mod document;
 pub mod model;
 pub mod result;

@@ -8,6 +8,7 @@ use super::document::LearnDocument;
 use crate::schema::case::document::FrameName;
 use crate::schema::cohort::stored::CohortVersionDocument;
 use crate::schema::engine::EngineDocument;
+use crate::schema::learn::correspondence::CorrespondenceDocument;
 use mechanics::learning::{Cohort, CohortError, Features, LearnedModel, LearningCase};
 use mechanics::mesh::Warning;
 
@@ -27,6 +28,9 @@ pub struct ModelDocument {
     /// That of the cases; models of earlier versions do not say it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub frame: Option<FrameName>,
+    /// That of the cases' meshes; virtual patients and models of earlier versions do not have it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub correspondence: Option<CorrespondenceDocument>,
     /// The method of the predictions that it corrects.
     pub predicted_by: String,
     /// Whether the validation found it nearer to the truth than the mechanical prediction alone.
@@ -76,7 +80,11 @@ impl ModelDocument {
             predicted: own.predicted.clone(),
             actual: own.actual.clone(),
         };
-        let cohort = Cohort::new(self.cases.iter().map(case).collect(), self.regions.clone())?;
+        let cohort = Cohort::new(
+            self.cases.iter().map(case).collect(),
+            self.regions.clone(),
+            &self.predicted_by,
+        )?;
         Ok(LearnedModel::new(&cohort, self.spec.method(), self.spec.distance.into()))
     }
 }

@@ -7,10 +7,13 @@ use utoipa::ToSchema;
 
 use crate::schema::cohort::result::CohortPairDocument;
 use crate::schema::cohort::stored::CohortVersionDocument;
+use mechanics::learning::LearningCase;
 use mechanics::learning::classes::ThetaOfClass;
 use mechanics::learning::curve::CurvePoint;
-use mechanics::learning::regression::WidthEnd;
-use mechanics::learning::validation::{CaseErrors, Column, Validated};
+use mechanics::learning::deformation_model::ModeCount;
+use mechanics::learning::hill_climb::{Climb, ClimbEnd};
+use mechanics::learning::regression::{Width, WidthEnd};
+use mechanics::learning::validation::{CaseErrors, Column, OtherClasses, Validated};
 
 /// What was learned, and how good it is. Lengths in mm.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
@@ -21,21 +24,47 @@ pub struct LearningDocument {
     pub cohort: Option<CohortVersionDocument>,
     /// The method whose model is kept.
     pub method: String,
+    /// The method of the mechanical predictions, by which `table` calls them.
+    #[serde(default = "usual_mechanical")]
+    #[schema(required)]
+    pub mechanical: String,
     /// How its width was found, of a regression.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub width: Option<WidthDocument>,
     /// Whether its nested error is below that of the mechanical prediction.
     pub helps: bool,
+    /// The cases, in the order of `cases` of the table.
+    #[serde(default)]
+    #[schema(required)]
+    pub patients: Vec<PatientDocument>,
     /// One for each method; what is learned is nested unless its name says that it was tuned on all cases.
     pub table: Vec<LearnedColumnDocument>,
     /// Wilcoxon's signed rank test of each learned method, nested, against the mechanical prediction.
     pub tests: Vec<CohortPairDocument>,
     pub validation: Vec<ValidationDocument>,
     pub curve: Vec<CurveDocument>,
+    /// The same where each case is predicted from those of other classes alone, as many as every case has; absent with fewer than two.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub curve_of_other_classes: Vec<CurveDocument>,
     /// Of Rubin and Bodner's tissue: of virtual patients, and where `theta` was asked for.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub thetas: Vec<ThetaDocument>,
+}
+
+/// How the table of earlier versions called every mechanical prediction.
+fn usual_mechanical() -> String {
+    "linear".to_owned()
+}
+
+/// An operated case, or a virtual patient.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct PatientDocument {
+    pub name: String,
+    /// Of surgery.
+    pub class: String,
+    /// How far the node of bone goes that goes farthest.
+    pub largest_bone_movement_mm: f64,
 }
 
 /// The width of a regression.
@@ -46,6 +75,67 @@ pub struct WidthDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub width: Option<f64>,
+    /// Of the cases predicted from each other with it: the root of the mean square of the length of a whole skin's error.
+    #[serde(default)]
+    #[schema(required)]
+    pub rmse: f64,
+    /// Where the search of Zhang et al. 2016 comes to: from 1 in steps of 0.01.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub climb: Option<ClimbDocument>,
+}
+
+/// The climb to a width in steps of one length.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct ClimbDocument {
+    pub width: f64,
+    pub rmse: f64,
+    /// By which the error fell.
+    pub steps: u64,
+    pub end: ClimbEndName,
+}
+
+/// How a climb ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum ClimbEndName {
+    /// Both neighbours are worse: it goes back and forth for good.
+    Alternates,
+    /// The error does not change: it does not know where to go.
+    Flat,
+    /// The next width would not be positive.
+    AtZero,
+    /// It was still going.
+    OutOfSteps,
+}
+
+impl WidthDocument {
+    pub fn new(found: Width, climb: Climb) -> Self {
+        WidthDocument {
+            end: found.end.into(),
+            width: (found.width.is_finite() && found.width > 0.0).then_some(found.width),
+            rmse: found.rmse,
+            climb: Some(climb.into()),
+        }
+    }
+}
+
+impl From<ClimbEnd> for ClimbEndName {
+    fn from(end: ClimbEnd) -> Self {
+        match end {
+            ClimbEnd::Alternates => ClimbEndName::Alternates,
+            ClimbEnd::Flat => ClimbEndName::Flat,
+            ClimbEnd::AtZero => ClimbEndName::AtZero,
+            ClimbEnd::OutOfSteps => ClimbEndName::OutOfSteps,
+        }
+    }
+}
+
+impl From<Climb> for ClimbDocument {
+    fn from(own: Climb) -> Self {
+        let (width, rmse, end) = (own.width, own.rmse, own.end.into());
+        ClimbDocument { width, rmse, steps: own.steps as u64, end }
+    }
 }
 
 /// Where the search of a width came to.
@@ -108,6 +198,40 @@ pub struct ValidationDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub gain_of_others_mm: Option<f64>,
+    /// Of a deformation model of all cases.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub modes: Option<ModesDocument>,
+    /// Where each case is predicted from those of other classes of surgery. Absent where one has fewer than two of these.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub other_classes: Option<OtherClassesDocument>,
+}
+
+/// The modes of a deformation model.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct ModesDocument {
+    pub count: u64,
+    /// That so many cases permit: two fewer than cases, three where their number is chosen by leaving cases out.
+    pub most: u64,
+    /// Whether the rule wanted `most` or more: there are too few cases for it.
+    pub is_limited_by_cases: bool,
+}
+
+/// What validation says of cases that are predicted from those of other classes.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct OtherClassesDocument {
+    pub mean: f64,
+    pub p95: f64,
+    /// Cases of which a prediction is refused.
+    pub refused: Vec<String>,
+    pub harmed: Vec<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub gain_of_refused_mm: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub gain_of_others_mm: Option<f64>,
 }
 
 /// The nested error of a method by the number of cases that it learned from.
@@ -156,12 +280,19 @@ impl LearnedColumnDocument {
     }
 }
 
-impl ValidationDocument {
+/// Whom a method betters and whom it harms.
+struct Gains {
+    refused: Vec<String>,
+    harmed: Vec<String>,
+    of_refused: Option<f64>,
+    of_others: Option<f64>,
+}
+
+impl Gains {
     /// Of a method, against what mechanics says of the same cases.
-    pub fn new(validated: &Validated, mechanical: &[f64], names: &[String]) -> Self {
-        let nested = validated.nested.means();
-        let gains: Vec<f64> =
-            mechanical.iter().zip(&nested).map(|(one, other)| one - other).collect();
+    fn new(column: &Column, is_refused: &[bool], mechanical: &[f64], names: &[String]) -> Self {
+        let own = column.means();
+        let gains: Vec<f64> = mechanical.iter().zip(&own).map(|(one, other)| one - other).collect();
         let those = |holds: &dyn Fn(usize) -> bool| -> Vec<usize> {
             (0..names.len()).filter(|&case| holds(case)).collect()
         };
@@ -170,15 +301,57 @@ impl ValidationDocument {
             let sum: f64 = cases.iter().map(|&case| gains[case]).sum();
             (!cases.is_empty()).then(|| sum / cases.len() as f64)
         };
-        let refused = those(&|case| validated.is_refused[case]);
-        let others = those(&|case| !validated.is_refused[case]);
-        ValidationDocument {
-            method: validated.method.name().to_owned(),
-            coverage: validated.coverage,
+        let refused = those(&|case| is_refused[case]);
+        Gains {
             harmed: named(&those(&|case| gains[case] < 0.0)),
-            gain_of_refused_mm: gain(&refused),
-            gain_of_others_mm: gain(&others),
+            of_refused: gain(&refused),
+            of_others: gain(&those(&|case| !is_refused[case])),
             refused: named(&refused),
+        }
+    }
+}
+
+impl ValidationDocument {
+    /// Of a method, against what mechanics says of the same cases.
+    pub fn new(validated: &Validated, mechanical: &[f64], names: &[String]) -> Self {
+        let gains = Gains::new(&validated.nested, &validated.is_refused, mechanical, names);
+        let other = |own: &OtherClasses| {
+            let gains = Gains::new(&own.column, &own.is_refused, mechanical, names);
+            OtherClassesDocument {
+                mean: own.column.mean(),
+                p95: own.column.p95(),
+                refused: gains.refused,
+                harmed: gains.harmed,
+                gain_of_refused_mm: gains.of_refused,
+                gain_of_others_mm: gains.of_others,
+            }
+        };
+        ValidationDocument {
+            method: validated.nested.name.clone(),
+            coverage: validated.coverage,
+            harmed: gains.harmed,
+            gain_of_refused_mm: gains.of_refused,
+            gain_of_others_mm: gains.of_others,
+            refused: gains.refused,
+            modes: validated.modes.map(Into::into),
+            other_classes: validated.other_classes.as_ref().map(other),
+        }
+    }
+}
+
+impl From<ModeCount> for ModesDocument {
+    fn from(own: ModeCount) -> Self {
+        let [count, most] = [own.count, own.most].map(|own| own as u64);
+        ModesDocument { count, most, is_limited_by_cases: own.is_limited }
+    }
+}
+
+impl From<&LearningCase> for PatientDocument {
+    fn from(own: &LearningCase) -> Self {
+        PatientDocument {
+            name: own.name.clone(),
+            class: own.class.clone(),
+            largest_bone_movement_mm: own.largest_bone_movement(),
         }
     }
 }

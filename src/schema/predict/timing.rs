@@ -20,6 +20,9 @@ pub struct TimingDocument {
     pub contact_s: f64,
     pub surface_s: f64,
     pub compare_s: f64,
+    /// Of correcting a prediction by what was learned, its file too; 0 where that was not asked for.
+    #[serde(default)]
+    pub correction_s: f64,
     pub write_s: f64,
     pub total_s: f64,
 }

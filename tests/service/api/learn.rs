@@ -43,7 +43,7 @@ async fn a_model_goes_with_each_case_that_it_was_learned_from_and_so_does_what_i
     let learned = learned.expect(StatusCode::OK);
     assert_eq!(learned["status"], "successful", "{learned}");
     let table = learned["results"]["learning"]["table"].as_array().unwrap();
-    assert!(table.len() == 10 && learned["results"]["learning"]["helps"].is_boolean(), "{learned}");
+    assert!(table.len() == 12 && learned["results"]["learning"]["helps"].is_boolean(), "{learned}");
 
     // A fourth case is corrected; one of the three is not.
     let fourth = server.case(&SMALL).await;

@@ -7,28 +7,26 @@ import type { Words } from "../words/en.js";
 
 type Learning = Documents["LearningDocument"];
 
-/** Columns that nothing was learned for: lines of the chart, as in the one of the service. */
-const LEVELS = ["what happened", "linear"];
-
-/** The mechanical prediction that is corrected. */
-const MECHANICAL = "linear";
-const TUNED = "tuned on all";
+/** What virtual patients' skin did, a line of the chart beside mechanics, as in the one of the service. */
+const HAPPENED = "what happened";
+/** Columns that stand in the table alone. */
+const BESIDE = ["tuned on all", "of other classes"];
 
 const percent = (share: number | null | undefined) => (share === null || share === undefined ? "–" : `${figure(100 * share, 1)} %`);
 
 /** In a sentence: which model is kept and whether it helps. */
-export function learnedInShort(words: Words, { method, helps, table: columns }: Learning): HTMLElement {
+export function learnedInShort(words: Words, { method, mechanical, helps, table: columns }: Learning): HTMLElement {
   const of = (name: string) => columns.find((column) => column.name === name)?.mean;
-  const [own, mechanics] = [of(method), of(MECHANICAL)];
+  const [own, mechanics] = [of(method), of(mechanical)];
   const numbers = own === undefined || mechanics === undefined ? "" : ` ${words.learnedErrors(mm(own), mm(mechanics))}`;
   return make("p", { className: helps ? "told" : "warned" }, make("strong", {}, method), `: ${helps ? words.learningHelps : words.learningHarms}${numbers}`);
 }
 
 export function learnedFacts(words: Words, learning: Learning): HTMLElement[] {
-  const { curve, table: columns, width, method, thetas = [] } = learning;
-  const shown = columns.filter(({ name }) => !name.includes(TUNED));
+  const { curve, table: columns, width, method, mechanical, thetas = [] } = learning;
+  const shown = columns.filter(({ name }) => !BESIDE.some((beside) => name.includes(beside)));
   const rows = shown.map(({ name, cases }) => ({ name, box: boxOf(cases.map((one) => one.mean)), dots: cases.map((one) => ({ name: one.name, value: one.mean })) }));
-  const levels = columns.filter(({ name }) => LEVELS.includes(name)).map(({ name, mean }) => ({ name, value: mean }));
+  const levels = columns.filter(({ name }) => name === HAPPENED || name === mechanical).map(({ name, mean }) => ({ name, value: mean }));
   const series = curve.map((one) => ({ name: one.method, points: one.points.map(({ cases, error_mm }): [number, number] => [cases, error_mm]) }));
   const wide = width === undefined || width === null ? undefined : make("p", { className: "fine" }, `${method}, ${words.width}: ${words.widthEnds[width.end] ?? width.end}${width.width === undefined || width.width === null ? "" : ` ${figure(width.width, 3)}`}`);
   return [

@@ -88,7 +88,7 @@ export const de: Words = {
   allowThat: (way, mm) => `${way} ± ${mm} mm erlauben`, leaveFree: (way) => `${way} freilassen`,
   aboveAim: (mm) => `Mehr als die ${mm} mm, die angestrebt werden.`,
 
-  phases: { validate: "Anfrage wird geprüft", mesh: "Netz wird vorbereitet", assemble: "Gleichungen werden aufgestellt", solve: "Lösen", estimate: "Fehler wird geschätzt", contact: "Berührung wird gelöst", surface: "Haut wird gezeichnet", compare: "Vergleichen", write: "Dateien werden geschrieben" },
+  phases: { validate: "Anfrage wird geprüft", mesh: "Netz wird vorbereitet", assemble: "Gleichungen werden aufgestellt", solve: "Lösen", estimate: "Fehler wird geschätzt", contact: "Berührung wird gelöst", surface: "Haut wird gezeichnet", compare: "Vergleichen", correct: "Berichtigen durch Gelerntes", write: "Dateien werden geschrieben" },
   step: (count) => `Schritt ${count}`, idEnd: "Ende der Kennung",
   frameAsked: "Wohin zeigen die Achsen dieses Netzes? Die Datei sagt es nicht. LPS: x zur Linken des Patienten, y nach hinten. RAS: x zur Rechten, y nach vorn. Ohne Antwort sind Bewegungen entlang und um diese Achsen.",
   frames: { unspecified: "nicht angegeben", LPS: "LPS: links, hinten, oben", RAS: "RAS: rechts, vorn, oben" }, emptySet: "hält keinen Knoten",

@@ -86,7 +86,7 @@ export const en = {
   allowThat: (way: string, mm: number) => `Allow ${way} ± ${mm} mm`, leaveFree: (way: string) => `Leave ${way} free`,
   aboveAim: (mm: string) => `More than the ${mm} mm that is aimed at.`,
 
-  phases: { validate: "Checking the request", mesh: "Preparing the mesh", assemble: "Setting up the equations", solve: "Solving", estimate: "Estimating the error", contact: "Solving contact", surface: "Drawing the skin", compare: "Comparing", write: "Writing files" } as Record<string, string>,
+  phases: { validate: "Checking the request", mesh: "Preparing the mesh", assemble: "Setting up the equations", solve: "Solving", estimate: "Estimating the error", contact: "Solving contact", surface: "Drawing the skin", compare: "Comparing", correct: "Correcting by what was learned", write: "Writing files" } as Record<string, string>,
   step: (count: number) => `step ${count}`, idEnd: "End of the id",
   frameAsked: "Which way do the axes of this mesh point? The file does not say. LPS: x to the patient's left, y to the back. RAS: x to the right, y to the front. Without an answer movements are along and about its axes.",
   frames: { unspecified: "not stated", LPS: "LPS: left, back, up", RAS: "RAS: right, front, up" }, emptySet: "holds no node",

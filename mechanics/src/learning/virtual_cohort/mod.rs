@@ -8,7 +8,7 @@ mod report;
 mod tissue;
 mod twins;
 
-pub use noise::MAPPING;
-pub use patient::{VirtualError, VirtualPatient};
+pub use noise::USUAL_MAPPING;
+pub use patient::{Making, VirtualError, VirtualPatient};
 pub use report::{VirtualCohort, virtual_cohort};
 pub use twins::{PARTS, Twin, VARIANTS, Variant, twins};

@@ -8,8 +8,8 @@ use crate::draws::Draws;
 use crate::mesh::{Vector, VolumeMesh};
 use crate::plan::RigidMovement;
 
-/// The mean length of a mapping error at the skin in mm.
-pub const MAPPING: f64 = 0.2;
+/// The mean length of a mapping error at the skin in mm where none is stated.
+pub const USUAL_MAPPING: f64 = 0.2;
 
 /// Standard deviations of a registration by components, in mm and degrees.
 const SHIFT: f64 = 0.1;
@@ -27,15 +27,17 @@ pub struct Scanned {
 }
 
 impl Scanned {
-    /// A face whose `skin` is a node set, under what happens to it: displacements of its nodes in mm.
+    /// A face whose `skin` is a node set, mapped to so many mm in the mean, under what happens to it: displacements of its nodes
+    /// in mm.
     pub fn of<E>(
         face: &VolumeMesh,
+        mapped_to: f64,
         draws: &mut Draws,
         happens: impl FnOnce(&mut Draws) -> Result<Vec<Vector>, E>,
     ) -> Result<Self, E> {
         let skin = face.node_set("skin").unwrap_or_default();
-        let before = mapping(&face.nodes, skin, draws);
-        let after = mapping(&face.nodes, skin, draws);
+        let before = mapping(&face.nodes, skin, mapped_to, draws);
+        let after = mapping(&face.nodes, skin, mapped_to, draws);
         let happened = happens(draws)?;
         let missed = registration(draws);
         let measured = measured(&face.nodes, &happened, [&before, &after], &missed);
@@ -45,8 +47,8 @@ impl Scanned {
     }
 }
 
-/// A mapping error at each of some points, whose mean length at `skin` is [`MAPPING`].
-fn mapping(points: &[Vector], skin: &[u32], draws: &mut Draws) -> Vec<Vector> {
+/// A mapping error at each of some points, of this mean length at `skin`.
+fn mapping(points: &[Vector], skin: &[u32], mean: f64, draws: &mut Draws) -> Vec<Vector> {
     let bells: Vec<(Vector, Vector)> = (0..BELLS)
         .map(|_| {
             let middle = points[skin[draws.below(skin.len())] as usize];
@@ -60,7 +62,7 @@ fn mapping(points: &[Vector], skin: &[u32], draws: &mut Draws) -> Vec<Vector> {
     };
     let field: Vec<Vector> = points.iter().map(at).collect();
     let length = skin.iter().map(|&node| field[node as usize].norm()).sum::<f64>();
-    let factor = MAPPING * skin.len() as f64 / length;
+    let factor = mean * skin.len() as f64 / length;
     field.into_iter().map(|own| own * factor).collect()
 }
 

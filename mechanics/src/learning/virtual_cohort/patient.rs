@@ -48,6 +48,16 @@ pub struct VirtualPatient {
     pub happened: Vec<f64>,
 }
 
+/// What a cohort is made by: the same for the same numbers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Making {
+    pub seed: u64,
+    /// Of the faces: 1728 times its square in tetrahedra.
+    pub fineness: usize,
+    /// The mean length of a mapping error at the skin in mm.
+    pub mapping: f64,
+}
+
 #[derive(Debug, thiserror::Error)]
 pub enum VirtualError {
     #[error(transparent)]
@@ -61,21 +71,21 @@ pub enum VirtualError {
 }
 
 impl VirtualPatient {
-    /// The patient of a number in the cohort of a seed, on faces of this fineness.
+    /// The patient of a number in a cohort.
     pub fn new(
         number: usize,
-        seed: u64,
-        fineness: usize,
+        making: Making,
         progress: &dyn Progress,
     ) -> Result<Self, VirtualError> {
-        let mut draws = Draws::of(seed, number as u64);
-        let mesh = face(fineness, &mut draws);
+        let mut draws = Draws::of(making.seed, number as u64);
+        let mesh = face(making.fineness, &mut draws);
         let operation = OPERATIONS[number % OPERATIONS.len()];
         let plan = operation.plan(&mesh, &mut draws);
 
         // 1. What happens, and what is measured of it.
         let happens = |draws: &mut Draws| happened(&mesh, &plan, operation, draws, progress);
-        let Scanned { happened, measured, mapped } = Scanned::of(&mesh, &mut draws, happens)?;
+        let Scanned { happened, measured, mapped } =
+            Scanned::of(&mesh, making.mapping, &mut draws, happens)?;
 
         // 2. What models predict on the mapped mesh.
         let known = Arc::new(mapped);

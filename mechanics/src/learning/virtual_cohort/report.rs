@@ -5,8 +5,9 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use super::super::classes::{AtThetas, ThetaOfClass, held_out, thetas};
 use super::super::cohort::{Cohort, LearningCase};
 use super::super::validation::Column;
-use super::patient::{VirtualError, VirtualPatient};
+use super::patient::{Making, VirtualError, VirtualPatient};
 use crate::mesh::TriangleSurface;
+use crate::prediction::MethodKind;
 use crate::progress::{Inner, Progress};
 use rayon::prelude::*;
 
@@ -24,20 +25,19 @@ pub struct VirtualCohort {
 /// Makes so many patients, and predicts each.
 pub fn virtual_cohort(
     patients: usize,
-    seed: u64,
-    fineness: usize,
+    making: Making,
     progress: &dyn Progress,
 ) -> Result<VirtualCohort, VirtualError> {
     let (made, of) = (AtomicUsize::new(0), patients);
     let one = |number| {
-        let patient = VirtualPatient::new(number, seed, fineness, &Inner(progress))?;
+        let patient = VirtualPatient::new(number, making, &Inner(progress))?;
         progress.step(made.fetch_add(1, Ordering::Relaxed) + 1, of);
         Ok::<_, VirtualError>(patient)
     };
     let patients = (0..patients).into_par_iter().map(one).collect::<Result<Vec<_>, _>>()?;
     let cases = (0..).zip(&patients).map(|(number, own)| case(number, own)).collect();
     let regions = patients.first().map(|own| own.regions.clone()).unwrap_or_default();
-    Ok(report(Cohort::new(cases, regions)?, &patients))
+    Ok(report(Cohort::new(cases, regions, MethodKind::FemLinear.name())?, &patients))
 }
 
 fn case(number: usize, patient: &VirtualPatient) -> LearningCase {
@@ -60,8 +60,8 @@ fn report(cohort: Cohort, patients: &[VirtualPatient]) -> VirtualCohort {
     let mechanical = vec![
         column("what happened", &|own| own.happened.clone()),
         column("no movement", &|own| vec![0.0; own.actual.len()]),
-        column("linear", &|own| own.linear.clone()),
-        column("nonlinear", &|own| own.nonlinear.clone()),
+        column(&cohort.mechanical, &|own| own.linear.clone()),
+        column(MethodKind::FemNonlinear.name(), &|own| own.nonlinear.clone()),
         held_out(&cohort, &told),
     ];
     let face = patients.first().map(|own| own.face.clone()).unwrap_or_default();

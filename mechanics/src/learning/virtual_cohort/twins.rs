@@ -13,7 +13,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use rayon::prelude::*;
 
 use super::face::FaceModes;
-use super::noise::Scanned;
+use super::noise::{Scanned, USUAL_MAPPING};
 use super::operation::{OPERATIONS, Operation};
 use super::patient::VirtualError;
 use crate::boundary::NodeSelection;
@@ -100,7 +100,8 @@ impl Twin {
         let mut draws = Draws::of(seed, number as u64);
         let mut face = OperatedFace::new(number, fineness, &mut draws);
         let happens = |draws: &mut Draws| face.happened(draws, progress);
-        let Scanned { happened, measured, mapped } = Scanned::of(&face.mesh, &mut draws, happens)?;
+        let Scanned { happened, measured, mapped } =
+            Scanned::of(&face.mesh, USUAL_MAPPING, &mut draws, happens)?;
         face.mesh = Arc::new(mapped);
         let apart = |moved: &[Vector], scene: &Scene| -> Vec<f64> {
             let nodes = scene.skin.nodes().iter().map(|&node| node as usize);
