@@ -46,7 +46,7 @@ pub use raster::{Image, PngError};
 pub use slices::SlicesPicture;
 pub use stability_map::{Mark, StabilityAxis, StabilityMap};
 pub use view::{Outlook, clear_front, front_of};
-pub use views::{ViewRow, ViewValues, ViewsPicture};
+pub use views::{ViewOutline, ViewRow, ViewValues, ViewsPicture};
 
 /// A position in mm.
 type Vector = nalgebra::Vector3<f64>;

@@ -22,8 +22,15 @@ pub struct ViewRow<'a> {
     pub name: &'a str,
     pub points: &'a [Vector],
     pub values: Option<ViewValues<'a>>,
-    /// The outline of these is drawn over it.
-    pub outline_of: Option<&'a [Vector]>,
+    /// The outline of this is drawn over it.
+    pub outline_of: Option<ViewOutline<'a>>,
+}
+
+/// Another surface, or another state of the same.
+#[derive(Clone, Copy)]
+pub struct ViewOutline<'a> {
+    pub points: &'a [Vector],
+    pub triangles: &'a [[u32; 3]],
 }
 
 /// A value in mm for each point, and its fixed range.
@@ -106,12 +113,12 @@ impl ViewsPicture<'_> {
     }
 
     fn image(&self, row: &ViewRow, shot: &Shot) -> Image {
-        let bare = |points, finish| {
-            let colours = vec![colour::SKIN; row.points.len()];
-            draw(&Painted { points, triangles: self.triangles, colours: &colours, finish }, shot)
+        let bare = |points: &[Vector], triangles, finish| {
+            let colours = vec![colour::SKIN; points.len()];
+            draw(&Painted { points, triangles, colours: &colours, finish }, shot)
         };
         let mut image = match &row.values {
-            None => bare(row.points, Finish::Bare),
+            None => bare(row.points, self.triangles, Finish::Bare),
             Some(values) => {
                 let colours: Vec<Rgb> =
                     values.values.iter().map(|&value| values.colour(value)).collect();
@@ -122,8 +129,8 @@ impl ViewsPicture<'_> {
                 )
             }
         };
-        if let Some(points) = row.outline_of {
-            outline(&mut image, &bare(points, Finish::Flat));
+        if let Some(ViewOutline { points, triangles }) = row.outline_of {
+            outline(&mut image, &bare(points, triangles, Finish::Flat));
         }
         image
     }
@@ -232,8 +239,11 @@ mod tests {
         [[0.0, 0.0, 0.0], [50.0, 0.0, 0.0], [0.0, 0.0, 60.0], [0.0, 40.0, 0.0]].map(Vector::from)
     }
 
+    const TRIANGLES: &[[u32; 3]] = &[[0, 1, 2], [0, 2, 3]];
+
     fn row<'a>(points: &'a [Vector], outline_of: Option<&'a [Vector]>) -> ViewRow<'a> {
-        ViewRow { name: "After", points, values: None, outline_of }
+        let outline = |points| ViewOutline { points, triangles: TRIANGLES };
+        ViewRow { name: "After", points, values: None, outline_of: outline_of.map(outline) }
     }
 
     #[test]
@@ -246,12 +256,8 @@ mod tests {
         assert_ne!(shown.colour(8.9), shown.colour(9.1));
         let rows = [ViewRow { values: Some(shown), ..row(&points, None) }];
         let columns = ["front", "three-quarter", "lateral"];
-        let picture = ViewsPicture {
-            triangles: &[[0, 1, 2], [0, 2, 3]],
-            rows: &rows,
-            outlook: Outlook::lps(),
-            columns,
-        };
+        let picture =
+            ViewsPicture { triangles: TRIANGLES, rows: &rows, outlook: Outlook::lps(), columns };
         let drawing = picture.to_drawing().unwrap();
         let words: Vec<&str> = drawing
             .items
@@ -286,7 +292,7 @@ mod tests {
         let after = before.map(|point| point + Vector::new(0.0, 0.0, 5.0));
         let count = |outline_of| {
             let rows = [row(&after, outline_of)];
-            let triangles = &[[0, 1, 2], [0, 2, 3]];
+            let triangles = TRIANGLES;
             let (outlook, columns) = (Outlook::lps(), [""; 3]);
             let picture = ViewsPicture { triangles, rows: &rows, outlook, columns };
             let camera = outlook.camera(0.0, 0.0);

@@ -11,7 +11,7 @@ use super::report::{Outcome, Report, Row, SceneReport, Skipped, Solved};
 use super::scan::{ScannedSkin, before_operation, is_partial};
 use super::truth::{Asked, is_the_truth};
 use super::variant::{Materials, Strain, Study, StudyScene, Truth, Variant};
-use crate::mesh::{Vector, Warning};
+use crate::mesh::Warning;
 use crate::prediction::{Plan, Scene, Settings, Skin};
 use crate::progress::Progress;
 use std::collections::{BTreeMap, BTreeSet};

@@ -18,11 +18,11 @@ use crate::jobs::source::{MeshSource, StoredMesh};
 use crate::schema::predict::document::OutputName;
 use crate::schema::predict::output::PictureName;
 use crate::schema::predict::result::ResultDocument;
-use crate::schema::{Faults, Language, Limits, Pointer};
+use crate::schema::{Faults, Language, Limits, Matrix4x4, Pointer};
 use mechanics::chart::colour::{Rgb, signed};
 use mechanics::format::vtk::vtp;
 use mechanics::format::{ArrayValues, ColourScale, NamedValues, SurfaceOutput, glb, ply};
-use mechanics::mesh::{Frame, TriangleSurface};
+use mechanics::mesh::{Frame, TriangleSurface, Vector};
 use mechanics::progress::{Phase, Progress, Unobserved};
 
 /// Time a comparison may take, in seconds; a prediction that compares has its own budget.
@@ -120,9 +120,14 @@ impl CompareInput {
         limits: &Limits,
     ) -> Result<Report, JobError> {
         let clock = Observed::start(&Unobserved, WALL_S);
-        let Measured { surface, frame, compared, .. } = self.measure(sources, limits, &clock)?;
+        let Measured { surface, frame, compared, meshes, .. } =
+            self.measure(sources, limits, &clock)?;
+        let wrong = || no_surface(&Pointer::root().key("spec").key("actual"));
+        let actual = meshes.actual.surface_in_mm().ok_or_else(wrong)?;
+        let actual = registered(&actual, &compared.document.alignment.matrix4x4);
         let facts = ComparisonFacts {
             surface: &surface,
+            actual: &actual,
             signed_distance: &compared.signed_distance,
             range_mm: self.spec.range_mm,
             frame: frame.unwrap_or_default(),
@@ -159,4 +164,14 @@ fn write_maps(
     output.colour_scale = Some(ColourScale { array, low: -range, high: range });
     folder.add(OutputName::SkinPly, &ply::write(&output)?)?;
     folder.add(OutputName::SkinGlb, &glb::write(&output)?)
+}
+
+/// A surface where x' = R x + t brings it.
+fn registered(surface: &TriangleSurface, Matrix4x4(rows): &Matrix4x4) -> TriangleSurface {
+    let moved = |point: &Vector| {
+        Vector::from([0, 4, 8].map(|row| {
+            rows[row] * point.x + rows[row + 1] * point.y + rows[row + 2] * point.z + rows[row + 3]
+        }))
+    };
+    TriangleSurface { points: surface.points.iter().map(moved).collect(), ..surface.clone() }
 }

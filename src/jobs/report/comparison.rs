@@ -1,10 +1,10 @@
 //! The report of a comparison: signed distances on the skin, their statistics, and how the surfaces were registered.
 
-use mechanics::chart::{PngError, ViewRow, ViewValues, ViewsPicture};
+use mechanics::chart::{PngError, ViewOutline, ViewRow, ViewValues, ViewsPicture};
 use mechanics::mesh::{Frame, TriangleSurface, Vector};
 
 use super::content::{Block, Figure, Report, Section, Table};
-use super::tables::{MOST, mm, provenance, report, shortened, texts, warnings};
+use super::tables::{mm, provenance, report, texts, warnings};
 use super::words::{Words, filled, words};
 use crate::jobs::result::pictures::outlook;
 use crate::schema::Language;
@@ -17,6 +17,8 @@ pub const SIGNED_RANGE_MM: f64 = 2.0;
 /// Two surfaces and how far one is from the other.
 pub struct ComparisonFacts<'a> {
     pub surface: &'a TriangleSurface,
+    /// The actual surface where its registration puts it.
+    pub actual: &'a TriangleSurface,
     /// At each of its points in mm, positive where it lies outside the actual surface.
     pub signed_distance: &'a [f64],
     /// Where colours end, as the spec says.
@@ -55,7 +57,9 @@ fn views(facts: &ComparisonFacts, words: &Words) -> Result<Section, PngError> {
         name: words.distance_mm,
     };
     let points = &facts.surface.points;
-    let rows = [ViewRow { name: words.prediction, points, values: Some(values), outline_of: None }];
+    let actual = ViewOutline { points: &facts.actual.points, triangles: &facts.actual.triangles };
+    let outline_of = Some(actual);
+    let rows = [ViewRow { name: words.prediction, points, values: Some(values), outline_of }];
     let picture = ViewsPicture {
         triangles: &facts.surface.triangles,
         rows: &rows,
@@ -63,8 +67,7 @@ fn views(facts: &ComparisonFacts, words: &Words) -> Result<Section, PngError> {
         columns: words.columns,
     };
     let caption = filled(words.outside, &[format!("{range_mm}")]);
-    let title = words.comparison.to_owned();
-    let figure = Figure { drawing: picture.to_drawing()?, title, caption };
+    let figure = Figure::new(picture.to_drawing()?, words.comparison, caption);
     Ok(Section::new(words.comparison, vec![Block::Figure(figure)]))
 }
 
@@ -85,7 +88,7 @@ pub fn distance_table(comparison: &ComparisonDocument, words: &Words) -> Table {
     let [below_1, below_2] = ["1", "2"].map(|mm| filled(words.below, &[mm.to_owned()]));
     let mut columns = texts([words.distance_mm, words.mean, "rms", words.median, "p95", words.max]);
     columns.extend([below_1, below_2]);
-    Table { columns, rows: shortened(rows, MOST, words) }
+    Table { columns, rows, least: 3 }
 }
 
 fn registration(comparison: &ComparisonDocument, words: &Words) -> Section {
@@ -104,6 +107,6 @@ fn landmarks(comparison: &ComparisonDocument, words: &Words) -> Option<Section> 
     let errors = &comparison.landmark_errors;
     let rows = errors.iter().map(|(name, own)| vec![name.clone(), mm(own.distance_mm)]).collect();
     let columns = texts([words.landmark, words.distance_mm]);
-    let table = Table { columns, rows: shortened(rows, MOST, words) };
+    let table = Table::new(columns, rows);
     (!errors.is_empty()).then(|| Section::new(words.landmarks, vec![Block::Table(table)]))
 }

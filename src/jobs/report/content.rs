@@ -27,6 +27,8 @@ pub enum Block {
     List(Vec<String>),
     Table(Table),
     Figure(Figure),
+    /// Lines to be written on by hand, each with what it is for.
+    Signature(Vec<String>),
 }
 
 /// Rows of words under their columns; the first column names the row.
@@ -34,12 +36,29 @@ pub struct Table {
     /// Empty for rows that say all themselves.
     pub columns: Vec<String>,
     pub rows: Vec<Vec<String>>,
+    /// So many are shown however little room there is.
+    pub least: usize,
 }
 
 pub struct Figure {
     pub drawing: Document,
     pub title: String,
     pub caption: String,
+    /// At most, in points, as printed.
+    pub height: f64,
+}
+
+impl Figure {
+    /// As large as its page lets it be.
+    pub fn new(drawing: Document, title: &str, caption: String) -> Self {
+        Figure { drawing, title: title.to_owned(), caption, height: f64::INFINITY }
+    }
+}
+
+impl Table {
+    pub fn new(columns: Vec<String>, rows: Vec<Vec<String>>) -> Self {
+        Table { columns, rows, least: 1 }
+    }
 }
 
 impl Section {

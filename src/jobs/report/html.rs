@@ -7,6 +7,9 @@ use super::content::{Block, Figure, Report, Section, Table};
 /// No scripts, nothing from elsewhere.
 const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; img-src data:";
 
+/// The height of a page, which no figure is larger than, in points.
+const LARGEST: f64 = 760.0;
+
 /// The colours of the page, of which a report has the light ones: it is paper.
 const PALETTE: &str = include_str!("../../../web/dist/assets/palette.css");
 
@@ -27,9 +30,12 @@ th, td { overflow-wrap: normal; } .facts td { overflow-wrap: anywhere; }
 th:first-child, td:first-child, .facts td { text-align: left; } thead th { border-bottom: 1px solid var(--soft); }
 tbody th { font-weight: normal; } .facts th { width: 26%; color: var(--soft); }
 ul { margin: 0.2em 0; padding-left: 1.3em; }
+.signature { display: flex; gap: 1.5em; margin: 2.4em 0 0.3em; } .signature span { flex: 1; border-top: 1px solid var(--ink); color: var(--soft); }
 @media print { body { font-size: 8.6pt; line-height: 1.3; padding: 0; max-width: none; }
-  .page { break-before: page; } figure, tr { break-inside: avoid; } h2 { break-after: avoid; margin-top: 0.8em; }
-  figure svg { max-height: 198mm; } * { print-color-adjust: exact; -webkit-print-color-adjust: exact; } }
+  .page { break-before: page; } figure, tr, .signature { break-inside: avoid; } h2 { break-after: avoid; margin: 8pt 0 2pt; }
+  figure { margin: 4pt 0; } figure svg { max-height: var(--most); } p { margin: 1pt 0; } .signature { margin: 22pt 0 4pt; } footer p { margin: 4pt 0 0; }
+  .wide { overflow: visible; } table { table-layout: fixed; font-size: 8.2pt; line-height: 10.2pt; } th, td { padding: 1pt 3pt; overflow-wrap: anywhere; }
+  th:first-child, .facts th { width: 26%; } * { print-color-adjust: exact; -webkit-print-color-adjust: exact; } }
 ";
 
 pub fn html(report: &Report) -> String {
@@ -60,12 +66,17 @@ fn block(block: &Block) -> String {
             format!("<ul>\n{}</ul>\n", entries.collect::<String>())
         }
         Block::Table(own) => table(own),
-        Block::Figure(Figure { drawing, title, caption }) => format!(
-            "<figure role=\"img\" aria-label=\"{}\">\n{}<figcaption>{}</figcaption>\n</figure>\n",
+        Block::Figure(Figure { drawing, title, caption, height }) => format!(
+            "<figure role=\"img\" aria-label=\"{}\" style=\"--most: {:.0}pt\">\n{}<figcaption>{}</figcaption>\n</figure>\n",
             escaped(title),
+            height.min(LARGEST),
             svg(drawing, title),
             escaped(caption)
         ),
+        Block::Signature(names) => {
+            let lines = names.iter().map(|name| format!("<span>{}</span>", escaped(name)));
+            format!("<p class=\"signature\">{}</p>\n", lines.collect::<String>())
+        }
     }
 }
 

@@ -8,6 +8,7 @@ mod html;
 mod method;
 mod pages;
 mod prediction;
+mod room;
 mod study;
 mod tables;
 mod words;

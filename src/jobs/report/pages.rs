@@ -1,6 +1,6 @@
 //! A report as pages of A4, which are written as PDF.
 
-use mechanics::chart::colour::{GRID, WARN_INK};
+use mechanics::chart::colour::{GRID, INK, WARN_INK};
 use mechanics::chart::drawing::{Document, Place, Run, Style};
 use mechanics::chart::helvetica::lines;
 use mechanics::chart::pdf::{About, pdf as written};
@@ -11,11 +11,11 @@ use super::content::{Block, Figure, Report, Section, Table};
 const WIDTH: f64 = 595.28;
 const HEIGHT: f64 = 841.89;
 const MARGIN: f64 = 40.0;
-const ROOM: f64 = WIDTH - 2.0 * MARGIN;
+pub const ROOM: f64 = WIDTH - 2.0 * MARGIN;
 /// Where a page ends for all but its foot.
 const END: f64 = HEIGHT - 46.0;
-const SIZE: f64 = 8.6;
-const LINE: f64 = 11.2;
+pub const SIZE: f64 = 8.6;
+pub const LINE: f64 = 11.2;
 /// Room of a table's first column, and of that of facts, of all.
 const FIRST: f64 = 0.26;
 
@@ -85,6 +85,7 @@ impl Pages {
             }
             Block::Table(table) => self.table(&table),
             Block::Figure(figure) => self.figure(figure),
+            Block::Signature(names) => self.signature(&names),
         }
     }
 
@@ -96,8 +97,23 @@ impl Pages {
         }
     }
 
-    fn figure(&mut self, Figure { drawing, caption, .. }: Figure) {
-        let height = (ROOM * drawing.height / drawing.width).min(END - MARGIN - 3.0 * LINE);
+    /// Lines side by side, each over what is to be written on it.
+    fn signature(&mut self, names: &[String]) {
+        self.need(4.0 * LINE);
+        self.y += 2.0 * LINE;
+        let width = ROOM / names.len().max(1) as f64;
+        for (at, name) in names.iter().enumerate() {
+            let x = MARGIN + width * at as f64;
+            let place = Place { x, y: self.y - LINE, width: width - 14.0, height: 0.6 };
+            self.page.rectangle(place, INK, 0.0);
+            self.page.text([x, self.y], width, Style::of(SIZE).faint(), name);
+        }
+        self.y += LINE;
+    }
+
+    fn figure(&mut self, Figure { drawing, caption, height, .. }: Figure) {
+        let most = height.min(END - MARGIN - 3.0 * LINE);
+        let height = (ROOM * drawing.height / drawing.width).min(most);
         self.need(height + LINE);
         let width = height * drawing.width / drawing.height;
         let x = MARGIN + (ROOM - width) / 2.0;
@@ -107,13 +123,7 @@ impl Pages {
     }
 
     fn table(&mut self, table: &Table) {
-        let columns = table.rows.iter().map(Vec::len).chain([table.columns.len()]).max();
-        let others = columns.unwrap_or(1).saturating_sub(1).max(1) as f64;
-        let layout = Columns {
-            first: ROOM * FIRST,
-            other: ROOM * (1.0 - FIRST) / others,
-            are_words: table.columns.is_empty(),
-        };
+        let layout = Columns::of(table);
         if !table.columns.is_empty() {
             self.row(&table.columns, &layout, Style::of(SIZE).bold());
         }
@@ -153,7 +163,23 @@ struct Columns {
     are_words: bool,
 }
 
+/// How wide words of each column of a table may be, in points.
+pub fn column_rooms(table: &Table) -> impl Fn(usize) -> f64 {
+    let layout = Columns::of(table);
+    move |column| layout.room(column)
+}
+
 impl Columns {
+    fn of(table: &Table) -> Self {
+        let columns = table.rows.iter().map(Vec::len).chain([table.columns.len()]).max();
+        let others = columns.unwrap_or(1).saturating_sub(1).max(1) as f64;
+        Columns {
+            first: ROOM * FIRST,
+            other: ROOM * (1.0 - FIRST) / others,
+            are_words: table.columns.is_empty(),
+        }
+    }
+
     fn starts(&self, column: usize) -> bool {
         column == 0 || self.are_words
     }
@@ -179,7 +205,7 @@ mod tests {
 
     fn report(rows: usize) -> Report {
         let rows = (0..rows).map(|row| vec![format!("row {row}"), "1.0".to_owned()]).collect();
-        let table = Table { columns: vec!["a".to_owned(), "b".to_owned()], rows };
+        let table = Table::new(vec!["a".to_owned(), "b".to_owned()], rows);
         let mut second = Section::new("Second", vec![Block::Paragraph("words".to_owned())]);
         second.on_new_page = true;
         Report {

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use mechanics::chart::{PngError, ViewRow, ViewValues, ViewsPicture};
+use mechanics::chart::{PngError, ViewOutline, ViewRow, ViewValues, ViewsPicture};
 use mechanics::mesh::{Frame, TriangleSurface, Vector};
 use mechanics::plan::{PlannedSegment, RigidMovement};
 use mechanics::prediction::{NodeClass, Scene};
@@ -12,9 +12,8 @@ use super::content::{Block, Figure, Report, Section, Table};
 use super::directions::{directions, motion};
 use super::form::ReportForm;
 use super::method::{how_sure, method};
-use super::tables::{
-    MOST, mm, number_or_dash, provenance, report, shortened, signed, texts, warnings,
-};
+use super::room::clipped;
+use super::tables::{mm, number_or_dash, provenance, report, signed, texts, warnings};
 use super::words::{Words, filled, words};
 use crate::jobs::failure::JobError;
 use crate::jobs::result::folder::ResultFolder;
@@ -23,6 +22,13 @@ use crate::schema::predict::output::OutputName;
 use crate::schema::predict::planned::MeasureDocument;
 use crate::schema::predict::result::{DisplacementDocument, ResultDocument};
 use crate::schema::{CaseDocument, Language, PlanDocument};
+
+/// Of the name of a case so many letters stand under the title.
+const LONGEST_NAME: usize = 120;
+
+/// Of what a plan does beside bone so much is told in its sentence.
+const MOST_BESIDE: usize = 18;
+const LONGEST_PART: usize = 40;
 
 /// What a prediction was made of and what it found.
 pub struct PredictionFacts<'a> {
@@ -53,7 +59,7 @@ pub fn prediction_report(facts: &PredictionFacts, language: Language) -> Result<
     sections.push(method(result, facts.plan, own));
     sections.push(provenance(result, own));
     let title = if result.optimisation.is_some() { own.found_plan } else { own.prediction };
-    let case = facts.case.name.as_deref().unwrap_or("–");
+    let case = clipped(facts.case.name.as_deref().unwrap_or("–"), LONGEST_NAME);
     let subtitle = format!("{}: {case} · {}", own.case, result.provenance.created);
     Ok(report(language, title, subtitle, sections))
 }
@@ -86,7 +92,7 @@ fn plan(facts: &PredictionFacts, words: &Words) -> Section {
     } else {
         let mut columns = vec![words.segment.to_owned()];
         columns.extend(texts(if is_stated { words.movements } else { words.axes }));
-        blocks.push(Block::Table(Table { columns, rows: shortened(rows, MOST, words) }));
+        blocks.push(Block::Table(Table::new(columns, rows)));
         let told = if is_stated { words.of_centre } else { words.about_axes };
         blocks.push(Block::Paragraph(told.to_owned()));
     }
@@ -129,7 +135,7 @@ fn centre(scene: &Scene, segment: u32) -> Vector {
 fn beside_bone(plan: &PlanDocument, words: &Words) -> Option<String> {
     let plain = |name: &str| match name {
         "*" => words.all_tissue.to_owned(),
-        named => named.replace('_', " "),
+        named => clipped(&named.replace('_', " "), LONGEST_PART),
     };
     let grows = plan.growth.iter().map(|own| {
         let percent = format!("{:+}", rounded(100.0 * own.volume_change));
@@ -139,9 +145,9 @@ fn beside_bone(plan: &PlanDocument, words: &Words) -> Option<String> {
         filled(words.activation, &[plain(&own.muscle), rounded(own.stress_kpa).to_string()])
     });
     let mut told: Vec<String> = grows.chain(pulls).collect();
-    if told.len() > MOST {
-        let left = told.len() - MOST;
-        told.truncate(MOST);
+    if told.len() > MOST_BESIDE {
+        let left = told.len() - MOST_BESIDE;
+        told.truncate(MOST_BESIDE);
         told.push(filled(words.more, &[left.to_string()]));
     }
     let counts = [(words.loads, plan.loads.len()), (words.prescribed, plan.prescribed.len())];
@@ -159,7 +165,11 @@ fn views(facts: &PredictionFacts, words: &Words) -> Result<Section, PngError> {
     let before = &facts.scene.skin.surface;
     let pairs = before.points.iter().zip(&facts.after.points);
     let moved: Vec<f64> = pairs.map(|(before, after)| (after - before).norm()).collect();
-    let row = |name, points, outline_of| ViewRow { name, points, values: None, outline_of };
+    let triangles = &*before.triangles;
+    let row = |name, points, outline: Option<_>| {
+        let outline_of = outline.map(|points| ViewOutline { points, triangles });
+        ViewRow { name, points, values: None, outline_of }
+    };
     let range_mm = facts.range_mm;
     let values = ViewValues { values: &moved, range_mm, is_signed: false, name: words.moved_mm };
     let [before_points, after_points] = [before, facts.after].map(|surface| &*surface.points);
@@ -175,7 +185,7 @@ fn views(facts: &PredictionFacts, words: &Words) -> Result<Section, PngError> {
         columns: words.columns,
     };
     let caption = filled(words.outline, &[format!("{range_mm}")]);
-    let figure = Figure { drawing: picture.to_drawing()?, title: words.views.to_owned(), caption };
+    let figure = Figure::new(picture.to_drawing()?, words.views, caption);
     Ok(Section::new(words.views, vec![Block::Figure(figure)]))
 }
 
@@ -197,7 +207,7 @@ fn regions(result: &ResultDocument, words: &Words) -> Section {
         }));
     }
     let columns = ["", words.mean, words.median, "p95", words.max, words.of_mesh, words.of_model];
-    let table = Table { columns: texts(columns), rows: shortened(rows, 10, words) };
+    let table = Table::new(texts(columns), rows);
     Section::new(words.displacement, vec![Block::Table(table)])
 }
 
@@ -223,7 +233,7 @@ fn landmarks(facts: &PredictionFacts, words: &Words) -> Option<Section> {
     };
     let [forward, up, left] = along;
     let columns = [words.landmark, forward, up, left, words.length, words.of_mesh, words.of_model];
-    let table = Table { columns: texts(columns), rows: shortened(rows, MOST, words) };
+    let table = Table::new(texts(columns), rows);
     (!moved.is_empty()).then(|| Section::new(words.landmarks, vec![Block::Table(table)]))
 }
 
@@ -244,6 +254,6 @@ fn measures(measures: &[MeasureDocument], words: &Words) -> Option<Section> {
         })
         .collect();
     let columns = [words.measure, words.before, words.planned, words.change];
-    let table = Table { columns: texts(columns), rows: shortened(rows, MOST, words) };
+    let table = Table::new(texts(columns), rows);
     (!measures.is_empty()).then(|| Section::new(words.head, vec![Block::Table(table)]))
 }

@@ -3,15 +3,11 @@
 use mechanics::chart::drawing::Document;
 
 use super::content::{Block, Figure, Report, Section, Table};
-use super::tables::{mm, provenance, report, shortened, texts, warnings};
+use super::tables::{mm, provenance, report, texts, warnings};
 use super::words::{Words, filled, words};
 use crate::schema::Language;
 use crate::schema::predict::result::ResultDocument;
-use crate::schema::study::report::{ReportDocument, RowDocument};
-
-/// What there is room for beside chart, outcome and provenance.
-const MOST_ROWS: usize = 36;
-const MOST_REASONS: usize = 6;
+use crate::schema::study::report::{OutcomeName, ReportDocument, RowDocument, RowStatus};
 
 /// A study, the chart over all of its scenes, and the manifest of its job.
 pub struct StudyFacts<'a> {
@@ -23,7 +19,7 @@ pub struct StudyFacts<'a> {
 pub fn study_report(facts: StudyFacts, language: Language) -> Report {
     let own = words(language);
     let StudyFacts { report: study, chart, result } = facts;
-    let figure = Figure { drawing: chart, title: own.chart.to_owned(), caption: String::new() };
+    let figure = Figure::new(chart, own.chart, String::new());
     let mut rows = rows(study, own);
     rows.on_new_page = true;
     let sections = vec![
@@ -40,37 +36,36 @@ pub fn study_report(facts: StudyFacts, language: Language) -> Report {
 
 fn outcome(study: &ReportDocument, words: &Words) -> Section {
     let verdict = &study.verdict;
-    let counts = format!(
-        "{}: {} / {} solved, {} failed, {} worse, {} not run",
-        verdict.outcome.name(),
-        verdict.solved,
-        verdict.rows,
-        verdict.failed,
-        verdict.worse,
-        verdict.not_run
-    );
-    let mut blocks = vec![Block::Paragraph(counts)];
+    let [pass, worse, incomplete, no_baseline] = words.outcomes;
+    let told = match verdict.outcome {
+        OutcomeName::Pass => pass,
+        OutcomeName::Worse => worse,
+        OutcomeName::Incomplete => incomplete,
+        OutcomeName::NoBaseline => no_baseline,
+    };
+    let numbers = [verdict.solved, verdict.rows, verdict.failed, verdict.worse, verdict.not_run];
+    let counts = filled(words.counts, &numbers.map(|number| number.to_string()));
+    let mut blocks = vec![Block::Paragraph(format!("{told}: {counts}"))];
     if !verdict.reasons.is_empty() {
-        let mut reasons: Vec<String> = verdict.reasons.iter().take(MOST_REASONS).cloned().collect();
-        if verdict.reasons.len() > MOST_REASONS {
-            let left = verdict.reasons.len() - MOST_REASONS;
-            reasons.push(filled(words.more, &[left.to_string()]));
-        }
-        blocks.push(Block::List(reasons));
+        blocks.push(Block::List(verdict.reasons.clone()));
     }
     Section::new(words.outcome, blocks)
 }
 
 fn rows(study: &ReportDocument, words: &Words) -> Section {
-    let rows = study.rows.iter().map(row).collect();
-    let table =
-        Table { columns: texts(words.row_columns), rows: shortened(rows, MOST_ROWS, words) };
-    Section::new(words.rows, vec![Block::Table(table)])
+    let rows = study.rows.iter().map(|own| row(own, words)).collect();
+    Section::new(words.rows, vec![Block::Table(Table::new(texts(words.row_columns), rows))])
 }
 
-fn row(row: &RowDocument) -> Vec<String> {
+fn row(row: &RowDocument, words: &Words) -> Vec<String> {
+    let [solved, failed, not_run] = words.states;
+    let state = match row.status {
+        RowStatus::Solved => solved,
+        RowStatus::Failed => failed,
+        RowStatus::NotRun => not_run,
+    };
     let numbers = row.numbers.as_ref().map_or_else(
-        || ["–".to_owned(), row.status.name().to_owned(), "–".to_owned()],
+        || ["–".to_owned(), state.to_owned(), "–".to_owned()],
         |own| [format!("{:.3}", own.wall_s), mm(own.mean_mm), mm(own.p95_mm)],
     );
     let names = [&row.label, &row.scene, &row.plan].map(String::clone);

@@ -3,13 +3,10 @@
 use mechanics::mesh::Frame;
 
 use super::content::{Block, Report, Section, Table};
-use super::words::{Words, filled, words};
+use super::room::fitted;
+use super::words::{Words, words};
 use crate::schema::predict::result::{ProvenanceDocument, ResultDocument};
 use crate::schema::{Language, WarningDocument};
-
-/// The most rows and entries of a table or list; a report has two pages.
-pub const MOST: usize = 18;
-const MOST_WARNINGS: usize = 8;
 
 /// Lengths in mm: two decimals, three below 0.1.
 pub fn mm(value: f64) -> String {
@@ -28,28 +25,13 @@ pub fn signed(value: f64) -> String {
     if value >= 5e-4 { format!("+{text}") } else { text }
 }
 
-/// As many rows as there is room for, and how many are left out.
-pub fn shortened(mut rows: Vec<Vec<String>>, most: usize, words: &Words) -> Vec<Vec<String>> {
-    if rows.len() > most {
-        let left = rows.len() - most;
-        rows.truncate(most);
-        rows.push(vec![filled(words.more, &[left.to_string()])]);
-    }
-    rows
-}
-
 pub fn warnings(list: &[WarningDocument], words: &Words) -> Section {
     if list.is_empty() {
         let none = Block::Paragraph(words.no_warnings.to_owned());
         return Section::new(words.warnings, vec![none]);
     }
-    let told = list.iter().take(MOST_WARNINGS);
-    let mut told: Vec<String> =
-        told.map(|warning| format!("{} ({})", warning.detail, warning.code)).collect();
-    if list.len() > MOST_WARNINGS {
-        told.push(filled(words.more, &[(list.len() - MOST_WARNINGS).to_string()]));
-    }
-    Section::new(words.warnings, vec![Block::List(told)])
+    let told = list.iter().map(|warning| format!("{} ({})", warning.detail, warning.code));
+    Section::new(words.warnings, vec![Block::List(told.collect())])
 }
 
 /// Versions, hashes, the plan and when it was made.
@@ -65,11 +47,12 @@ pub fn provenance(result: &ResultDocument, words: &Words) -> Section {
     facts.push([words.frame.to_owned(), frame.name().to_owned()]);
     facts.push([words.made.to_owned(), created.clone()]);
     facts.push([words.hash.to_owned(), spec_hash.clone()]);
-    for input in inputs.iter().take(MOST) {
+    let least = facts.len();
+    for input in inputs {
         facts.push([format!("{} {}", words.input, input.role), input.sha256.clone()]);
     }
     let rows = facts.into_iter().map(Vec::from).collect();
-    Section::new(words.provenance, vec![Block::Table(Table { columns: Vec::new(), rows })])
+    Section::new(words.provenance, vec![Block::Table(Table { columns: Vec::new(), rows, least })])
 }
 
 fn engine_words(result: &ResultDocument) -> String {
@@ -80,11 +63,17 @@ fn engine_words(result: &ResultDocument) -> String {
     )
 }
 
-/// A report of a result, which is no medical device.
-pub fn report(language: Language, title: &str, subtitle: String, sections: Vec<Section>) -> Report {
+/// A report of a result, which is no medical device, with a line for whoever has read it.
+pub fn report(
+    language: Language,
+    title: &str,
+    subtitle: String,
+    mut sections: Vec<Section>,
+) -> Report {
     let words = words(language);
     let (title, notice) = (title.to_owned(), words.notice.to_owned());
-    Report { language, title, subtitle, notice, sections }
+    sections.push(Section::new(words.read, vec![Block::Signature(texts(words.signature))]));
+    Report { language, title, subtitle, notice, sections: fitted(sections, words) }
 }
 
 pub fn texts<const N: usize>(words: [&str; N]) -> Vec<String> {
@@ -94,14 +83,6 @@ pub fn texts<const N: usize>(words: [&str; N]) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn a_table_that_is_too_long_says_how_much_it_leaves_out() {
-        let rows: Vec<Vec<String>> = (0..21).map(|row| vec![row.to_string()]).collect();
-        let short = shortened(rows, 18, words(Language::En));
-        assert_eq!(short.len(), 19);
-        assert_eq!(short[18], ["and 3 more, in result.json"]);
-    }
 
     #[test]
     fn nothing_has_no_sign_and_little_has_its_digits() {

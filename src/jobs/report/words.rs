@@ -94,6 +94,15 @@ pub struct Words {
     pub rows: &'static str,
     pub chart: &'static str,
     pub row_columns: [&'static str; 7],
+    /// Of a study: passed, worse, incomplete, without a baseline.
+    pub outcomes: [&'static str; 4],
+    /// Rows solved, all rows, those that failed, are worse, did not run.
+    pub counts: &'static str,
+    /// Of a row: solved, failed, not run.
+    pub states: [&'static str; 3],
+    pub read: &'static str,
+    /// What is to be written: name, date, signature.
+    pub signature: [&'static str; 3],
 }
 
 pub fn words(language: Language) -> &'static Words {
@@ -192,11 +201,16 @@ const EN: Words = Words {
     registration: "Registration",
     turned: "The actual skin was turned by {}° and shifted by {} mm",
     covered: "{} % of the prediction and {} % of the actual skin have the other opposite.",
-    outside: "Positive, orange: the prediction lies outside the actual skin. Fixed range of ±{} mm.",
+    outside: "Positive, orange: the prediction lies outside the actual skin. Fixed range of ±{} mm. Green line: outline of the actual skin where its registration puts it.",
     outcome: "Outcome",
     rows: "Rows",
     chart: "Time against error",
     row_columns: ["Variant", "scene", "plan", "level", "time, s", "mean, mm", "p95, mm"],
+    outcomes: ["passed", "worse", "incomplete", "no baseline"],
+    counts: "{} of {} rows solved, {} failed, {} worse, {} not run",
+    states: ["solved", "failed", "not run"],
+    read: "Read by",
+    signature: ["Name", "Date", "Signature"],
 };
 
 const DE: Words = Words {
@@ -288,11 +302,16 @@ const DE: Words = Words {
     registration: "Registrierung",
     turned: "Die tatsächliche Haut wurde um {}° gedreht und um {} mm verschoben",
     covered: "{} % der Vorhersage und {} % der tatsächlichen Haut haben die andere gegenüber.",
-    outside: "Positiv, orange: die Vorhersage liegt außerhalb der tatsächlichen Haut. Fester Bereich von ±{} mm.",
+    outside: "Positiv, orange: die Vorhersage liegt außerhalb der tatsächlichen Haut. Fester Bereich von ±{} mm. Grüne Linie: Umriss der tatsächlichen Haut, wo ihre Registrierung sie hinlegt.",
     outcome: "Ergebnis",
     rows: "Zeilen",
     chart: "Zeit gegen Fehler",
     row_columns: ["Variante", "Szene", "Plan", "Stufe", "Zeit, s", "Mittel, mm", "p95, mm"],
+    outcomes: ["bestanden", "schlechter", "unvollständig", "ohne Vergleichsstudie"],
+    counts: "{} von {} Zeilen gelöst, {} gescheitert, {} schlechter, {} nicht gerechnet",
+    states: ["gelöst", "gescheitert", "nicht gerechnet"],
+    read: "Gelesen von",
+    signature: ["Name", "Datum", "Unterschrift"],
 };
 
 /// A sentence with its numbers in place of `{}`.
