@@ -2,7 +2,7 @@
 
 use super::budget::{Budget, Held, Most, Owner};
 use super::client::Client;
-use super::error::ApiResult;
+use super::error::{ApiError, ApiResult};
 use super::hosts::Hosts;
 use super::spool::Ground;
 use super::turns::{Turn, Turns};
@@ -14,12 +14,15 @@ use crate::schema::Limits;
 use crate::store::{Noting, Store};
 use crate::worker::process::slot_bytes;
 use std::sync::Arc;
+use std::time::Duration;
 
 /// Meshes that are parsed at the same time, and jobs that are checked.
 const PARSED_AT_ONCE: usize = 2;
 const CHECKED_AT_ONCE: usize = 2;
 /// Pages of jobs that are read and written out at the same time.
 const LISTED_AT_ONCE: usize = 2;
+/// How long a list of jobs waits for its turn, as long as one waits for a connection to a database.
+const LIST_PATIENCE: Duration = Duration::from_millis(2500);
 
 /// What every request may use.
 #[derive(Clone)]
@@ -119,9 +122,12 @@ impl Service {
     }
 
     /// The turn of this request to list jobs, whose places are counted among all that wait: those who list without a pause
-    /// leave the database and the processors to others.
+    /// leave the database and the processors to others. Where a database answers late, who waits is told to come back.
     pub(super) async fn list_turn(&self) -> ApiResult<Turn> {
-        self.listing.turn(self.store.tenant()).await
+        let turn = self.listing.turn(self.store.tenant());
+        tokio::time::timeout(LIST_PATIENCE, turn)
+            .await
+            .unwrap_or_else(|_| Err(ApiError::out_of_reach()))
     }
 
     /// Until the client of a request has gone for which something was changed. Any other ends with its client.

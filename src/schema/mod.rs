@@ -53,5 +53,5 @@ pub use study::report::ReportDocument;
 pub use wire::fault::{Faults, FieldError, Pointer};
 pub use wire::limits::Limits;
 pub use wire::problem::{Problem, ProblemDocument};
-pub use wire::vector::{CornerPair, Matrix4x4, PartialTriple, Sphere, Triple};
+pub use wire::vector::{CornerPair, Matrix4x4, PartialTriple, Sphere, TriangleCorners, Triple};
 pub use wire::warning::WarningDocument;

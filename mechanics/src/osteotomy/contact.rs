@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::bone_labels::{BoneLabels, Owner};
+use super::cut::Side;
 use super::grid::{Grid, Neighbour};
 use super::rule::Osteotomy;
 use crate::mesh::Vector;
@@ -100,6 +101,38 @@ fn cut_between(osteotomy: &Osteotomy, owners: [Owner; 2], ends: [Vector; 2]) -> 
         let cut = &osteotomy.cuts()[cut];
         cut.parts(&ends[0], &ends[1]) || ends.iter().any(|end| cut.saws(end))
     })
+}
+
+/// The first piece of a line, and the segment that lies on its other side at most of the faces of voxels that the line parts: such a
+/// line is walked the other way than its segment says.
+pub(super) fn turned_about(
+    osteotomy: &Osteotomy,
+    grid: &Grid<'_>,
+    labels: &BoneLabels,
+) -> Option<(usize, usize)> {
+    let mut faces: BTreeMap<(usize, usize), [usize; 2]> = BTreeMap::new();
+    for (voxel, neighbour) in pairs(grid) {
+        let owners = [labels.owner(voxel), labels.owner(neighbour.voxel)];
+        let [here, there] = [voxel, neighbour.voxel].map(|voxel| grid.centre(voxel));
+        for (own, place, other) in [(0, here, there), (1, there, here)] {
+            let Some(Owner::Segment(segment)) = owners[own] else { continue };
+            if owners[1 - own].is_none() || owners[1 - own] == owners[own] {
+                continue;
+            }
+            for side in &osteotomy.segments()[segment].sides {
+                let cut = &osteotomy.cuts()[side.cut];
+                let Some(chain) = cut.chain() else { continue };
+                if cut.parts(&place, &other) || cut.saws(&other) {
+                    let is_above = cut.plane().height(&place) > 0.0;
+                    let counts = faces.entry((chain, segment)).or_default();
+                    counts[usize::from(is_above != (side.side == Side::Above))] += 1;
+                }
+            }
+        }
+    }
+    let ((chain, segment), _) = faces.into_iter().find(|(_, [right, wrong])| wrong > right)?;
+    let first = osteotomy.cuts().iter().position(|cut| cut.chain() == Some(chain))?;
+    Some((first, segment))
 }
 
 /// Bounded cuts with bone of one segment on both of their sides.

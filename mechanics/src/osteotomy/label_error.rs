@@ -14,6 +14,11 @@ pub enum LabelError {
     SeedOffBone { segment: String, seed: usize, at: Vector, bone: Option<(Vector, Vector)> },
     #[error("seed {seed} of segment `{segment}` is on the other side of cut `{cut}`")]
     SeedAcross { segment: String, seed: usize, cut: String },
+    #[error(
+        "segment `{segment}` lies on the other side of `{cut}` than it says: `below` and `above` change places where a line is \
+         walked the other way"
+    )]
+    LineTurned { segment: String, cut: String },
     #[error("segments `{one}` and `{other}` have a seed at the same place")]
     SeedsMeet { one: String, other: String },
     #[error(

@@ -2,7 +2,7 @@
 
 use super::bone_image::BoneImage;
 use super::bone_labels::{BoneLabels, Owner};
-use super::contact::{Bridge, Contact, bridges, contacts};
+use super::contact::{Bridge, Contact, bridges, contacts, turned_about};
 use super::flood::flood;
 use super::grid::Grid;
 use super::label_error::LabelError;
@@ -47,6 +47,11 @@ pub fn label(bone: &BoneImage<'_>, osteotomy: &Osteotomy) -> Result<Labelled, La
     let markers = markers(osteotomy, bone, &grid, &labels)?;
     flood(osteotomy, &grid, |voxel| bone.value(voxel), &markers, &mut labels);
     saw(osteotomy, &grid, &mut labels);
+    if let Some((cut, segment)) = turned_about(osteotomy, &grid, &labels) {
+        let [cut, segment] =
+            [&osteotomy.cuts()[cut].name, &osteotomy.segments()[segment].name].map(String::clone);
+        return Err(LabelError::LineTurned { segment, cut });
+    }
     let found = Labelled::segments_of(osteotomy, bone, &grid, &labels);
     let loose = set_loose(osteotomy, bone, &grid, &mut labels);
     Ok(Labelled { loose, ..Labelled::new(osteotomy, &grid, labels, found) })

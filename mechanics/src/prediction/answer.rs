@@ -113,15 +113,6 @@ fn answered<'a>(
     };
     let solved = system.solve(&[scene.load_case()], progress)?.remove(0);
     let touched = touch(scene, &system, &solved, of_mesh.is_none(), progress)?;
-    if touched.is_none() && of_mesh.is_none() && of_linearity.is_none() {
-        // Where they cannot be had together, each is estimated or unknown by itself.
-        let both = nonlinearity::estimate_both(scene, &system, &solved, progress);
-        if let Ok((error, nonlinearity)) = both {
-            let (numerical_error, nonlinearity) = (Ok(error), Ok(nonlinearity));
-            let answer = LinearAnswer { system, solved, numerical_error, nonlinearity };
-            return Ok(Linear::Solved(Box::new(answer)));
-        }
-    }
     let in_contact = touched.as_ref().and_then(|touched| touched.numerical_error.clone());
     let numerical_error = match (of_mesh, in_contact) {
         (Some(reason), _) => Err(reason),

@@ -73,7 +73,7 @@ pub use walls::normal_turned;
 pub use adaptive::{Adapted, AdaptiveError, Level, Stop, Wanted, predict_adaptively};
 pub use adequate::{
     Accepted, Adequate, Considered, Errors, MeanErrors, NEWTON_MAY_TAKE, Rung, SECOND_ORDER_TAKES,
-    Together, USUALLY_ACCEPTED_MM, Watched, predict_adequately,
+    USUALLY_ACCEPTED_MM, Watched, predict_adequately,
 };
 use answer::Answer;
 pub use answer::{equilibrium, estimates};

@@ -8,7 +8,6 @@
 use std::collections::BTreeMap;
 
 use super::method::Method;
-use super::numerical_error::{self, NumericalError};
 use super::scene::Scene;
 use super::skin::landmark_displacement;
 use super::walls::turned_at_second_order;
@@ -99,19 +98,6 @@ pub(super) fn estimate(
     }
 }
 
-/// What the mesh and what linearity leaves out of an answer of linear elements, by one solution for both.
-pub(super) fn estimate_both(
-    scene: &Scene,
-    system: &LinearSystem,
-    solved: &Solved,
-    progress: &dyn Progress,
-) -> Result<(NumericalError, Nonlinearity), ModelError> {
-    let forces = second_order_forces(scene, system, solved)?;
-    let second = (left_by(&forces), LOOSE);
-    let (error, found) = numerical_error::estimate_beside(scene, system, solved, second, progress)?;
-    Ok((error, Nonlinearity::of(scene, finite(found)?.displacement)))
-}
-
 /// The answer to second order, with the forces of its holds, and the third order.
 pub(super) fn to_second_order(
     scene: &Scene,
@@ -174,17 +160,11 @@ fn solution(
     relative_residual: f64,
     progress: &dyn Progress,
 ) -> Result<Correction, ModelError> {
-    finite(system.solve_for(&[left_by(forces)], relative_residual, progress)?.remove(0))
-}
-
-fn left_by(forces: &Forces) -> Residual {
-    Residual {
+    let residual = Residual {
         forces: forces.nodes.iter().map(|force| -force).collect(),
         volumes: forces.volumes.iter().map(|volume| -volume).collect(),
-    }
-}
-
-fn finite(found: Correction) -> Result<Correction, ModelError> {
+    };
+    let found = system.solve_for(&[residual], relative_residual, progress)?.remove(0);
     match found.displacement.iter().flatten().all(|value| value.is_finite()) {
         true => Ok(found),
         false => Err(SolverError::NotFinite.into()),

@@ -6,7 +6,7 @@ use crate::mesh::{Vector, Warning};
 use crate::model::fem::contact::InContact;
 use crate::model::fem::discretisation_error::{DiscretisationError, Estimate};
 use crate::model::fem::finite_strain::{MeshError, NoMeshError};
-use crate::model::fem::linear_system::{Correction, LinearSystem, Residual, Solved};
+use crate::model::fem::linear_system::{LinearSystem, Solved};
 use crate::model::fem::mass_tensor::Iterations;
 use crate::model::problem::ModelError;
 use crate::progress::Progress;
@@ -74,21 +74,6 @@ pub(super) fn estimate_in_contact(
     progress: &dyn Progress,
 ) -> Result<Known, ModelError> {
     known(of(scene, system).in_contact(found, progress))
-}
-
-/// The estimate together with the correction of another residual, by one solution for both to the tighter of their tolerances.
-pub(super) fn estimate_beside(
-    scene: &Scene,
-    system: &LinearSystem,
-    solved: &Solved,
-    (other, tolerance): (Residual, f64),
-    progress: &dyn Progress,
-) -> Result<(NumericalError, Correction), ModelError> {
-    let (residual, left) = of(scene, system).posed(solved, progress)?;
-    let mut found =
-        system.solve_for(&[residual, other], tolerance.min(left.tolerance), progress)?;
-    let of_other = found.remove(1);
-    Ok((left.by(found.remove(0)).into(), of_other))
 }
 
 fn of<'a>(scene: &'a Scene, system: &'a LinearSystem<'a>) -> Estimate<'a> {

@@ -50,14 +50,9 @@ impl Skin {
 
     /// The mean length of vectors of nodes over some points of the surface; zero over none.
     pub fn mean_length(&self, points: &[u32], of_nodes: &[Vector]) -> f64 {
-        self.mean(points, &|node| of_nodes[node].norm())
-    }
-
-    /// The mean over some points of the surface of something of their nodes; zero over none.
-    pub fn mean(&self, points: &[u32], of_node: &dyn Fn(usize) -> f64) -> f64 {
         let nodes = self.nodes();
-        let own = |&point: &u32| of_node(nodes[point as usize] as usize);
-        points.iter().map(own).sum::<f64>() / points.len().max(1) as f64
+        let length = |&point: &u32| of_nodes[nodes[point as usize] as usize].norm();
+        points.iter().map(length).sum::<f64>() / points.len().max(1) as f64
     }
 
     /// The skin after its nodes have moved.

@@ -8,10 +8,6 @@ use super::variant::Strain;
 use crate::mesh::Vector;
 use crate::prediction::least_moving;
 
-/// The code of answers of finite strain that are held against a linear truth: their error has in it what linearity leaves out of
-/// the truth.
-pub const LINEAR_TRUTH: &str = "linear-truth";
-
 /// True errors in mm below which an effectivity says nothing: a hundred times what solving to the usual residual leaves open.
 const NO_ERROR: f64 = 1e-4;
 

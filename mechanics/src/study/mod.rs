@@ -26,11 +26,10 @@ mod truth_words;
 pub mod variant;
 
 pub use answer::LONG_S;
-pub use estimated::LINEAR_TRUTH;
 pub use failure::StudyError;
 pub use levels::{MOST_CELLS, cells_at};
 pub use report::{Errors, Outcome, Report, Row, SceneReport, Skipped, Solved};
-pub use run::{NOT_RUN, run};
+pub use run::{LINEAR_TRUTH, NOT_RUN, run};
 pub use truth_cost::{TruthCost, TruthMesh, truth_cost};
 pub use variant::{
     ClosedForm, Materials, Scan, ScanMetric, Strain, Study, StudyScene, Truth, Variant,

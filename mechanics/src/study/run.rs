@@ -4,7 +4,6 @@ use super::Stopwatch;
 use super::answer::{Answer, Bench, NoAnswer, Refusal};
 use super::cell_sizes::cell_size;
 use super::error::{DisplacedSkin, Measured};
-use super::estimated::LINEAR_TRUTH;
 use super::failure::StudyError;
 use super::levels::Levels;
 use super::report::{Outcome, Report, Row, SceneReport, Skipped, Solved};
@@ -16,6 +15,9 @@ use crate::prediction::{Plan, Scene, Settings, Skin};
 use crate::progress::Progress;
 use std::collections::{BTreeMap, BTreeSet};
 
+/// The code of answers of finite strain that are held against a linear truth: their error has in it what linearity leaves out of
+/// the truth.
+pub const LINEAR_TRUTH: &str = "linear-truth";
 /// The code of rows that were not begun, because the time of the study was used up.
 pub const NOT_RUN: &str = "not-run";
 

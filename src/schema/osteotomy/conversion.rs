@@ -154,7 +154,7 @@ pub fn unfound(error: &LabelError, osteotomy: &Osteotomy, at: &Pointer) -> Probl
         number.map_or_else(|| at.clone(), |number| at.key("segments").index(number))
     };
     let place = match error {
-        LabelError::NoBone { segment } => named(segment),
+        LabelError::NoBone { segment } | LabelError::LineTurned { segment, .. } => named(segment),
         LabelError::SeedOffBone { segment, seed, .. }
         | LabelError::SeedAcross { segment, seed, .. } => {
             named(segment).key("seeds_mm").index(*seed)

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-use crate::schema::Triple;
+use crate::schema::{TriangleCorners, Triple};
 
 /// Cuts through the bone of a scan and the segments on their sides; coordinates in the frame of the plan.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
@@ -78,7 +78,7 @@ pub struct RiskDocument {
     pub points_mm: Vec<Triple>,
     /// Triangles of a surface, each three of the points, counted from 0. Absent: a line.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub triangles: Vec<[u32; 3]>,
+    pub triangles: Vec<TriangleCorners>,
     /// How thick it is around its line or surface, 0 to 20 mm. Default: 0.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false, minimum = 0.0, maximum = 20.0)]

@@ -4,6 +4,7 @@ use mechanics::osteotomy::Risk;
 
 use super::conversion::OsteotomyContext;
 use super::document::OsteotomyDocument;
+use crate::schema::TriangleCorners;
 use crate::schema::code::ErrorCode;
 use crate::schema::wire::fault::{Faults, Pointer};
 use crate::schema::wire::names::check_distinct;
@@ -34,7 +35,8 @@ impl OsteotomyDocument {
             let is_surface = !risk.triangles.is_empty();
             faults.check_length(&place, count, if is_surface { MOST_OF_SURFACE } else { most });
             faults.check_length(&triangles, risk.triangles.len(), MOST_OF_SURFACE);
-            let beyond = |corners: &[u32; 3]| corners.iter().any(|&own| own as usize >= count);
+            let beyond =
+                |corners: &TriangleCorners| corners.0.iter().any(|&own| own as usize >= count);
             if let Some(triangle) = risk.triangles.iter().position(beyond) {
                 let detail = format!("a corner is none of the {count} points, which count from 0");
                 faults.add(&triangles.index(triangle), ErrorCode::OutOfRange, detail);
@@ -55,7 +57,7 @@ impl OsteotomyDocument {
             risks.push(Risk {
                 name: name.to_owned(),
                 points: risk.points_mm.iter().map(|&point| context.vector(point)).collect(),
-                triangles: risk.triangles.clone(),
+                triangles: risk.triangles.iter().map(|corners| corners.0).collect(),
                 radius,
                 clearance: risk.clearance_mm,
             });

@@ -37,6 +37,24 @@ pub struct Sphere(pub [f64; 4]);
 #[serde(transparent)]
 pub struct CornerPair(pub [f64; 6]);
 
+/// Three points by their numbers, counted from 0.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct TriangleCorners(pub [u32; 3]);
+
+impl PartialSchema for TriangleCorners {
+    fn schema() -> RefOr<Schema> {
+        let array = ArrayBuilder::new()
+            .items(u32::schema())
+            .min_items(Some(3))
+            .max_items(Some(3))
+            .description(Some("three points by their numbers, counted from 0"));
+        array.into()
+    }
+}
+
+impl ToSchema for TriangleCorners {}
+
 impl From<Triple> for Vector {
     fn from(Triple(xyz): Triple) -> Vector {
         Vector::from(xyz)

@@ -110,15 +110,13 @@ fn a_study_of_one_face_on_given_cell_sizes_tells_how_its_skin_converges() {
         let change = ((finest.skin_mean_mm - before) / finest.skin_mean_mm).abs();
         assert!((finest.change.unwrap() - change).abs() < 1e-12);
     }
-    // The edge of what is moved is a singularity: orders are low, and the limit is far from the finest mesh.
+    // The edge of what is moved is a singularity: no order is seen. Sizes that lie near each other differ by less than .3 % long
+    // before that, so that the published rule is content with 8 mm, while the skin goes on by 1.3 %.
     let plain = &report.cell_sizes[0];
-    let (order, limit) = (plain.order.unwrap(), plain.limit_mm.unwrap());
-    let finest = plain.meshes[9].skin_mean_mm;
-    assert!(
-        (0.2..1.0).contains(&order) && limit > 1.01 * finest && limit < 1.04 * finest,
-        "{plain:?}"
-    );
-    assert_eq!((plain.fit_meshes, plain.settled_mm), (Some(10), None));
+    assert_eq!((plain.order, plain.limit_mm, plain.fit_meshes), (None, None, None), "{plain:?}");
+    assert!((plain.settled_mm.unwrap() - 8.0).abs() < 1e-9, "{plain:?}");
+    let further = plain.meshes[9].skin_mean_mm / plain.meshes[1].skin_mean_mm;
+    assert!((1.013..1.014).contains(&further), "{further}");
     let table = fs::read_to_string(folder.path().join("cell-sizes.csv")).unwrap();
     assert_eq!(table.lines().count(), 21);
     let picture = fs::read_to_string(folder.path().join("cell-sizes-1-face.svg")).unwrap();

@@ -78,11 +78,12 @@ fn a_cut_has_the_outline_of_the_bone_and_its_distance_from_a_nerve() {
     read_again(&folder, cut);
 }
 
-/// Steps along x at 46 mm and, beyond the middle of the ball, at 54 mm, so deep into the bone from before it.
+/// Steps along x at 44 mm and, beyond the middle of the ball, at 52 mm, each between two layers of voxels, so deep into the bone from
+/// before it.
 fn steps(depth_mm: f64) -> Value {
     json!({
         "polylines": [{
-            "name": "steps", "polyline_mm": [[20, 15, 46], [60, 15, 46], [60, 15, 54], [100, 15, 54]],
+            "name": "steps", "polyline_mm": [[20, 15, 44], [60, 15, 44], [60, 15, 52], [100, 15, 52]],
             "direction": [0, 2, 0], "depth_mm": depth_mm
         }],
         "segments": [{"name": "jaw", "below": ["steps"], "seeds_mm": [[60, 55, 36]]}]
@@ -95,20 +96,20 @@ fn a_stepped_cut_is_meshed_and_each_of_its_pieces_has_the_area_of_the_bone_there
     let meshing = result.meshing.as_ref().unwrap();
     let named: Vec<&str> = meshing.cuts.iter().map(|cut| cut.cut.as_str()).collect();
     assert_eq!(named, ["steps, piece 1", "steps, piece 2", "steps, piece 3"]);
-    // Half a disc on each tread; on the riser the chords of the ball around x = 60 from 46 to 54 mm.
+    // Half a disc on each tread; on the riser the chords of the ball around x = 60 from 44 to 52 mm.
     let half = |height: f64| 0.5 * PI * (900.0 - (60.0 - height).powi(2));
     let chord = |z: f64| 2.0 * (900.0 - (60.0 - z).powi(2)).sqrt();
-    let riser = 8.0 / 6.0 * (chord(46.0) + 4.0 * chord(50.0) + chord(54.0));
-    for (cut, wanted) in meshing.cuts.iter().zip([half(46.0), riser, half(54.0)]) {
+    let riser = 8.0 / 6.0 * (chord(44.0) + 4.0 * chord(48.0) + chord(52.0));
+    for (cut, wanted) in meshing.cuts.iter().zip([half(44.0), riser, half(52.0)]) {
         assert!((cut.area_mm2 / wanted - 1.0).abs() < 0.2, "{} {wanted}", cut.area_mm2);
         let [x, y, z] = cut.normal.0;
         let along_x = cut.cut.ends_with('2');
         assert!(if along_x { (x.abs() - 1.0).abs() < 1e-12 } else { (z - 1.0).abs() < 1e-12 });
         assert_eq!(y, 0.0);
     }
-    // A cap of the ball below 46 mm, and half of the slice from there to 54 mm.
+    // A cap of the ball below 44 mm, and half of the slice from there to 52 mm.
     let cap = |h: f64| PI * h * h * (30.0 - h / 3.0);
-    let (low, high) = (cap(16.0), cap(24.0));
+    let (low, high) = (cap(14.0), cap(22.0));
     let [segment] = &meshing.segments[..] else { panic!("{:?}", meshing.segments) };
     let wanted = (low + 0.5 * (high - low)) / 1000.0;
     assert!((segment.volume_ml / wanted - 1.0).abs() < 0.08, "{segment:?} {wanted}");

@@ -241,7 +241,7 @@ async fn what_was_measured_in_another_place_is_registered_before_it_is_learned_f
     for (one, other) in means(&straight).iter().zip(means(&registered)) {
         assert!((one - other).abs() < 1e-5, "{one} {other}");
     }
-    assert_eq!(means(&straight).len(), 10);
+    assert_eq!(means(&straight).len(), 12);
 }
 
 /// A document with another value at a place of it.

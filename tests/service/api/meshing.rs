@@ -192,8 +192,9 @@ async fn what_cannot_be_meshed_is_refused_with_its_place() {
         let mut hanging = spec(&scan);
         hanging["osteotomy"] = osteotomy;
         let job = ended(&server, &hanging).await;
-        assert_eq!(job["error"]["type"], "cut-leaves-bridge", "{job}");
+        assert_eq!(job["error"]["type"], "validation-failed", "{job}");
         let error = &job["error"]["errors"][0];
+        assert_eq!(error["code"], "cut-leaves-bridge", "{job}");
         assert_eq!(error["pointer"], format!("/spec/osteotomy/{place}"), "{job}");
         assert!(error["detail"].as_str().unwrap().contains("still hangs at"), "{job}");
     }

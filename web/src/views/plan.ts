@@ -20,6 +20,8 @@ import { placesOf } from "./places.js";
 import { drawTrust } from "./trust.js";
 import { appliedLines } from "./trusted.js";
 
+/** The choice of a point of rotation that is neither the centre nor a landmark. */
+const ELSEWHERE = " elsewhere";
 /** The service is asked what is left out once nothing has moved for so long, in ms. */
 const IDLE = 350;
 const MOST_MEASURES = 512;
@@ -168,9 +170,14 @@ class Planning {
         (word, value) => this.moving(name, word, value), () => this.moved());
       this.controls.set(name, control);
       const centre = this.loaded.description.segments[at]!.centre_mm as Triple;
-      const [chosen = ""] = landmarks.find(([, place]) => place.every((value, axis) => Math.abs(value - this.pivots[name]![axis]!) < 1e-3)) ?? [];
-      const about = select(words.turnsAbout, [["", words.itsCentre], ...landmarks.map(([mark]) => [mark, mark] as const)], chosen, (mark) => {
-        this.pivots[name] = mark === "" ? centre : landmarks.find(([called]) => called === mark)![1] as Triple;
+      const pivot = this.pivots[name]!;
+      const isAt = (place: number[]) => place.every((value, axis) => Math.abs(value - pivot[axis]!) < 1e-3);
+      // A plan that came from elsewhere may turn about any point: translations are those of that point.
+      const elsewhere = landmarks.some(([, place]) => isAt(place)) || isAt(centre) ? []
+        : [[ELSEWHERE, pivot.map((value) => value.toFixed(1)).join(", ") + " mm"] as const];
+      const [chosen = elsewhere.length > 0 ? ELSEWHERE : ""] = isAt(centre) ? [] : landmarks.find(([, place]) => isAt(place)) ?? [];
+      const about = select(words.turnsAbout, [["", words.itsCentre], ...elsewhere, ...landmarks.map(([mark]) => [mark, mark] as const)], chosen, (mark) => {
+        this.pivots[name] = mark === "" ? centre : mark === ELSEWHERE ? pivot : landmarks.find(([called]) => called === mark)![1] as Triple;
         this.moveOne(name);
         this.after();
         note(written(this.plan, this.pivots));

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use crate::mesh::Vector;
 use crate::prediction::skin::Skin;
 
 /// The mean error over the skin that is accepted where nothing else is said, in mm.
@@ -28,15 +29,10 @@ pub struct MeanErrors {
 }
 
 impl MeanErrors {
-    /// Of a length of each node, with the points of the skin that move.
-    pub(super) fn of(
-        skin: &Skin,
-        moving: &[u32],
-        accepted: &Accepted,
-        of_node: &dyn Fn(usize) -> f64,
-    ) -> Self {
+    /// Of vectors of nodes, with the points of the skin that move.
+    pub(super) fn of(skin: &Skin, moving: &[u32], accepted: &Accepted, values: &[Vector]) -> Self {
         let asked = skin.regions.iter().filter(|(name, _)| accepted.regions_mm.contains_key(*name));
-        let over = |points: &[u32]| skin.mean(points, of_node);
+        let over = |points: &[u32]| skin.mean_length(points, values);
         MeanErrors {
             skin_mm: over(moving),
             regions_mm: asked.map(|(name, points)| (name.clone(), over(points))).collect(),
@@ -52,17 +48,13 @@ impl MeanErrors {
         }
     }
 
-    /// Roots of sums of squares, part by part.
-    pub(super) fn beside(&self, other: &MeanErrors) -> Self {
+    /// The sums, part by part.
+    pub(super) fn plus(&self, other: &MeanErrors) -> Self {
         let regions = self.regions_mm.iter();
-        let both = |(name, error): (&String, &f64)| {
-            let other = other.regions_mm.get(name).copied().unwrap_or(f64::NAN);
-            (name.clone(), error.hypot(other))
+        let sum = |(name, error): (&String, &f64)| {
+            (name.clone(), error + other.regions_mm.get(name).copied().unwrap_or(f64::NAN))
         };
-        MeanErrors {
-            skin_mm: self.skin_mm.hypot(other.skin_mm),
-            regions_mm: regions.map(both).collect(),
-        }
+        MeanErrors { skin_mm: self.skin_mm + other.skin_mm, regions_mm: regions.map(sum).collect() }
     }
 }
 

@@ -1,10 +1,10 @@
 //! The way up the rungs.
 
 use super::accepted::{Accepted, MeanErrors};
+use super::crossing::overlap;
 use super::duration::{SECOND_ORDER_TAKES, newton_takes};
-use super::rung::{Considered, Errors, Rung, Together, left_by_correction};
-use super::shortfall::{not_met, overlap};
-use crate::mesh::Vector;
+use super::rung::{Considered, Errors, Rung};
+use crate::mesh::{Vector, Warning};
 use crate::model::fem::strain::deformations;
 use crate::model::problem::ModelError;
 use crate::prediction::answer::{self, Answer, Linear};
@@ -120,9 +120,6 @@ impl Climb<'_> {
             let found = known.to_second_order(self.scene, progress)?;
             let third = found.nonlinearity.as_ref().ok();
             self.errors.third_order = third.map(|left| self.means(&left.left_out));
-            if let (Ok(error), Some(third)) = (&found.numerical_error, third) {
-                self.errors.second_order = Some(self.together(&error.missing, &third.left_out));
-            }
             if self.is_a_series() {
                 second_order = Some(found);
                 self.note(
@@ -132,7 +129,6 @@ impl Climb<'_> {
                 );
             } else {
                 self.errors.third_order = None;
-                self.errors.second_order = None;
                 let why = "its series is not to be trusted for this plan";
                 self.pass_over(Rung::SecondOrder, why.to_owned());
             }
@@ -178,9 +174,6 @@ impl Climb<'_> {
         self.newton_takes = newton_takes(least_det_f(self.scene, displacement));
         self.errors.mesh = mesh.as_ref().ok().map(|error| self.means(&error.missing));
         self.errors.linearity = linearity.as_ref().ok().map(|left| self.means(&left.left_out));
-        if let (Ok(error), Ok(left)) = (mesh, linearity) {
-            self.errors.linear = Some(self.together(&error.missing, &left.left_out));
-        }
     }
 
     fn taken(&mut self, answers: Answers) -> Adequate {
@@ -210,19 +203,7 @@ impl Climb<'_> {
     }
 
     fn means(&self, values: &[Vector]) -> MeanErrors {
-        self.means_of(&|node| values[node].norm())
-    }
-
-    fn means_of(&self, of_node: &dyn Fn(usize) -> f64) -> MeanErrors {
-        MeanErrors::of(&self.scene.skin, &self.moving, self.accepted, of_node)
-    }
-
-    /// Of what the mesh and what the model leaves out, together.
-    fn together(&self, mesh: &[Vector], model: &[Vector]) -> Together {
-        Together {
-            plain: self.means_of(&|node| (mesh[node] + model[node]).norm()),
-            corrected: self.means_of(&|node| left_by_correction(&mesh[node], &model[node])),
-        }
+        MeanErrors::of(&self.scene.skin, &self.moving, self.accepted, values)
     }
 
     fn elapsed(&self) -> f64 {
@@ -243,8 +224,8 @@ impl Climb<'_> {
         let first = self.means(first_order).skin_mm;
         let second = self.errors.linearity.as_ref()?;
         let share = (THIRD * second.skin_mm / first).min(1.0);
-        let third_order = second.map(|error| error * share);
-        Some(Errors::corrected_at_least(self.errors.mesh.as_ref()?, &third_order))
+        let third_order = Some(second.map(|error| error * share));
+        Errors { third_order, ..self.errors.clone() }.on(Rung::SecondOrderCorrected)
     }
 
     /// Whether the third order is small beside the second.
@@ -369,4 +350,31 @@ fn at_finite_strain(
         Err(error @ ModelError::Solver(SolverError::Stopped)) => Err(Failure::Stopped(error)),
         Err(error) => Err(Failure::Refused(error.to_string())),
     }
+}
+
+fn not_met(error: Option<&MeanErrors>, accepted: &Accepted) -> Warning {
+    let wanted = accepted.skin_mm;
+    let Some(error) = error else {
+        let detail = "how far the skin is off is not known".to_owned();
+        return Warning::new("tolerance-not-met", detail).with("accepted_mm", wanted);
+    };
+    let skin = error.skin_mm;
+    let detail = match accepted
+        .regions_mm
+        .iter()
+        .find(|(name, accepted)| error.regions_mm.get(*name).is_none_or(|error| error > *accepted))
+    {
+        Some((name, wanted)) if skin <= accepted.skin_mm => {
+            let own = error.regions_mm.get(name).copied().unwrap_or(f64::NAN);
+            format!(
+                "{name:?} is expected to be off by {own:.3} mm in the mean, and {wanted:.3} mm were to be met"
+            )
+        }
+        Some(_) | None => format!(
+            "the skin that moves is expected to be off by {skin:.3} mm in the mean, and {wanted:.3} mm were to be met: no adequate \
+             model fits the mesh, the time and the case"
+        ),
+    };
+    let warning = Warning::new("tolerance-not-met", detail).with("accepted_mm", wanted);
+    warning.with("expected_mm", skin)
 }

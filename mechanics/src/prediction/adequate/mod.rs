@@ -1,21 +1,20 @@
 //! The cheapest adequate model: from rung to rung of rising cost until the estimated error of the skin is accepted.
 //!
 //! The rungs are linear finite elements; their answer to second order (`nonlinearity`); and the same elements at finite strain;
-//! each as it is and with what its mesh leaves out added (`numerical_error`). With the vectors e_m of the mesh, e_l of what linearity
-//! leaves out and e_3 of what the second order does, an answer is expected to be off by the mean of |e_m + e_l|, |e_m + e_3| or
-//! |e_m| over the skin that moves or a part of it. What a correction leaves of e_m, .8 of its length (docs/estimates.md: what adding an
-//! estimate left), has no direction that is known: a corrected answer is expected to be off by the root of the sum of both squares. A
+//! each as it is and with what its mesh leaves out added (`numerical_error`). With e_m of the mesh, e_l of what linearity
+//! leaves out and e_3 of what the second order does, all means over the skin that moves or a part of it, an answer is expected to be off by
+//! e_m + e_l, e_m + e_3 or e_m, a corrected one by .8 e_m in place of e_m (docs/estimates.md: what adding an estimate left). A
 //! rung is tried while none below is adequate, if its own expected error is accepted or clearly smaller, and if the time for it
 //! is there. The cheapest one within what is accepted is taken; where there is none, the cheapest that is nearly as good as the
 //! best, which is then said not to be adequate.
 
 mod accepted;
 mod climb;
+mod crossing;
 mod duration;
 mod rung;
-mod shortfall;
 
 pub use accepted::{Accepted, MeanErrors, USUALLY_ACCEPTED_MM};
 pub use climb::{Adequate, Watched, predict_adequately};
 pub use duration::{NEWTON_MAY_TAKE, SECOND_ORDER_TAKES};
-pub use rung::{Considered, Errors, Rung, Together};
+pub use rung::{Considered, Errors, Rung};

@@ -1,7 +1,6 @@
 //! Ways to predict in the order of their cost, and the error that is expected of each.
 
 use super::accepted::MeanErrors;
-use crate::mesh::Vector;
 
 /// What is left of the error of a mesh where its estimate is added, as a share of the estimate.
 const LEFT_BY_CORRECTION: f64 = 0.8;
@@ -28,16 +27,6 @@ pub struct Errors {
     pub third_order: Option<MeanErrors>,
     /// Of the mesh, at rest at finite strain.
     pub mesh_at_rest: Option<MeanErrors>,
-    /// Of the mesh and the model together, of linear answers and of those to second order.
-    pub linear: Option<Together>,
-    pub second_order: Option<Together>,
-}
-
-/// Mean lengths of what the mesh and the model leave out, added as vectors; and where the estimate of the mesh is added.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Together {
-    pub plain: MeanErrors,
-    pub corrected: MeanErrors,
 }
 
 /// A rung that was stood on or passed over.
@@ -98,23 +87,15 @@ impl Errors {
     /// The mean errors of an answer of a rung: of the mesh, and of the model.
     pub(super) fn on(&self, rung: Rung) -> Option<MeanErrors> {
         let at_rest = self.mesh_at_rest.as_ref().or(self.mesh.as_ref());
-        match rung {
-            Rung::Linear => Some(self.linear.as_ref()?.plain.clone()),
-            Rung::Corrected => Some(self.linear.as_ref()?.corrected.clone()),
-            Rung::SecondOrder => Some(self.second_order.as_ref()?.plain.clone()),
-            Rung::SecondOrderCorrected => Some(self.second_order.as_ref()?.corrected.clone()),
-            Rung::FiniteStrain => at_rest.cloned(),
-            Rung::FiniteStrainCorrected => Some(at_rest?.map(|error| LEFT_BY_CORRECTION * error)),
-        }
+        let (mesh, model) = match rung.solution() {
+            Rung::SecondOrder | Rung::SecondOrderCorrected => {
+                (self.mesh.as_ref()?, Some(self.third_order.as_ref()?))
+            }
+            Rung::FiniteStrain | Rung::FiniteStrainCorrected => (at_rest?, None),
+            Rung::Linear | Rung::Corrected => (self.mesh.as_ref()?, Some(self.linearity.as_ref()?)),
+        };
+        let left = if rung.is_corrected() { LEFT_BY_CORRECTION } else { 1.0 };
+        let mesh = mesh.map(|error| left * error);
+        Some(model.map_or_else(|| mesh.clone(), |model| mesh.plus(model)))
     }
-
-    /// The least that a corrected answer may be off by, of the means of what its mesh and its model leave out.
-    pub(super) fn corrected_at_least(mesh: &MeanErrors, model: &MeanErrors) -> MeanErrors {
-        mesh.map(|error| LEFT_BY_CORRECTION * error).beside(model)
-    }
-}
-
-/// What is left at a place of an answer once the estimate of its mesh is added: it has no direction that is known.
-pub(super) fn left_by_correction(mesh: &Vector, model: &Vector) -> f64 {
-    (LEFT_BY_CORRECTION * mesh.norm()).hypot(model.norm())
 }

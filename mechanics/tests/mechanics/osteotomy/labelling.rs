@@ -121,13 +121,24 @@ fn a_stepped_cut_parts_what_lies_below_its_steps() {
 }
 
 #[test]
+fn a_stepped_cut_that_is_walked_the_other_way_is_refused() {
+    let line = [[20.0, 0.0, 21.0], [9.5, 0.0, 21.0], [9.5, 0.0, 13.0], [0.0, 0.0, 13.0]];
+    for kerf in [0.0, 1.0] {
+        let cuts =
+            Cut::chained("step", &line.map(Vector::from), Vector::y() * 14.0, kerf, 0).unwrap();
+        let refused = labelled(&block(), cuts, vec![below_the_steps()]).unwrap_err();
+        let LabelError::LineTurned { segment, cut } = &refused else { panic!("{refused}") };
+        assert_eq!((segment.as_str(), cut.as_str()), ("part", "step, piece 1"));
+    }
+}
+
+#[test]
 fn a_stepped_cut_that_is_not_deep_enough_leaves_a_bridge() {
     let found = parted(&block(), stepped(8.0), vec![below_the_steps()]);
     let bridged: Vec<usize> = found.bridges.iter().map(|bridge| bridge.cut).collect();
     assert_eq!(bridged, [0, 1, 2]);
     // Behind y = 8 three or four rows of voxels of eight columns hang together.
-    let tread = &found.bridges[0];
-    assert!(tread.faces >= 8 * 3 && tread.centre.y > 8.0, "{tread:?}");
+    assert!(found.bridges.iter().all(|bridge| bridge.faces >= 8 * 3), "{:?}", found.bridges);
 }
 
 /// Two blocks that touch at a neck of 2 x 2 voxels between x = 9 and x = 11, dimmer than the blocks.

@@ -4,18 +4,17 @@
 //! has the same matrix, the functions of the edges change the goal by
 //!   J(b) - a(b, z) = sum_e b_e . s_e,   s_e = J(phi_e) - a(phi_e, z),
 //! and the cells around an edge share |b_e . s_e|. So an edge counts where the answer lacks something that the goal feels,
-//! and where what the goal feels of it is not smooth. With pressures the stabilisation of a cell T counts as well: with q the
-//! pressures of z it changes the goal by -q . (M - Mbar)_T p / mu. All of them with their signs are J(b) + J(e).
+//! and where what the goal feels of it is not smooth.
 //!
 //! Source: Becker, Rannacher, An optimal control approach to a posteriori error estimation, Acta Numerica 10, 2001, section 4;
 //! marking: Doerfler, A convergent adaptive algorithm for Poisson's equation, SIAM Journal on Numerical Analysis 33, 1996.
 
 use super::cell::Answered;
 use super::edges::Edges;
-use super::{Correction, EnrichedCells, Estimate, MAX_EDGES, tolerance};
+use super::{Correction, Estimate, tolerance};
 use crate::mesh::{Vector, VolumeMesh};
 use crate::model::fem::linear_system::{Residual, Solved};
-use crate::model::problem::{InvertedCell, ModelError};
+use crate::model::problem::ModelError;
 use crate::progress::{Phase, Progress};
 
 /// A weighted mean of the displacement of a surface.
@@ -35,7 +34,7 @@ impl Goal<'_> {
     }
 
     /// J of the function of each node.
-    pub(super) fn of_nodes(&self, mesh: &VolumeMesh) -> Vec<Vector> {
+    fn of_nodes(&self, mesh: &VolumeMesh) -> Vec<Vector> {
         let mut of_nodes = vec![Vector::zeros(); mesh.nodes.len()];
         for (nodes, area) in self.areas(mesh) {
             for node in nodes {
@@ -46,7 +45,7 @@ impl Goal<'_> {
     }
 
     /// Adds J of the function of each edge, a third of the area of a triangle.
-    pub(super) fn add_to(&self, mesh: &VolumeMesh, edges: &Edges, of_edges: &mut [Vector]) {
+    fn add_to(&self, mesh: &VolumeMesh, edges: &Edges, of_edges: &mut [Vector]) {
         for ([a, b, c], area) in self.areas(mesh) {
             for [from, to] in [[a, b], [b, c], [c, a]] {
                 let mean = (self.weights[from as usize] + self.weights[to as usize]) * 0.5;
@@ -58,12 +57,6 @@ impl Goal<'_> {
     }
 }
 
-/// What edges, and the pressures of cells, change of a goal, with their signs.
-pub(super) struct Changes {
-    pub of_edges: Vec<f64>,
-    pub of_cells: Vec<f64>,
-}
-
 impl Estimate<'_> {
     /// For each cell its share of what the mesh leaves out of a goal; never negative.
     pub fn indicators(
@@ -73,56 +66,33 @@ impl Estimate<'_> {
         progress: &dyn Progress,
     ) -> Result<Vec<f64>, ModelError> {
         progress.phase(Phase::Estimate);
-        let edges = Edges::new(self.tissue.mesh, &self.system.numbering);
-        let relative = tolerance(self.tissue.materials, self.system.pressures.is_some());
-        let Changes { of_edges, of_cells } =
-            self.changes(solved, goal, &edges, relative, progress)?;
-        let mut sharing = vec![0_u32; edges.count()];
-        for cell in 0..of_cells.len() {
-            edges.of_cell(cell).numbers().for_each(|edge| sharing[edge] += 1);
-        }
-        let share = |edge: usize| of_edges[edge].abs() / f64::from(sharing[edge].max(1));
-        let cells = of_cells.iter().enumerate();
-        let of_cell = |(cell, own): (usize, &f64)| {
-            own.abs() + edges.of_cell(cell).numbers().map(share).sum::<f64>()
-        };
-        Ok(cells.map(of_cell).collect())
-    }
-
-    /// The same of each edge and cell by itself, with the dual answer to a relative residual.
-    pub(super) fn changes(
-        &self,
-        solved: &Solved,
-        goal: &Goal,
-        edges: &Edges,
-        relative_residual: f64,
-        progress: &dyn Progress,
-    ) -> Result<Changes, ModelError> {
-        // 1. b of the answer.
         let mesh = self.tissue.mesh;
+
+        // 1. b of the answer.
         let cells = self.cells(self.answered(solved));
         let answer = self.two_level(&cells);
-        let mut equations = answer.equations(edges)?;
-        let steps = answer.steps(edges, &mut equations)?;
+        let edges = answer.edges();
+        let mut equations = answer.equations(&edges)?;
+        let steps = answer.steps(&edges, &mut equations)?;
 
         // 2. s of the dual answer.
         let residual = Residual { forces: goal.of_nodes(mesh), volumes: Vec::new() };
-        let dual = self.system.solve_for(&[residual], relative_residual, progress)?.remove(0);
+        let relative = tolerance(self.tissue.materials, self.system.pressures.is_some());
+        let dual = self.system.solve_for(&[residual], relative, progress)?.remove(0);
         let Correction { displacement, pressures, .. } = &dual;
-        let felt = self.cells(Answered { displacement, pressures, growth: &[] });
-        let mut weights = self.two_level(&felt).equations(edges)?.residual;
-        goal.add_to(mesh, edges, &mut weights);
-        let of_edges = steps.iter().zip(&weights).map(|(b, s)| b.dot(s)).collect();
+        let cells = self.cells(Answered { displacement, pressures, growth: &[] });
+        let mut weights = self.two_level(&cells).equations(&edges)?.residual;
+        goal.add_to(mesh, &edges, &mut weights);
 
-        // 3. q . (M - Mbar) p / mu of each cell.
-        let of_cell = |cell: usize| {
-            let Some(numbers) = cells.pressure_numbers(cell) else { return Ok(0.0) };
-            let (_, volumes) = cells.at_corners(cell, &[Vector::zeros(); MAX_EDGES])?;
-            let felt = numbers.map(|number| pressures[number as usize]);
-            Ok(-felt.iter().zip(volumes).map(|(q, volume)| q * volume).sum::<f64>())
-        };
-        let of_cells = (0..mesh.cells.len()).map(of_cell).collect::<Result<_, InvertedCell>>()?;
-        Ok(Changes { of_edges, of_cells })
+        // 3. Shares.
+        let mut sharing = vec![0_u32; edges.count()];
+        let all = 0..mesh.cells.len();
+        all.clone().for_each(|cell| {
+            edges.of_cell(cell).numbers().for_each(|edge| sharing[edge] += 1);
+        });
+        let share =
+            |edge: usize| steps[edge].dot(&weights[edge]).abs() / f64::from(sharing[edge].max(1));
+        Ok(all.map(|cell| edges.of_cell(cell).numbers().map(share).sum()).collect())
     }
 }
 

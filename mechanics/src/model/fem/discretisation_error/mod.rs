@@ -20,8 +20,6 @@ mod edge_equations;
 mod edge_functions;
 mod edges;
 mod held_edges;
-#[cfg(test)]
-mod indicator_tests;
 mod indicators;
 mod loads;
 mod mean_stress;
@@ -82,26 +80,6 @@ pub struct DiscretisationError {
     pub iterations: usize,
 }
 
-/// How a correction becomes an estimate.
-pub struct LeftOver {
-    /// The relative residual to which it is to be solved for.
-    pub tolerance: f64,
-    factor: f64,
-    squared_energy_norm: f64,
-}
-
-impl LeftOver {
-    /// What the answer lacks, by the correction of the residual.
-    pub fn by(self, correction: Correction) -> DiscretisationError {
-        let Correction { displacement, iterations, .. } = correction;
-        DiscretisationError {
-            missing: displacement.into_iter().map(|e| e * self.factor).collect(),
-            squared_energy_norm: self.squared_energy_norm,
-            iterations,
-        }
-    }
-}
-
 impl Estimate<'_> {
     /// Estimates the error of an answer of the system.
     pub fn of(
@@ -110,19 +88,9 @@ impl Estimate<'_> {
         progress: &dyn Progress,
     ) -> Result<DiscretisationError, ModelError> {
         progress.phase(Phase::Estimate);
-        let (residual, left) = self.left_over(solved, self.system.holds)?;
-        let found = self.system.solve_for(&[residual], left.tolerance, progress)?.remove(0);
-        Ok(left.by(found))
-    }
-
-    /// The residual whose correction is what an answer of the system lacks, and how it is one.
-    pub fn posed(
-        &self,
-        solved: &Solved,
-        progress: &dyn Progress,
-    ) -> Result<(Residual, LeftOver), ModelError> {
-        progress.phase(Phase::Estimate);
-        self.left_over(solved, self.system.holds)
+        self.missing(solved, self.system.holds, &mut |residual, tolerance| {
+            Ok(self.system.solve_for(&[residual], tolerance, progress)?.remove(0))
+        })
     }
 
     /// Estimates the error of an answer in which something presses, and goes on to do so where it does.
@@ -135,24 +103,27 @@ impl Estimate<'_> {
         let InContact { solved, contact, pressing } = found;
         let rows = contact.pressed.iter().map(|pressed| &pressed.row);
         let holds = with_pressing(self.system.holds, rows);
-        let (residual, left) = self.left_over(solved, &holds)?;
-        let found = pressing.correction(&residual, left.tolerance, progress)?;
-        Ok(left.by(found))
+        self.missing(solved, &holds, &mut |residual, tolerance| {
+            pressing.correction(&residual, tolerance, progress)
+        })
     }
 
-    /// What functions on the edges leave over of the equations of the nodes, with what holds edges.
-    fn left_over(
+    /// What an answer lacks, by what its holds are for edges and by what solves for the nodes.
+    fn missing(
         &self,
         solved: &Solved,
         holds: &[Hold],
-    ) -> Result<(Residual, LeftOver), ModelError> {
+        solve: &mut dyn FnMut(Residual, f64) -> Result<Correction, ModelError>,
+    ) -> Result<DiscretisationError, ModelError> {
         let has_pressures = self.system.pressures.is_some();
         let cells = self.cells(self.answered(solved));
         let two_level = TwoLevel { holds, ..self.two_level(&cells) };
         let (residual, squared_energy_norm) = two_level.at_corners()?;
         let tolerance = tolerance(self.tissue.materials, has_pressures);
-        let left = LeftOver { tolerance, factor: factor(has_pressures), squared_energy_norm };
-        Ok((residual, left))
+        let Correction { displacement, iterations, .. } = solve(residual, tolerance)?;
+        let factor = factor(has_pressures);
+        let missing = displacement.into_iter().map(|e| e * factor).collect();
+        Ok(DiscretisationError { missing, squared_energy_norm, iterations })
     }
 
     fn answered<'b>(&'b self, solved: &'b Solved) -> Answered<'b> {
