@@ -111,6 +111,7 @@ impl<'a> Equations<'a> {
             independent,
             point: start,
             r: Vec::new(),
+            scale: 0.0,
             iterations: 0,
         };
         let relative_residual = run.solve(progress)?;
@@ -154,6 +155,8 @@ struct Run<'a, 'b> {
     independent: Independent,
     point: Point,
     r: Vec<[f64; 1]>,
+    /// What residuals are relative to.
+    scale: f64,
     iterations: usize,
 }
 
@@ -205,7 +208,8 @@ impl Run<'_, '_> {
         }
     }
 
-    /// Sets r = G^T m - b - A x, and returns it relative to the forces.
+    /// Sets r = G^T m - b - A x, and returns it relative to the forces; where there are none, as after the last row that pressed
+    /// has gone, to itself.
     fn true_residual(&mut self) -> f64 {
         let (mut forces, scale) = self.forces();
         forces.iter_mut().zip(self.wanted.less).for_each(|([force], [less])| *force -= less);
@@ -213,11 +217,11 @@ impl Run<'_, '_> {
         subtract_all(&mut forces, &[([1.0], &product)]);
         self.r = forces;
         let left = norm(&self.r)[0];
-        if left == 0.0 { 0.0 } else { left / scale }
+        self.scale = if scale > 0.0 { scale } else { left };
+        if left == 0.0 { 0.0 } else { left / self.scale }
     }
 
     fn iterate(&mut self, progress: &dyn Progress) -> Result<(), SolverError> {
-        let (_, scale) = self.forces();
         let mut kept: Vec<Direction> = Vec::new();
         loop {
             let Some(new) = self.direction(&kept) else { return Ok(()) };
@@ -230,7 +234,7 @@ impl Run<'_, '_> {
             }
             kept.push(new);
             self.iterations += 1;
-            let residual = norms[0] / scale;
+            let residual = norms[0] / self.scale;
             tell(progress, self.iterations, residual, self.wanted.relative_residual)?;
             if residual <= self.wanted.relative_residual {
                 return Ok(());

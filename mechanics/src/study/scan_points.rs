@@ -4,14 +4,14 @@
 use super::answer::Refusal;
 use super::variant::ScanMetric;
 use crate::mesh::{SurfaceSearch, TriangleSurface, Vector};
-use crate::validation::{AlignmentReport, LandmarkPair, warped_distances};
+use crate::validation::{AlignmentReport, LandmarkPair, corresponding_points, warped_distances};
 
 /// What the points of a skin are measured to.
 pub(super) enum Partners {
     /// Closest points, which are no partners of points.
     None,
-    /// Of the same number.
-    Points,
+    /// For each point of the skin the number of that of the scan.
+    Points(Vec<usize>),
     Landmarks(Vec<Landmark>),
 }
 
@@ -35,14 +35,17 @@ impl Partners {
     ) -> Result<Self, Refusal> {
         match metric {
             ScanMetric::BothWays => Ok(Partners::None),
-            ScanMetric::NodeWise if skin.points.len() == scan.points.len() => Ok(Partners::Points),
-            ScanMetric::NodeWise => {
-                let (own, other) = (skin.points.len(), scan.points.len());
-                let detail = format!(
-                    "the skin has {own} points and the scan {other}: none of them correspond"
-                );
-                Err(Refusal::new("truth-failed", detail))
-            }
+            ScanMetric::NodeWise => match corresponding_points(skin, scan) {
+                Some(pairs) => Ok(Partners::Points(pairs)),
+                None => {
+                    let (own, other) = (skin.points.len(), scan.points.len());
+                    let detail = format!(
+                        "the skin has {own} points and the scan {other}, and neither their node ids nor their triangles tell which \
+                         correspond"
+                    );
+                    Err(Refusal::new("truth-failed", detail))
+                }
+            },
             ScanMetric::Landmarks(pairs) => {
                 let search = SurfaceSearch::new(skin)
                     .map_err(|error| Refusal::new("truth-failed", error.to_string()))?;
@@ -69,9 +72,9 @@ impl Partners {
     ) -> Result<Option<Vec<Option<f64>>>, Refusal> {
         match self {
             Partners::None => Ok(None),
-            Partners::Points => {
-                let pairs = predicted.points.iter().zip(&scan.points);
-                Ok(Some(pairs.map(|(own, other)| Some((own - other).norm())).collect()))
+            Partners::Points(pairs) => {
+                let pairs = predicted.points.iter().zip(pairs);
+                Ok(Some(pairs.map(|(own, &at)| Some((own - scan.points[at]).norm())).collect()))
             }
             Partners::Landmarks(landmarks) => {
                 let pair = |own: &Landmark| {

@@ -6,7 +6,7 @@ use crate::mesh::TriangleSurface;
 
 /// For each point of `prediction` its point of `actual`: by the node numbers of both where both have
 /// them and they are the same set without repeats, else one by one where the triangles are the same.
-pub(super) fn corresponding_points(
+pub fn corresponding_points(
     prediction: &TriangleSurface,
     actual: &TriangleSurface,
 ) -> Option<Vec<usize>> {

@@ -19,6 +19,7 @@ mod warped;
 pub use alignment::{Aligned, Alignment, AlignmentReport, BoneSurfaces, LandmarkPair, aligned};
 pub use both_ways::{BothDirections, Coverage};
 pub use comparison::{Comparison, ComparisonSettings, NodeWise, compare};
+pub use correspondence::corresponding_points;
 pub use distance::{DistanceStatistics, Distances};
 pub use error::ComparisonError;
 pub use histogram::{Histogram, Histograms};

@@ -33,7 +33,7 @@ const BESIDE_ANOTHER: f64 = 1.5;
 const COLUMN_AT_NODE: f64 = 210.0;
 
 /// How much longer an answer may take where gaps close: what a jaw raised by 4, 8 and 15 mm into the lips of two faces took against
-/// the same without contact (`docs/contact.md#what-was-measured`).
+/// the same without contact at small strain (`docs/contact.md#what-was-measured`); at finite strain it is chosen, not measured.
 pub const CONTACT: f64 = 80.0;
 pub const CONTACT_AT_FINITE_STRAIN: f64 = 5.0;
 

@@ -81,7 +81,7 @@ pub enum TruthMetric {
     /// Closest points, from the skin to the scan and back.
     #[default]
     Both,
-    /// Points of the same number: the scan has the points of the skin, in their order.
+    /// Points that correspond: by the node ids of both, or in their order where the triangles are the same.
     NodeWise,
     /// Thin-plate spline of landmarks and closest point: from a point of the skin to that of the scan which is closest to where the
     /// spline takes it.
