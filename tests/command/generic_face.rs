@@ -109,6 +109,16 @@ fn of_scanned(x: &Vector, number: usize, forward: Option<f64>) -> Vector {
     *x * (1.02 + 0.02 * number as f64) - Vector::new(0.0, moved, 0.0)
 }
 
+/// How far points of the generic face went in the mean by the operation of a patient, in mm.
+fn went<'a>(points: impl Iterator<Item = &'a Vector>, number: usize) -> f64 {
+    let moved = points.map(|x| {
+        let [a, b] = [None, Some(1.5 + number as f64)].map(|own| of_scanned(x, number, own));
+        (b - a).norm()
+    });
+    let moved: Vec<f64> = moved.collect();
+    moved.iter().sum::<f64>() / moved.len() as f64
+}
+
 /// docs/learning.md#scans-that-were-made-after-operations.
 #[test]
 fn skins_that_were_scanned_before_and_after_operations_are_learned_from_through_one_template() {
@@ -165,12 +175,8 @@ fn skins_that_were_scanned_before_and_after_operations_are_learned_from_through_
     // How far the skin went is known, to what the conformation misses of it.
     let skin = &generic.mesh.node_sets["skin"];
     for (number, case) in (1..).zip(&of("no movement").cases) {
-        let moved = |node: &u32| {
-            let x = &generic.mesh.nodes[*node as usize];
-            let [a, b] = [None, Some(1.5 + number as f64)].map(|own| of_scanned(x, number, own));
-            (b - a).norm()
-        };
-        let expected = skin.iter().map(moved).sum::<f64>() / skin.len() as f64;
+        let skin = skin.iter().map(|&node| &generic.mesh.nodes[node as usize]);
+        let expected = went(skin, number);
         assert!((case.mean - expected).abs() < 0.2, "{number}: {} of {expected}", case.mean);
     }
     assert!(of("fem_linear + GRNN").mean < of("fem_linear").mean, "{:?}", found.table);

@@ -67,7 +67,7 @@ pub struct Row {
 /// What came of a row.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Outcome {
-    Solved(Solved),
+    Solved(Box<Solved>),
     /// Refused or failed: the stable word, and the sentence with its numbers.
     Failed {
         code: String,

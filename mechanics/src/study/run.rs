@@ -278,7 +278,7 @@ impl<'a> SceneWork<'a> {
         let Attempt { level, variant, answer } = attempt;
         let element = answer.as_ref().map_or_else(|_| String::new(), |a| a.elements.clone());
         let outcome = match answer.and_then(|answer| solved(answer, truth)) {
-            Ok(solved) => Outcome::Solved(solved),
+            Ok(solved) => Outcome::Solved(Box::new(solved)),
             Err(Refusal { code, detail }) => Outcome::Failed { code, detail },
         };
         Row {

@@ -68,23 +68,8 @@ pub fn corrected(
     };
     let FittedModel { document: model, learned } = fitted;
     let at = Pointer::from_text("/spec/correction/model");
-    let frame = prepared.case.frame;
-    if let Some(own) = model.frame.map(Frame::from).filter(|own| *own != frame) {
-        let detail = format!(
-            "the model was learned from cases in the frame {}, and the case is in {}: what it adds has other directions there",
-            own.name(),
-            frame.name()
-        );
-        return Err(Problem::at(&at, ErrorCode::FrameConflict, detail).into());
-    }
+    check_alike(model, prepared, &at)?;
     let (scene, displacement) = (&prepared.scene, &prediction.displacement);
-    let own = CorrespondenceDocument::new(scene);
-    if let Some(part) = model.correspondence.as_ref().and_then(|known| known.difference(&own)) {
-        let detail = format!(
-            "the nodes of its {part} are not those of the cases that the model was learned from: nodes do not correspond"
-        );
-        return Err(Problem::at(&at, ErrorCode::NotCorresponding, detail).into());
-    }
     let features = measures::features(scene, displacement);
     let (bone, predicted) =
         (measures::bone(scene, displacement), measures::skin(scene, displacement));
@@ -126,6 +111,27 @@ pub fn corrected(
         }
     };
     Ok(Some(Correction { document, skin, warnings }))
+}
+
+/// Refuses a case in another frame, or with other nodes, than those that the model was learned from.
+fn check_alike(model: &ModelDocument, prepared: &Prepared, at: &Pointer) -> Result<(), JobError> {
+    let frame = prepared.case.frame;
+    if let Some(own) = model.frame.map(Frame::from).filter(|own| *own != frame) {
+        let detail = format!(
+            "the model was learned from cases in the frame {}, and the case is in {}: what it adds has other directions there",
+            own.name(),
+            frame.name()
+        );
+        return Err(Problem::at(at, ErrorCode::FrameConflict, detail).into());
+    }
+    let own = CorrespondenceDocument::new(&prepared.scene);
+    if let Some(part) = model.correspondence.as_ref().and_then(|known| known.difference(&own)) {
+        let detail = format!(
+            "the nodes of its {part} are not those of the cases that the model was learned from: nodes do not correspond"
+        );
+        return Err(Problem::at(at, ErrorCode::NotCorresponding, detail).into());
+    }
+    Ok(())
 }
 
 fn mean(values: &[f64]) -> f64 {

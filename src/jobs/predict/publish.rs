@@ -89,13 +89,7 @@ impl Predicted {
         // 2. Against another surface, if asked.
         clock.phase(Phase::Compare);
         let compared = compare_skin(input, &prepared, &skin, clock)?;
-        let mut warnings = prepared.warnings.clone();
-        warnings.extend(prediction.warnings.iter().cloned());
-        let (case, scene) = (&prepared.case, &prepared.scene);
-        warnings.extend(collisions(case, scene).iter().filter_map(Collision::warning));
-        warnings.extend(through_skin(case, scene, &prediction));
-        warnings.extend(doubtful_landmarks(&input.case, case));
-        warnings.extend(default_density(input));
+        let mut warnings = warnings_of(input, &prepared, &prediction);
         if let Some(compared) = &compared {
             skin.signed_distance = Some(compared.signed_distance.clone());
             warnings.extend(compared.warnings.iter().cloned());
@@ -142,6 +136,18 @@ impl Predicted {
         let meshes = finished.kept(&input.spec.kept());
         Ok(JobOutput { result, files: folder.files, meshes })
     }
+}
+
+/// What a reader must know of the scene and the answer, before either is held against anything.
+fn warnings_of(input: &PredictInput, prepared: &Prepared, prediction: &Prediction) -> Vec<Warning> {
+    let (case, scene) = (&prepared.case, &prepared.scene);
+    let mut warnings = prepared.warnings.clone();
+    warnings.extend(prediction.warnings.iter().cloned());
+    warnings.extend(collisions(case, scene).iter().filter_map(Collision::warning));
+    warnings.extend(through_skin(case, scene, prediction));
+    warnings.extend(doubtful_landmarks(&input.case, case));
+    warnings.extend(default_density(input));
+    warnings
 }
 
 /// A prediction with everything that goes into its files.

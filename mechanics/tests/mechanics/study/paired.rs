@@ -233,7 +233,7 @@ fn nothing_to_compare_is_an_error_and_never_a_number() {
 fn row(scene: &str, plan: &str, label: &str, error: Option<f64>) -> Row {
     let errors = |mm: f64| Errors { mean: mm / 2.0, p95: mm, max: 2.0 * mm };
     let outcome = match error {
-        Some(mm) => Outcome::Solved(Solved {
+        Some(mm) => Outcome::Solved(Box::new(Solved {
             unknowns: 1,
             iterations: 1,
             wall_s: 1.0,
@@ -250,7 +250,7 @@ fn row(scene: &str, plan: &str, label: &str, error: Option<f64>) -> Row {
             smallest_det_f: 1.0,
             covered_share: None,
             warnings: Vec::new(),
-        }),
+        })),
         None => Outcome::Failed { code: "solver-diverged".into(), detail: "it did".into() },
     };
     Row {

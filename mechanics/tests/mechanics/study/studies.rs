@@ -505,7 +505,7 @@ fn row(label: &str, level: u32, wall_s: f64, p95: f64, skin_mean_mm: f64) -> Row
         element: String::new(),
         material: "t".to_owned(),
         level,
-        outcome: Outcome::Solved(Solved {
+        outcome: Outcome::Solved(Box::new(Solved {
             unknowns: 1,
             iterations: 1,
             wall_s,
@@ -522,7 +522,7 @@ fn row(label: &str, level: u32, wall_s: f64, p95: f64, skin_mean_mm: f64) -> Row
             smallest_det_f: 1.0,
             covered_share: None,
             warnings: Vec::new(),
-        }),
+        })),
     }
 }
 
