@@ -1,10 +1,11 @@
 // Frames and memory by hand: `web/tests/drag [SECONDS]`.
 import { browser, check, counted, ended, opened, service, caseId } from "./tools.mjs";
-import { dragged, framed } from "./frames.mjs";
+import { dragged, framed, slid } from "./frames.mjs";
 
 const seconds = Number(process.argv[2]);
 const page = await opened();
 await ended({ kind: "response", case: caseId });
+await check("script of a slider's whole frame on a head of 14 000 nodes, linear and of second order", () => slid(page));
 await check("frames of a large head", () => framed(page, 60));
 await check(`memory over ${seconds} s of dragging`, () => dragged(page, seconds));
 await browser.close();

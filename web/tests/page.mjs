@@ -5,7 +5,7 @@ import { join } from "node:path";
 import { compared } from "./compared.mjs";
 import { cuts } from "./cuts.mjs";
 import { kinds } from "./kinds.mjs";
-import { dragged, figured, framed, slid } from "./frames.mjs";
+import { dragged, figured, framed } from "./frames.mjs";
 import { mended } from "./mended.mjs";
 import { muscles } from "./muscles.mjs";
 import { meshed } from "./meshed.mjs";
@@ -509,8 +509,6 @@ await check("a lost connection is told, and taken up again", async () => {
   await page.getByRole("button", { name: "Try again" }).click();
   await page.getByRole("heading", { name: "Jobs" }).waitFor();
 });
-
-await check("a slider's whole frame is short on a head of 14 000 nodes, linear and of second order", () => slid(page));
 
 await check("cases and a plan are seen early, do not jump, and answer meanwhile", () => figured());
 

@@ -8,6 +8,7 @@ import { mm, when } from "../figures.js";
 import { aboutJob, tail } from "./called.js";
 import { kindOf, statusOf } from "./kinds.js";
 import { reportLinks } from "./reports.js";
+import { variantInWords } from "../variants.js";
 
 /** Jobs under way are looked at again after so long, in ms. */
 const AGAIN = 2000;
@@ -131,7 +132,7 @@ export interface Mark {
 /** The rows of a group of the chart, by its words, which begin with the way of modelling and, where there are several, its mesh level. */
 export function markOf(title: string, rows: Mark[]): Mark | undefined {
   const several = new Set(rows.map(({ level }) => level)).size > 1;
-  const called = ({ label, level }: Mark) => (several ? `${label}, level ${level}` : label);
+  const called = ({ label, level }: Mark) => (several ? `${variantInWords(label)}, level ${level}` : variantInWords(label));
   const fitting = rows.filter((row) => title.startsWith(`${called(row)}: `));
   const [longest] = fitting.sort((one, other) => called(other).length - called(one).length);
   return longest === undefined ? undefined : { label: longest.label, level: longest.level };
