@@ -110,6 +110,8 @@ pub(super) fn turned_about(
     grid: &Grid<'_>,
     labels: &BoneLabels,
 ) -> Option<(usize, usize)> {
+    // Planes have no chains: the voxels of a scan are not walked for them.
+    osteotomy.cuts().iter().find(|cut| cut.chain().is_some())?;
     let mut faces: BTreeMap<(usize, usize), [usize; 2]> = BTreeMap::new();
     for (voxel, neighbour) in pairs(grid) {
         let owners = [labels.owner(voxel), labels.owner(neighbour.voxel)];
