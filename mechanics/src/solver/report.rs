@@ -41,8 +41,9 @@ pub struct NewtonReport {
     /// Whether no direction without positive curvature was found in the tangent at rest, pressures answering to displacements;
     /// nothing where iterations ended before that was known, or where what presses may hold what is not stable.
     pub is_stable: Option<bool>,
-    /// The bulk modulus that stays in each cell while a pressure carries the rest, as a multiple of mu; 0 without.
+    /// The bulk modulus that stays in cells while a pressure carries the rest, as a multiple of mu, and how many keep it.
     pub bulk_in_cells: f64,
+    pub cells_with_bulk: usize,
 }
 
 impl SolveReport {

@@ -163,6 +163,7 @@ fn newton_document(newton: &NewtonReport) -> NewtonDocument {
         indefinite_steps: newton.indefinite_steps as u64,
         is_stable: newton.is_stable,
         bulk_in_cells: newton.bulk_in_cells,
+        cells_with_bulk: newton.cells_with_bulk as u64,
     }
 }
 

@@ -20,7 +20,10 @@ pub struct NewtonDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub is_stable: Option<bool>,
-    /// The bulk modulus that stays in each cell while a pressure carries the rest, as a multiple of the shear modulus; 0
+    /// The bulk modulus that stays in cells while a pressure carries the rest, as a multiple of the shear modulus; 0
     /// without pressures.
     pub bulk_in_cells: f64,
+    /// How many cells keep it: those that are pressed to less than a fifth of their volume, or, where that jams, all.
+    #[serde(default)]
+    pub cells_with_bulk: u64,
 }

@@ -223,6 +223,19 @@ fn the_hard_block_comes_to_rest_and_no_cell_turns_over() {
 }
 
 #[test]
+fn only_pressed_cells_keep_bulk_modulus_at_rest_and_all_do_where_that_jams() {
+    for (ring, all_keep_it) in [(RING, false), (0.0, true)] {
+        let (mesh, held) = hard_block([20, 20, 4], 1.5, ring);
+        let moved =
+            rest_of(Elements::STABLE, &mesh, neo_hookean(0.46), &held, &Unobserved).unwrap();
+        let newton = moved.solver.newton.unwrap();
+        assert!(newton.bulk_in_cells == 1.0 && newton.least_det_f < 0.2);
+        let expected = if all_keep_it { mesh.cells.len()..=mesh.cells.len() } else { 1..=20 };
+        assert!(expected.contains(&newton.cells_with_bulk), "{ring}: {}", newton.cells_with_bulk);
+    }
+}
+
+#[test]
 fn pressures_take_the_hard_block_to_rest_in_as_many_steps_for_every_poisson_ratio() {
     let steps: Vec<usize> = [0.46, 0.49, 0.499, 0.4999]
         .into_iter()

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use nalgebra::Matrix3;
 use rayon::prelude::*;
 
-use super::elements::{Exchange, rounded};
+use super::elements::{Kept, rounded};
 use super::fibres::FibreField;
 use super::problem::FiniteStrain;
 use super::step_length::Volume;
@@ -59,6 +59,8 @@ struct Brick {
     volume: f64,
     law: u16,
     cell: usize,
+    /// The bulk modulus in kPa that acts on the mean of ln J; 0 where volume is taken at each point.
+    carried: f64,
 }
 
 /// The hexahedra and wedges of a mesh.
@@ -66,8 +68,6 @@ pub(super) struct Bricks<'a> {
     laws: &'a [Law],
     fibres: FibreField<'a>,
     inner: Arc<InnerStress>,
-    /// For each law the bulk modulus that acts on the mean of a cell; none where volume is taken at each point.
-    means: Option<Vec<Exchange>>,
     bricks: Vec<Brick>,
     /// Their places in the order of the numbering, and for each cell of the mesh its brick.
     cliques: Vec<usize>,
@@ -90,9 +90,9 @@ impl<'a> Bricks<'a> {
     pub fn new(
         problem: &FiniteStrain<'a>,
         numbering: &Numbering,
-        means: Option<Vec<Exchange>>,
+        kept: &Kept,
     ) -> Result<Self, InvertedCell> {
-        let FiniteStrain { mesh, laws, law_of_cell, fibres, .. } = *problem;
+        let FiniteStrain { mesh, laws, law_of_cell, elements, fibres, .. } = *problem;
         let inner = Arc::clone(&problem.inner);
         let order = &numbering.layout.clique_order;
         let is_brick =
@@ -101,7 +101,11 @@ impl<'a> Bricks<'a> {
         let brick = |&clique: &usize| {
             let cell = order[clique] as usize;
             let rows = numbering.cliques.row(clique).to_vec();
-            let brick = Brick::new(mesh, cell, rows, law_of_cell[cell])?;
+            let law = law_of_cell[cell];
+            let mut brick = Brick::new(mesh, cell, rows, law)?;
+            if elements.mean_dilatation {
+                brick.carried = kept.of_brick(&laws[usize::from(law)], cell).max(0.0);
+            }
             Ok(brick.grown(inner.grown(cell)))
         };
         let bricks = cliques.par_iter().map(brick).collect::<Result<Vec<_>, _>>()?;
@@ -109,11 +113,16 @@ impl<'a> Bricks<'a> {
         for (brick, &clique) in cliques.iter().enumerate() {
             of_cell[order[clique] as usize] = brick as u32;
         }
-        Ok(Bricks { laws, fibres, inner, means, bricks, cliques, of_cell })
+        Ok(Bricks { laws, fibres, inner, bricks, cliques, of_cell })
     }
 
     pub fn is_empty(&self) -> bool {
         self.bricks.is_empty()
+    }
+
+    /// Cells of the mesh.
+    pub fn cells(&self) -> impl Iterator<Item = usize> {
+        self.bricks.iter().map(|brick| brick.cell)
     }
 
     pub fn megabytes(&self) -> f64 {
@@ -138,16 +147,13 @@ impl<'a> Bricks<'a> {
         let pulls = self.inner.pulls(brick.cell);
         let point = |at: &PointAtRest| Point::new(law, fibres, at.gradient(&of_cell)).pulled(pulls);
         let points: Vec<Point> = brick.points.iter().map(point).collect();
-        let Some(exchange) = self.means.as_ref().map(|means| means[usize::from(brick.law)]) else {
-            return DeformedBrick { points, pressure: 0.0 };
-        };
-        let logs = brick.points.iter().zip(&points);
-        let mean: f64 = logs.map(|(at, point)| at.volume * point.log_volume()).sum();
-        let pressure = exchange.carried * mean / brick.volume;
-        if exchange.carried <= 0.0 {
+        if brick.carried == 0.0 {
             return DeformedBrick { points, pressure: 0.0 };
         }
-        let by = Carried { pressure, modulus: exchange.carried };
+        let logs = brick.points.iter().zip(&points);
+        let mean: f64 = logs.map(|(at, point)| at.volume * point.log_volume()).sum();
+        let pressure = brick.carried * mean / brick.volume;
+        let by = Carried { pressure, modulus: brick.carried };
         let points = points.into_iter().map(|point| point.carried(by)).collect();
         DeformedBrick { points, pressure }
     }
@@ -164,12 +170,9 @@ impl<'a> Bricks<'a> {
             let points: f64 =
                 brick.points.iter().zip(&points).map(|(at, p)| at.volume * p.energy()).sum();
             // W - c/2 ln^2 J + p ln J stands for the points, c/2 of the mean squared is asked for: half of p ln J.
-            match &self.means {
-                Some(means) if pressure != 0.0 => {
-                    let carried = means[usize::from(brick.law)].carried;
-                    points - 0.5 * brick.volume * pressure * pressure / carried
-                }
-                _ => points,
+            match pressure == 0.0 {
+                true => points,
+                false => points - 0.5 * brick.volume * pressure * pressure / brick.carried,
             }
         };
         let sums: Vec<f64> =
@@ -204,7 +207,7 @@ impl Brick {
         };
         let points = reference.points.iter().map(point).collect::<Result<Vec<_>, _>>()?;
         let volume = points.iter().map(|point| point.volume).sum();
-        Ok(Brick { rows, points, volume, law, cell })
+        Ok(Brick { rows, points, volume, law, cell, carried: 0.0 })
     }
 
     fn grown(mut self, grown: Grown) -> Brick {
@@ -266,13 +269,11 @@ impl DeformedBricks<'_> {
     pub fn at_cell(&self, cell: usize) -> BrickAt<'_> {
         let brick = self.bricks.of_cell[cell] as usize;
         let (own, deformed) = (&self.bricks.bricks[brick], &self.deformed[brick]);
-        let means = self.bricks.means.as_ref();
-        let carried = means.map_or(0.0, |means| means[usize::from(own.law)].carried);
         BrickAt {
             at_rest: &own.points,
             points: &deformed.points,
             law: own.law,
-            of_mean: carried / own.volume,
+            of_mean: own.carried / own.volume,
         }
     }
 
@@ -291,8 +292,8 @@ impl DeformedBricks<'_> {
                 *mean += corner.of_log_volume(point.volume()) * at.volume;
             }
         }
-        if let Some(means) = &self.bricks.means {
-            let factor = means[usize::from(at_rest.law)].carried / at_rest.volume;
+        if at_rest.carried > 0.0 {
+            let factor = at_rest.carried / at_rest.volume;
             for (entry, sum) in sums.iter_mut().enumerate() {
                 *sum += mean[entry / count] * mean[entry % count].transpose() * factor;
             }
@@ -302,7 +303,14 @@ impl DeformedBricks<'_> {
 
     /// The least det F.
     pub fn least_volume(&self) -> f64 {
-        let volumes = self.deformed.iter().flat_map(|brick| brick.points.iter().map(Point::volume));
-        volumes.fold(f64::INFINITY, f64::min)
+        self.least_volumes().map(|(_, volume)| volume).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Each cell of the mesh that is a brick, and the least det F of its points.
+    pub fn least_volumes(&self) -> impl Iterator<Item = (usize, f64)> {
+        self.bricks.bricks.iter().zip(&self.deformed).map(|(brick, deformed)| {
+            let volumes = deformed.points.iter().map(Point::volume);
+            (brick.cell, volumes.fold(f64::INFINITY, f64::min))
+        })
     }
 }

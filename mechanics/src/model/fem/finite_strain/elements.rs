@@ -7,7 +7,7 @@
 //! * hexahedra and wedges with mean dilatation: p = c/V int ln J, one for each cell.
 //!
 //! The share kappa of the bulk modulus that stays in each point keeps single cells from collapsing on the way; near rest it goes into
-//! the pressures too, unless cells are pressed to a small part of their volume. Only the neo-Hookean law
+//! the pressures too, but in cells that are pressed to a small part of their volume. Only the neo-Hookean law
 //! whose energy of volume is that of ln J shares it: what another law leaves in the points would no longer be convex, and no
 //! barrier against collapse (steps of Mooney-Rivlin's and of exponential laws then wander without end). The others take volume at each point.
 
@@ -23,31 +23,53 @@ pub struct Elements {
     pub mean_dilatation: bool,
 }
 
-/// The share of the bulk modulus that stays in each cell, as a multiple of mu.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Kept(pub f64);
+/// The bulk modulus that stays in cells.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Kept {
+    /// As a multiple of mu.
+    share: f64,
+    /// For each cell of the mesh whether it keeps that, the others nothing; all keep it where none is named.
+    only: Option<Vec<bool>>,
+}
 
 impl Kept {
-    pub const FIRST: Kept = Kept(1.0);
+    /// On the way, in all cells.
+    pub const FIRST: Kept = Kept { share: 1.0, only: None };
     /// After a standstill.
-    pub const MORE: Kept = Kept(2.0);
-    /// Near rest, where no cell is pressed to a small part of its volume: the tangent at rest is the matrix of linear elements.
-    pub const NONE: Kept = Kept(0.0);
+    pub const MORE: Kept = Kept { share: 2.0, only: None };
 
-    /// c and mu of tetrahedra: at most half of lambda stays, so that the rest has something to act on.
-    pub fn of(self, law: &Law) -> Exchange {
+    /// Near rest in pressed cells only. Of the others, and of tissue none of whose cells is pressed, the tangent at rest is the
+    /// matrix of linear elements.
+    pub fn in_pressed(share: f64, pressed: Vec<bool>) -> Kept {
+        Kept { share, only: Some(pressed) }
+    }
+
+    pub fn is_of_pressed(&self) -> bool {
+        self.only.is_some()
+    }
+
+    /// As a multiple of mu.
+    pub fn share(&self, cell: usize) -> f64 {
+        match &self.only {
+            Some(only) if !only[cell] => 0.0,
+            _ => self.share,
+        }
+    }
+
+    /// c and mu of a tetrahedron: at most half of lambda stays, so that the rest has something to act on.
+    pub fn of(&self, law: &Law, cell: usize) -> Exchange {
         let (lambda, mu) = law.at_rest();
-        let kept = (self.0 * mu).min(0.5 * lambda);
+        let kept = (self.share(cell) * mu).min(0.5 * lambda);
         let carried = if law.shares_volume() { lambda - kept } else { 0.0 };
         Exchange { carried, mu }
     }
 
-    /// c and mu of cells with mean dilatation. Linear ones take all of the bulk modulus lambda + 2/3 mu as a mean.
-    pub fn of_bricks(self, law: &Law) -> Exchange {
-        let own = self.of(law);
-        match self == Kept::NONE && law.shares_volume() {
-            true => Exchange { carried: own.carried + 2.0 / 3.0 * own.mu, ..own },
-            false => own,
+    /// c of a cell with mean dilatation. Linear ones take all of the bulk modulus lambda + 2/3 mu as a mean.
+    pub fn of_brick(&self, law: &Law, cell: usize) -> f64 {
+        let Exchange { carried, mu } = self.of(law, cell);
+        match self.share(cell) == 0.0 && law.shares_volume() {
+            true => carried + 2.0 / 3.0 * mu,
+            false => carried,
         }
     }
 }

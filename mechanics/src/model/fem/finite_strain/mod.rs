@@ -73,6 +73,9 @@ pub struct InContact {
 /// What moves goes by at most this part of its longest edges in a step where things touch.
 const STEP: f64 = 0.5;
 
+/// The share of its volume that a cell has to have near rest for all of its bulk modulus to be shared.
+const ROOMY: f64 = 0.2;
+
 impl<'a> FiniteStrain<'a> {
     /// Solves a load case for rest.
     pub fn solve(
@@ -188,6 +191,7 @@ impl<'a> FiniteStrain<'a> {
         let start = Start {
             x: question.constrained.numbering.by_row(&self.mesh.nodes),
             log_volumes: Vec::new(),
+            least_volumes: Vec::new(),
             made: 0.0,
             history: Vec::new(),
             path: Vec::new(),
@@ -203,18 +207,19 @@ impl<'a> FiniteStrain<'a> {
         }
     }
 
-    /// Near rest with a share of the bulk modulus in the cells, then with none, where the tissue bears that.
+    /// Near rest with a share of the bulk modulus in all cells, then with that in pressed ones only, where the tissue bears it.
     fn rest_from(
         &self,
         question: Question<'a>,
         start: Start<'a>,
     ) -> Result<(Tissue<'a>, Rest<'a>), ModelError> {
-        let near = match self.with_bulk_in_cells(question, start, true)? {
+        let (share, near) = match self.with_bulk_in_cells(question, start, true)? {
             (tissue, Ending::Rest(rest)) => return Ok((tissue, *rest)),
-            (_, Ending::Near(near) | Ending::Jam(near)) => near,
+            (tissue, Ending::Near(near) | Ending::Jam(near)) => (tissue.bulk_in_cells, near),
         };
+        let pressed = near.least_volumes.iter().map(|&least| least < ROOMY).collect();
         let until = Until { jammed: true, near: false };
-        match self.newton(Kept::NONE, question, near.clone(), until) {
+        match self.newton(&Kept::in_pressed(share, pressed), question, near.clone(), until) {
             Ok((tissue, Ending::Rest(rest))) => return Ok((tissue, *rest)),
             Ok((_, Ending::Jam(_) | Ending::Near(_))) | Err(ModelError::Standstill { .. }) => {}
             Err(ModelError::Solver(SolverError::NotConverged { .. })) => {}
@@ -233,9 +238,9 @@ impl<'a> FiniteStrain<'a> {
         start: Start<'a>,
         near: bool,
     ) -> Result<(Tissue<'a>, Ending<'a>), ModelError> {
-        match self.newton(Kept::FIRST, question, start, Until { jammed: true, near })? {
+        match self.newton(&Kept::FIRST, question, start, Until { jammed: true, near })? {
             (_, Ending::Jam(reached)) => {
-                self.newton(Kept::MORE, question, reached, Until { jammed: false, near })
+                self.newton(&Kept::MORE, question, reached, Until { jammed: false, near })
             }
             ended => Ok(ended),
         }
@@ -243,7 +248,7 @@ impl<'a> FiniteStrain<'a> {
 
     fn newton(
         &self,
-        kept: Kept,
+        kept: &Kept,
         question: Question<'a>,
         start: Start<'a>,
         until: Until,

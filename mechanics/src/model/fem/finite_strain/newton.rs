@@ -29,7 +29,8 @@ pub const MOST_STEPS: usize = 150;
 const SHORT: f64 = 0.01;
 const MOST_SHORT: usize = 5;
 
-/// With pressures steps this short, this often in all, are a jam, and so is a system that is not solved in its iterations.
+/// With pressures, and where only pressed cells keep bulk modulus, steps this short, this often in all, are a jam, and so is a system
+/// that is not solved in its iterations.
 const JAMMED: f64 = 0.1;
 const MOST_JAMMED: usize = 3;
 
@@ -40,10 +41,8 @@ const LEAST_AHEAD: f64 = 1e-3;
 const ENOUGH: f64 = 1e-4;
 const MOST_HALVINGS: usize = 30;
 
-/// The relative residual at which tissue is near rest, and the volume that each cell has to have then, for all of the bulk modulus
-/// to be shared.
+/// The relative residual at which tissue is near rest.
 const NEAR: f64 = 0.01;
-const ROOMY: f64 = 0.2;
 
 pub(super) struct Newton<'a, 'b> {
     tissue: &'b Tissue<'a>,
@@ -120,7 +119,7 @@ impl<'a, 'b> Newton<'a, 'b> {
                 return Ok(Ending::Rest(Box::new(rest)));
             }
             let is_near = self.made >= 1.0 && residual <= NEAR;
-            if until.near && is_near && deformed.least_volume() >= ROOMY {
+            if until.near && is_near {
                 return Ok(Ending::Near(self.reached()));
             }
             if self.history.len() > MOST_STEPS {
@@ -140,8 +139,9 @@ impl<'a, 'b> Newton<'a, 'b> {
         let pressures = self.directions.pressures.as_ref();
         let log_volumes = pressures.map_or_else(Vec::new, |own| own.log_volumes(&self.p));
         let tally = self.directions.tally;
+        let least_volumes = self.tissue.at(&self.x, &self.p, pressures).least_volumes();
         let Newton { x, made, history, path, touching, .. } = self;
-        Start { x, log_volumes, made, history, path, tally, touching }
+        Start { x, log_volumes, least_volumes, made, history, path, tally, touching }
     }
 
     /// One step: a direction, how far, and the same of the movement of the bones.
@@ -170,7 +170,8 @@ impl<'a, 'b> Newton<'a, 'b> {
             self.ahead = (2.0 * taken * ahead).max(LEAST_AHEAD).min(most);
         }
         self.short = if taken < SHORT { self.short + 1 } else { 0 };
-        self.jammed += usize::from(self.has_pressures() && taken < JAMMED);
+        let may_jam = self.has_pressures() || self.tissue.shares_all;
+        self.jammed += usize::from(may_jam && taken < JAMMED);
         if !direction.is_met {
             self.jammed = MOST_JAMMED;
         }
@@ -348,6 +349,7 @@ impl<'a, 'b> Newton<'a, 'b> {
                 indefinite_steps: tally.indefinite,
                 is_stable,
                 bulk_in_cells: self.tissue.bulk_in_cells,
+                cells_with_bulk: self.tissue.cells_with_bulk,
             }),
         })
     }

@@ -13,7 +13,7 @@ use crate::solver::{SolveReport, Tolerance};
 pub(super) struct Until {
     /// Tissue with pressures that goes on in short steps only.
     pub jammed: bool,
-    /// Tissue near rest none of whose cells is pressed to a small part of its volume.
+    /// Tissue near rest.
     pub near: bool,
 }
 
@@ -24,6 +24,8 @@ pub(super) struct Start<'a> {
     pub x: Vec<Vector>,
     /// For each pressure the mean of ln J that it answers to.
     pub log_volumes: Vec<f64>,
+    /// For each cell of the mesh the least det F of its points there; empty at the beginning.
+    pub least_volumes: Vec<f64>,
     /// The share of movement and load that is made.
     pub made: f64,
     /// Relative residuals so far.
@@ -48,7 +50,7 @@ pub(super) enum Ending<'a> {
     Rest(Box<Rest<'a>>),
     /// More of the bulk modulus has to stay in the cells.
     Jam(Start<'a>),
-    /// All of it may be shared.
+    /// All of it may be shared, but in pressed cells.
     Near(Start<'a>),
 }
 
@@ -78,6 +80,7 @@ impl<'a> Rest<'a> {
         Start {
             x: self.positions,
             log_volumes,
+            least_volumes: Vec::new(),
             made: 1.0,
             history,
             path,

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use nalgebra::Matrix3;
 use rayon::prelude::*;
 
-use super::elements::rounded;
+use super::elements::{Kept, rounded};
 use super::fibres::FibreField;
 use super::problem::FiniteStrain;
 use super::step_length::Volume;
@@ -51,13 +51,12 @@ pub(super) struct DeformedSimplices<'a> {
 }
 
 impl<'a> Simplices<'a> {
-    /// `carried` is the modulus that a pressure carries in each law.
     pub fn new(
         problem: &FiniteStrain<'a>,
         numbering: &Numbering,
-        carried: &[f64],
+        kept: &Kept,
     ) -> Result<Self, InvertedCell> {
-        let FiniteStrain { mesh, laws, law_of_cell, fibres, .. } = *problem;
+        let FiniteStrain { mesh, laws, law_of_cell, elements, fibres, .. } = *problem;
         let inner = Arc::clone(&problem.inner);
         let order = &numbering.layout.clique_order;
         let is_simplex =
@@ -71,7 +70,10 @@ impl<'a> Simplices<'a> {
                 (volume * grown.volume, gradients.map(|g| grown.gradient(&g)));
             let members = numbering.cliques.row(clique);
             let (rows, law) = (std::array::from_fn(|k| members[k]), law_of_cell[cell]);
-            let carried = carried[usize::from(law)];
+            let carried = match elements.stabilised {
+                true => kept.of(&laws[usize::from(law)], cell).carried.max(0.0),
+                false => 0.0,
+            };
             Ok(Simplex { rows, gradients, volume, law, cell: cell as u32, carried })
         };
         let cells = cliques.par_iter().map(cell).collect::<Result<Vec<_>, _>>()?;
@@ -114,6 +116,11 @@ impl<'a> Simplices<'a> {
         let cells = self.cells.par_iter().enumerate();
         let points = cells.map(|(number, cell)| self.point(cell, x, pressure(number))).collect();
         DeformedSimplices { simplices: self, points }
+    }
+
+    /// Cells of the mesh whose volume pressures share.
+    pub fn cells_that_share(&self) -> impl Iterator<Item = usize> {
+        self.cells.iter().filter(|cell| cell.carried > 0.0).map(|cell| cell.cell as usize)
     }
 
     /// In mN mm, of tetrahedra without pressures.
@@ -220,6 +227,12 @@ impl DeformedSimplices<'_> {
     /// The least det F.
     pub fn least_volume(&self) -> f64 {
         self.points.par_iter().map(Point::volume).reduce(|| f64::INFINITY, f64::min)
+    }
+
+    /// Each cell of the mesh that is a tetrahedron, and its det F.
+    pub fn least_volumes(&self) -> impl Iterator<Item = (usize, f64)> {
+        let cells = self.simplices.cells.iter().zip(&self.points);
+        cells.map(|(cell, point)| (cell.cell as usize, point.volume()))
     }
 
     /// A tetrahedron at rest and its point.

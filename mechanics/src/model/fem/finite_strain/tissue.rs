@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use nalgebra::Matrix3;
 
 use super::bricks::{Bricks, DeformedBricks};
-use super::elements::{Elements, Exchange, Kept};
+use super::elements::{Elements, Kept};
 use super::pressures::{PressureCell, Pressures};
 use super::problem::FiniteStrain;
 use super::sheet::{DeformedSheet, Sheet};
@@ -36,8 +36,11 @@ pub(super) struct Tissue<'a> {
     pub rest: Vec<Vector>,
     /// The share of its volume that a cell keeps in one step.
     keep: f64,
-    /// The bulk modulus that stays in the cells whose volume is shared, as a multiple of mu.
+    /// The bulk modulus that stays in cells whose volume is shared, as a multiple of mu, and how many cells keep it.
     pub bulk_in_cells: f64,
+    pub cells_with_bulk: usize,
+    /// Whether all cells share their volume that are not pressed.
+    pub shares_all: bool,
 }
 
 /// Tissue at positions whose points all have a positive volume.
@@ -56,17 +59,11 @@ impl<'a> Tissue<'a> {
     pub fn new(
         problem: &FiniteStrain<'a>,
         numbering: &'a Numbering,
-        kept: Kept,
+        kept: &Kept,
     ) -> Result<Self, InvertedCell> {
-        let FiniteStrain { mesh, laws, elements, .. } = *problem;
-        let carried: Vec<f64> = match elements.stabilised {
-            true => laws.iter().map(|law| kept.of(law).carried.max(0.0)).collect(),
-            false => vec![0.0; laws.len()],
-        };
-        let means =
-            elements.mean_dilatation.then(|| laws.iter().map(|law| kept.of_bricks(law)).collect());
-        let simplices = Simplices::new(problem, numbering, &carried)?;
-        let bricks = Bricks::new(problem, numbering, means)?;
+        let FiniteStrain { mesh, laws, .. } = *problem;
+        let simplices = Simplices::new(problem, numbering, kept)?;
+        let bricks = Bricks::new(problem, numbering, kept)?;
         let sheet = Sheet::new(problem, numbering);
         let rest = numbering.by_row(&mesh.nodes);
         let carries_all =
@@ -76,16 +73,28 @@ impl<'a> Tissue<'a> {
             true => 1.0 - LOSS,
             false => 1.0 - LOSS * (SOFT / stiffest.fold(0.0, f64::max)).sqrt().min(1.0),
         };
-        let shares = !bricks.is_empty() || simplices.cells.iter().any(|cell| cell.carried > 0.0);
-        let bulk_in_cells = if shares { kept.0 } else { 0.0 };
-        Ok(Tissue { numbering, simplices, bricks, sheet, rest, keep, bulk_in_cells })
+        let sharing = simplices.cells_that_share().chain(bricks.cells());
+        let shares: Vec<f64> = sharing.map(|cell| kept.share(cell)).collect();
+        let bulk_in_cells = shares.iter().copied().fold(0.0, f64::max);
+        let cells_with_bulk = shares.iter().filter(|&&share| share > 0.0).count();
+        Ok(Tissue {
+            numbering,
+            simplices,
+            bricks,
+            sheet,
+            rest,
+            keep,
+            bulk_in_cells,
+            cells_with_bulk,
+            shares_all: kept.is_of_pressed(),
+        })
     }
 
     /// The pressures of stabilised tetrahedra; none where there are none.
     pub fn pressures(
         &self,
         problem: &FiniteStrain,
-        kept: Kept,
+        kept: &Kept,
         axes: BTreeMap<u32, Matrix3<f64>>,
     ) -> Option<Pressures> {
         // Pressures are continuous within tissue of one law, whatever its regions are called.
@@ -94,7 +103,6 @@ impl<'a> Tissue<'a> {
             let first = laws.iter().position(|law| *law == laws[usize::from(own)]);
             first.unwrap_or_default() as u16
         };
-        let exchange: Vec<Exchange> = problem.laws.iter().map(|law| kept.of(law)).collect();
         let cells: Vec<PressureCell> = (0..)
             .zip(&self.simplices.cells)
             .filter(|(_, cell)| cell.carried > 0.0)
@@ -103,7 +111,7 @@ impl<'a> Tissue<'a> {
                 rows: cell.rows,
                 kind: same(problem.pressure_of_cell[cell.cell as usize]),
                 volume: cell.volume,
-                exchange: exchange[usize::from(cell.law)],
+                exchange: kept.of(&laws[usize::from(cell.law)], cell.cell as usize),
             })
             .collect();
         let at_rest = |simplex: u32| self.simplices.cells[simplex as usize].gradients;
@@ -178,6 +186,14 @@ impl Deformed<'_> {
     /// The least det F.
     pub fn least_volume(&self) -> f64 {
         self.simplices.least_volume().min(self.bricks.least_volume())
+    }
+
+    /// For each cell of the mesh the least det F of its points.
+    pub fn least_volumes(&self) -> Vec<f64> {
+        let of_cells = self.simplices.least_volumes().chain(self.bricks.least_volumes());
+        let mut least = vec![f64::INFINITY; self.tissue.numbering.layout.clique_order.len()];
+        of_cells.for_each(|(cell, volume)| least[cell] = volume);
+        least
     }
 
     /// In mN mm, at these pressures.
