@@ -232,7 +232,7 @@ impl<'a> Check<'a> {
                 false => &format!("{} knows", method.title),
             };
             let detail = format!(
-                "{who} no contact that opens and closes: `fem_linear` does, with any element but `quadratic`, and `fem_nonlinear`"
+                "{who} no contact that opens and closes: `fem_linear` and `fem_nonlinear` do, with any element but `quadratic`"
             );
             self.problems.add("/spec/contact", SceneErrorCode::MethodNotAvailable, detail);
         }

@@ -2,8 +2,9 @@
 
 use super::case::{Case, FibreDirection, Muscle, Settings};
 use super::check::Check;
+use super::element_choice::ElementChoice;
 use super::error_code::SceneErrorCode;
-use super::method::{Laws, Method, MethodProperties};
+use super::method::{Laws, Method, MethodKind, MethodProperties};
 use super::skin::Skin;
 use crate::material::LinearElastic;
 use crate::material::hyperelastic::Law;
@@ -139,13 +140,18 @@ impl Check<'_> {
     /// The skin as a membrane, where the settings ask for one.
     pub(super) fn membrane(&mut self, skin: &Skin, settings: &Settings) -> Option<Membrane> {
         let stated = settings.membrane.as_ref()?;
-        if !settings.method.properties().knows_membrane {
-            let detail = "this method has no skin of its own: leave the membrane out";
-            self.problems.add(
-                "/spec/membrane",
-                SceneErrorCode::MethodNotAvailable,
-                detail.to_owned(),
-            );
+        let method = settings.method.kind();
+        let is_quadratic = settings.element == ElementChoice::Quadratic;
+        let detail = if !method.properties().knows_membrane {
+            Some("this method has no skin of its own: leave the membrane out")
+        } else if method == MethodKind::FemNonlinear && is_quadratic {
+            Some("quadratic elements have no membrane at finite strain: choose another element")
+        } else {
+            None
+        };
+        if let Some(detail) = detail {
+            let code = SceneErrorCode::MethodNotAvailable;
+            self.problems.add("/spec/membrane", code, detail.to_owned());
             return None;
         }
         let nodes = skin.nodes();

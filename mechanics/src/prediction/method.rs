@@ -128,12 +128,7 @@ const FEM_NONLINEAR: MethodProperties = MethodProperties {
     name: "fem_nonlinear",
     title: "the nonlinear finite element method",
     unknowns: Unknowns::Elements,
-    elements: &[
-        ElementChoice::Auto,
-        ElementChoice::Plain,
-        ElementChoice::MeanDilatation,
-        ElementChoice::Stabilised,
-    ],
+    elements: ElementChoice::ALL,
     usual_element: ElementChoice::Stabilised,
     cells: EVERY_SHAPE,
     is_linear: false,

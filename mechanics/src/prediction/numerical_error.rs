@@ -101,6 +101,7 @@ pub(super) fn reason_for_none(scene: &Scene) -> Option<NotEstimated> {
         return Some(NotEstimated::NotAsked);
     }
     match &scene.settings.method {
+        Method::FemNonlinear if !scene.is_first_order() => Some(NotEstimated::Quadratic),
         Method::FemLinear | Method::FemNonlinear => None,
         Method::MassTensor(own) | Method::MassTensorTransverse(own) => match own.iterations {
             Iterations::Fast => None,

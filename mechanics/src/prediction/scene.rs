@@ -221,10 +221,15 @@ impl Scene {
         let Settings { relative_residual, memory_mb, .. } = self.settings;
         let elements = Elements {
             stabilised: self.tetrahedron() == Tetrahedron::Stabilised,
-            mean_dilatation: self.element != ElementChoice::Plain,
+            mean_dilatation: !matches!(
+                self.element,
+                ElementChoice::Plain | ElementChoice::Quadratic
+            ),
+            quadratic: self.tetrahedron() == Tetrahedron::Quadratic,
         };
         let problem = FiniteStrain {
             mesh: &self.mesh,
+            nodes: &self.mesh.nodes,
             laws: &laws,
             law_of_cell: &self.material_of_cell,
             pressure_of_cell: &self.pressure_of_cell,

@@ -1,8 +1,10 @@
-//! Nodes in the middle of the edges of tetrahedra.
+//! Nodes in the middle of the edges of tetrahedra, and what of a problem stands at them.
 
 use crate::boundary::{Hold, midpoint};
 use crate::element::tetrahedron10;
 use crate::mesh::{Vector, VolumeMesh};
+use crate::model::problem::{Equilibrium, LoadCase};
+use crate::solver::cliques::Cliques;
 use rayon::prelude::*;
 
 /// The middles of the edges of a mesh of tetrahedra, numbered after its nodes.
@@ -54,7 +56,7 @@ impl EdgeNodes {
 
     /// The holds and, after them, those of edge nodes that have none of their own yet; with the two holds
     /// between which each of these lies.
-    pub(super) fn holds(&self, mesh: &VolumeMesh, holds: &[Hold]) -> (Vec<Hold>, Vec<[usize; 2]>) {
+    fn holds(&self, mesh: &VolumeMesh, holds: &[Hold]) -> (Vec<Hold>, Vec<[usize; 2]>) {
         let mut hold_of = vec![None; self.node_count()];
         for (index, hold) in holds.iter().enumerate() {
             hold_of[hold.node as usize] = Some(index);
@@ -83,6 +85,58 @@ impl EdgeNodes {
             }
         }
         (all, parents)
+    }
+}
+
+/// A problem with nodes in the middle of edges: they come after the nodes of the mesh, their holds after those that are given.
+pub(super) struct WithEdges<'a> {
+    given: &'a [Hold],
+    pub edges: EdgeNodes,
+    pub holds: Vec<Hold>,
+    /// The two holds between which each hold of an edge node lies.
+    parents: Vec<[usize; 2]>,
+    /// Of all nodes at rest, in mm.
+    pub positions: Vec<Vector>,
+    /// The ten nodes of each cell.
+    pub cells: Cliques,
+}
+
+impl<'a> WithEdges<'a> {
+    /// Of a mesh of tetrahedra; holds may name edge nodes themselves.
+    pub fn new(mesh: &VolumeMesh, given: &'a [Hold]) -> Self {
+        let edges = EdgeNodes::new(mesh);
+        let (holds, parents) = edges.holds(mesh, given);
+        let mut cells = Cliques::default();
+        (0..mesh.cells.len()).for_each(|cell| cells.push(edges.of_cell(mesh, cell)));
+        WithEdges { given, holds, parents, positions: edges.positions(mesh), cells, edges }
+    }
+
+    /// A load case with values for edge nodes too, whose forces may be left out.
+    pub fn case(&self, case: &LoadCase) -> LoadCase {
+        let mut forces = case.forces.clone();
+        forces.resize(self.positions.len(), Vector::zeros());
+        LoadCase { held: self.values(case), forces, ..LoadCase::default() }
+    }
+
+    /// The values of all holds: those that are given, and those of edge nodes between them.
+    fn values(&self, case: &LoadCase) -> Vec<Vector> {
+        let mut given = self.given.to_vec();
+        for (hold, values) in given.iter_mut().zip(&case.held) {
+            hold.set_values(values);
+        }
+        let of_edges = self.holds[given.len()..].iter().zip(&self.parents);
+        let middles = of_edges.filter_map(|(hold, &[a, b])| {
+            midpoint::between(hold.node, &given[a], &given[b]).map(|hold| *hold.values())
+        });
+        given.iter().map(|hold| *hold.values()).chain(middles).collect()
+    }
+
+    /// Leaves the reactions of the holds that are given: what an edge node's hold exerts counts half at each of its ends.
+    pub fn gather_reactions(&self, equilibrium: &mut Equilibrium) {
+        let of_edges = equilibrium.reactions.split_off(self.given.len());
+        for (force, ends) in of_edges.into_iter().zip(&self.parents) {
+            ends.iter().for_each(|&end| equilibrium.reactions[end] += force * 0.5);
+        }
     }
 }
 

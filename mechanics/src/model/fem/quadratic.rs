@@ -9,8 +9,7 @@
 use super::assembly::Tissue;
 use super::cell_stiffness::tetrahedron;
 use super::displacement::{Problem, solve_displacement};
-use super::edge_nodes::EdgeNodes;
-use crate::boundary::{Hold, midpoint};
+use super::edge_nodes::{EdgeNodes, WithEdges};
 use crate::element::tetrahedron10;
 use crate::material::ElasticTensor;
 use crate::mesh::Vector;
@@ -19,7 +18,6 @@ use crate::model::dofs::{Constrained, number};
 use crate::model::problem::InvertedCell;
 use crate::model::problem::{Equilibrium, LoadCase, ModelError};
 use crate::progress::{Phase, Progress};
-use crate::solver::cliques::Cliques;
 use crate::solver::{self, Block, HalfMatrix, SolverError, System, Unknowns};
 
 /// Solves for each load case; the matrix is made once. Holds may name edge nodes themselves; forces may
@@ -45,57 +43,23 @@ pub fn solve_with_edges(
     // 1. The matrix over corners and edge nodes.
     progress.phase(Phase::Assemble);
     let mesh = problem.tissue.mesh;
-    let edges = EdgeNodes::new(mesh);
-    let (holds, parents) = edges.holds(mesh, problem.holds);
-    let mut cells = Cliques::default();
-    (0..mesh.cells.len()).for_each(|cell| cells.push(edges.of_cell(mesh, cell)));
-    let positions = edges.positions(mesh);
-    let numbering = number(&cells, &positions, &holds);
-    let assembled = assemble(&problem.tissue, &numbering, &edges, progress)?;
+    let with = WithEdges::new(mesh, problem.holds);
+    let numbering = number(&with.cells, &with.positions, &with.holds);
+    let assembled = assemble(&problem.tissue, &numbering, &with.edges, progress)?;
     let matrix = assembled.ok_or(SolverError::Stopped)?;
 
     // 2. Each load case with values for edge nodes too.
-    let forces = |case: &LoadCase| {
-        let mut forces = case.forces.clone();
-        forces.resize(positions.len(), Vector::zeros());
-        forces
-    };
-    let cases: Vec<LoadCase> = cases
-        .iter()
-        .map(|case| LoadCase {
-            held: values(case, problem.holds, &holds, &parents),
-            forces: forces(case),
-            ..LoadCase::default()
-        })
-        .collect();
-    let constrained = Constrained { holds: &holds, numbering: &numbering };
-    let system = constrained.system(matrix, &positions);
+    let cases: Vec<LoadCase> = cases.iter().map(|case| with.case(case)).collect();
+    let constrained = Constrained { holds: &with.holds, numbering: &numbering };
+    let system = constrained.system(matrix, &with.positions);
     let solve = |system: &System, right_hand_sides: &[Unknowns]| {
         solver::solve(system, right_hand_sides, &problem.tolerance, progress)
     };
     let mut equilibria = solve_displacement(&constrained, &system, &cases, progress, &solve)?;
 
     // 3. Back to the holds that were given.
-    for equilibrium in &mut equilibria {
-        let of_edges = equilibrium.reactions.split_off(problem.holds.len());
-        for (force, ends) in of_edges.into_iter().zip(&parents) {
-            ends.iter().for_each(|&end| equilibrium.reactions[end] += force * 0.5);
-        }
-    }
+    equilibria.iter_mut().for_each(|equilibrium| with.gather_reactions(equilibrium));
     Ok(equilibria)
-}
-
-/// The values of all holds in a load case: those that are given, and those of edge nodes between them.
-fn values(case: &LoadCase, given: &[Hold], holds: &[Hold], parents: &[[usize; 2]]) -> Vec<Vector> {
-    let mut given = given.to_vec();
-    for (hold, values) in given.iter_mut().zip(&case.held) {
-        hold.set_values(values);
-    }
-    let of_edges = holds[given.len()..].iter().zip(parents);
-    let middles = of_edges.filter_map(|(hold, &[a, b])| {
-        midpoint::between(hold.node, &given[a], &given[b]).map(|hold| *hold.values())
-    });
-    given.iter().map(|hold| *hold.values()).chain(middles).collect()
 }
 
 /// K over all nodes, in kPa mm.

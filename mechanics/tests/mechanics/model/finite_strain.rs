@@ -44,6 +44,7 @@ pub(super) fn rest_of(
     let one = vec![0; mesh.cells.len()];
     let problem = FiniteStrain {
         mesh,
+        nodes: &mesh.nodes,
         laws: &[law],
         law_of_cell: &one,
         pressure_of_cell: &one,
@@ -75,9 +76,10 @@ fn least_det_f(mesh: &VolumeMesh, displacement: &[Vector]) -> f64 {
 }
 
 /// Each shape with the elements that there are for it.
-const EVERY: [(CellShape, Elements, ElementChoice); 6] = [
+const EVERY: [(CellShape, Elements, ElementChoice); 7] = [
     (CellShape::Tet4, Elements::PLAIN, ElementChoice::Plain),
     (CellShape::Tet4, Elements::STABLE, ElementChoice::Stabilised),
+    (CellShape::Tet4, Elements::QUADRATIC, ElementChoice::Quadratic),
     (CellShape::Hex8, Elements::PLAIN, ElementChoice::Plain),
     (CellShape::Hex8, Elements::STABLE, ElementChoice::Stabilised),
     (CellShape::Wedge6, Elements::PLAIN, ElementChoice::Plain),
@@ -321,11 +323,14 @@ fn pressures_come_nearer_to_the_finest_mesh_than_plain_tetrahedra_by_far() {
         (mesh, moved.displacement)
     };
     let (fine, finest) = of([40, 40, 8], Elements::STABLE);
-    let [plain, stable] = [Elements::PLAIN, Elements::STABLE].map(|elements| {
-        let (coarse, moved) = of([20, 20, 4], elements);
+    let off = |cells: [usize; 3], elements: Elements| {
+        let (coarse, moved) = of(cells, elements);
         apart_on_top((&coarse, &moved), (&fine, &finest))
-    });
+    };
+    let [plain, stable] = [Elements::PLAIN, Elements::STABLE].map(|own| off([20, 20, 4], own));
     assert!(plain > 3.0 * stable && stable < 0.2, "{plain} {stable}");
+    let quadratic = off([20, 20, 4], Elements::QUADRATIC);
+    assert!(quadratic < 0.7 * stable, "{stable} {quadratic}");
 }
 
 #[test]

@@ -62,6 +62,7 @@ fn newton_forces(mesh: &VolumeMesh, law: &Law, displacement: &[Vector]) -> Vec<V
     let holds: Vec<Hold> = (0..).zip(displacement).map(|(node, &u)| Hold::at(node, u)).collect();
     let problem = FiniteStrain {
         mesh,
+        nodes: &mesh.nodes,
         laws: std::slice::from_ref(law),
         law_of_cell: &vec![0; mesh.cells.len()],
         pressure_of_cell: &vec![0; mesh.cells.len()],

@@ -34,6 +34,7 @@ fn forces(mesh: &VolumeMesh, sheet: PlaneStress, moved: impl Fn(&Vector) -> Vect
     let reactions = |membrane: Option<&Membrane>| {
         let problem = FiniteStrain {
             mesh,
+            nodes: &mesh.nodes,
             laws: &laws,
             law_of_cell: &one,
             pressure_of_cell: &one,

@@ -1,4 +1,5 @@
-//! Hexahedra and wedges at positions, with one volume change for each cell or one for each of its points.
+//! Hexahedra and wedges at positions, with one volume change for each cell or one for each of its points, and tetrahedra with nodes
+//! in the middle of their edges, with one for each of four points.
 
 use std::sync::Arc;
 
@@ -9,10 +10,12 @@ use super::elements::{Kept, rounded};
 use super::fibres::FibreField;
 use super::problem::FiniteStrain;
 use super::step_length::Volume;
+use crate::element::tetrahedron10;
 use crate::material::hyperelastic::Law;
 use crate::material::hyperelastic::point::{Carried, Corner, Point};
 use crate::mesh::{CellShape, Vector, VolumeMesh};
 use crate::model::dofs::Numbering;
+use crate::model::fem::cell_stiffness::tetrahedron;
 use crate::model::fem::inner_stress::{Grown, InnerStress};
 use crate::model::problem::InvertedCell;
 use crate::model::reference_cell;
@@ -95,8 +98,9 @@ impl<'a> Bricks<'a> {
         let FiniteStrain { mesh, laws, law_of_cell, elements, fibres, .. } = *problem;
         let inner = Arc::clone(&problem.inner);
         let order = &numbering.layout.clique_order;
-        let is_brick =
-            |&clique: &usize| mesh.cells.shape(order[clique] as usize) != CellShape::Tet4;
+        let is_brick = |&clique: &usize| {
+            elements.quadratic || mesh.cells.shape(order[clique] as usize) != CellShape::Tet4
+        };
         let cliques: Vec<usize> = (0..order.len()).filter(is_brick).collect();
         let brick = |&clique: &usize| {
             let cell = order[clique] as usize;
@@ -123,6 +127,11 @@ impl<'a> Bricks<'a> {
     /// Cells of the mesh.
     pub fn cells(&self) -> impl Iterator<Item = usize> {
         self.bricks.iter().map(|brick| brick.cell)
+    }
+
+    /// Those that take volume as a mean.
+    pub fn cells_that_share(&self) -> impl Iterator<Item = usize> {
+        self.bricks.iter().filter(|brick| brick.carried > 0.0).map(|brick| brick.cell)
     }
 
     pub fn megabytes(&self) -> f64 {
@@ -199,13 +208,10 @@ impl Brick {
         rows: Vec<u32>,
         law: u16,
     ) -> Result<Brick, InvertedCell> {
-        let corners: Vec<Vector> = mesh.corners(cell).collect();
-        let reference = reference_cell(mesh.cells.shape(cell));
-        let point = |point: &crate::element::ReferencePoint| {
-            let at = point.at(&corners).ok_or(InvertedCell { cell })?;
-            Ok(PointAtRest { gradients: at.gradients[..corners.len()].to_vec(), volume: at.volume })
+        let points = match mesh.cells.shape(cell) {
+            CellShape::Tet4 => quadratic_points(mesh, cell)?,
+            CellShape::Hex8 | CellShape::Wedge6 => points(mesh, cell)?,
         };
-        let points = reference.points.iter().map(point).collect::<Result<Vec<_>, _>>()?;
         let volume = points.iter().map(|point| point.volume).sum();
         Ok(Brick { rows, points, volume, law, cell, carried: 0.0 })
     }
@@ -222,6 +228,25 @@ impl Brick {
     fn positions(&self, x: &[Vector]) -> Vec<Vector> {
         self.rows.iter().map(|&row| x[row as usize]).collect()
     }
+}
+
+fn points(mesh: &VolumeMesh, cell: usize) -> Result<Vec<PointAtRest>, InvertedCell> {
+    let corners: Vec<Vector> = mesh.corners(cell).collect();
+    let point = |point: &crate::element::ReferencePoint| {
+        let at = point.at(&corners).ok_or(InvertedCell { cell })?;
+        Ok(PointAtRest { gradients: at.gradients[..corners.len()].to_vec(), volume: at.volume })
+    };
+    reference_cell(mesh.cells.shape(cell)).points.iter().map(point).collect()
+}
+
+/// Those of a tetrahedron with ten nodes and straight edges.
+fn quadratic_points(mesh: &VolumeMesh, cell: usize) -> Result<Vec<PointAtRest>, InvertedCell> {
+    let (volume, of_barycentric) = tetrahedron(mesh, cell)?;
+    let point = |point: &[f64; 4]| PointAtRest {
+        gradients: tetrahedron10::gradients(point, &of_barycentric).to_vec(),
+        volume: 0.25 * volume,
+    };
+    Ok(tetrahedron10::points().iter().map(point).collect())
 }
 
 impl PointAtRest {

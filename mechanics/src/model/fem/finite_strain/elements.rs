@@ -21,6 +21,8 @@ pub struct Elements {
     pub stabilised: bool,
     /// Whether hexahedra and wedges take volume as a mean over the cell.
     pub mean_dilatation: bool,
+    /// Whether tetrahedra have nodes in the middle of their edges, and take volume at each of four points.
+    pub quadratic: bool,
 }
 
 /// The bulk modulus that stays in cells.

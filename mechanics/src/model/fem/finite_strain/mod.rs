@@ -39,9 +39,11 @@ use crate::model::dofs::{Constrained, nodes_of_cells, number};
 use crate::model::fem::cell_stiffness::tetrahedron;
 use crate::model::fem::contact::Contact;
 use crate::model::fem::displacement::check_finite;
+use crate::model::fem::edge_nodes::WithEdges;
 use crate::model::problem::{Equilibrium, LoadCase, ModelError};
 use crate::progress::{Phase, Progress};
 use crate::solver::SolverError;
+use crate::solver::cliques::Cliques;
 use another_rest::another_rest;
 use direction::{Directions, Tally};
 pub use elements::Elements;
@@ -95,8 +97,36 @@ impl<'a> FiniteStrain<'a> {
         progress: &dyn Progress,
     ) -> Result<(Equilibrium, Option<MeshError>), ModelError> {
         progress.phase(Phase::Assemble);
+        if self.elements.quadratic {
+            return Ok((self.solve_with_edges(case, progress)?, None));
+        }
+        self.solve_on(&nodes_of_cells(self.mesh), case, finer, progress)
+    }
+
+    /// The same on nodes in the middle of edges too, whose part of the answer is left out at the end.
+    fn solve_with_edges(
+        &self,
+        case: &LoadCase,
+        progress: &dyn Progress,
+    ) -> Result<Equilibrium, ModelError> {
+        let with = WithEdges::new(self.mesh, self.holds);
+        let problem = FiniteStrain { holds: &with.holds, nodes: &with.positions, ..self.clone() };
+        let (mut equilibrium, _) =
+            problem.solve_on(&with.cells, &with.case(case), None, progress)?;
+        with.gather_reactions(&mut equilibrium);
+        equilibrium.displacement.truncate(self.mesh.nodes.len());
+        Ok(equilibrium)
+    }
+
+    fn solve_on(
+        &self,
+        cells: &Cliques,
+        case: &LoadCase,
+        finer: Option<&Finer>,
+        progress: &dyn Progress,
+    ) -> Result<(Equilibrium, Option<MeshError>), ModelError> {
         self.check_held_cells(case)?;
-        let numbering = number(&nodes_of_cells(self.mesh), &self.mesh.nodes, self.holds);
+        let numbering = number(cells, self.nodes, self.holds);
         let constrained = Constrained { holds: self.holds, numbering: &numbering };
         let question =
             Question { constrained: &constrained, case, tolerance: self.tolerance, progress };
@@ -156,7 +186,7 @@ impl<'a> FiniteStrain<'a> {
     ) -> Result<Equilibrium, ModelError> {
         let numbering = question.constrained.numbering;
         let Rest { positions, pressures, forces, report, directions, .. } = rest;
-        let places = numbering.layout.place.iter().zip(&self.mesh.nodes);
+        let places = numbering.layout.place.iter().zip(self.nodes);
         let reaction = |hold: &Hold| {
             let internal = forces[numbering.row(hold.node)];
             hold.part_along(&(internal - acting[hold.node as usize]))
@@ -189,7 +219,7 @@ impl<'a> FiniteStrain<'a> {
         touching: Option<Touching<'a>>,
     ) -> Result<(Tissue<'a>, Rest<'a>), ModelError> {
         let start = Start {
-            x: question.constrained.numbering.by_row(&self.mesh.nodes),
+            x: question.constrained.numbering.by_row(self.nodes),
             log_volumes: Vec::new(),
             least_volumes: Vec::new(),
             made: 0.0,
@@ -272,7 +302,7 @@ impl<'a> FiniteStrain<'a> {
 
     /// No movement of bones may turn a tetrahedron inside out all of whose nodes they hold.
     fn check_held_cells(&self, case: &LoadCase) -> Result<(), ModelError> {
-        let mut held: Vec<Option<Vector>> = vec![None; self.mesh.nodes.len()];
+        let mut held: Vec<Option<Vector>> = vec![None; self.nodes.len()];
         for (hold, value) in self.holds.iter().zip(&case.held).filter(|(hold, _)| hold.count() == 3)
         {
             held[hold.node as usize] = Some(hold.axes() * value);

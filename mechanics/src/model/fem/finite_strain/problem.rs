@@ -6,7 +6,7 @@ use super::elements::Elements;
 use super::fibres::FibreField;
 use crate::boundary::Hold;
 use crate::material::hyperelastic::Law;
-use crate::mesh::VolumeMesh;
+use crate::mesh::{Vector, VolumeMesh};
 use crate::model::fem::inner_stress::InnerStress;
 use crate::model::fem::membrane::Membrane;
 use crate::solver::Tolerance;
@@ -15,6 +15,8 @@ use crate::solver::Tolerance;
 #[derive(Clone)]
 pub struct FiniteStrain<'a> {
     pub mesh: &'a VolumeMesh,
+    /// Positions of all nodes at rest in mm, those of the mesh first. `solve` adds those of edges where elements have them.
+    pub nodes: &'a [Vector],
     pub laws: &'a [Law],
     /// For each cell its entry in `laws`.
     pub law_of_cell: &'a [u16],

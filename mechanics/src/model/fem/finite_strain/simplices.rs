@@ -59,8 +59,9 @@ impl<'a> Simplices<'a> {
         let FiniteStrain { mesh, laws, law_of_cell, elements, fibres, .. } = *problem;
         let inner = Arc::clone(&problem.inner);
         let order = &numbering.layout.clique_order;
-        let is_simplex =
-            |&clique: &usize| mesh.cells.shape(order[clique] as usize) == CellShape::Tet4;
+        let is_simplex = |&clique: &usize| {
+            !elements.quadratic && mesh.cells.shape(order[clique] as usize) == CellShape::Tet4
+        };
         let cliques: Vec<usize> = (0..order.len()).filter(is_simplex).collect();
         let cell = |&clique: &usize| {
             let cell = order[clique] as usize;

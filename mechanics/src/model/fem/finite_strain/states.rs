@@ -1,7 +1,7 @@
 //! Stress and strain of the cells of tissue at rest at finite strain, with the pressures and mean dilatations of its elements.
 
 use super::tissue::Deformed;
-use crate::mesh::{CellShape, VolumeMesh};
+use crate::mesh::VolumeMesh;
 use crate::model::cell_state::{CellState, CellStates};
 use crate::model::fem::inner_stress::InnerStress;
 use crate::model::fem::law_states::CellSums;
@@ -19,10 +19,7 @@ pub(super) fn cell_states(
         sums.add(point, at_rest.volume);
         states[cell] = sums.means(&inner.grown(cell));
     }
-    for (cell, (shape, _)) in mesh.cells.iter().enumerate() {
-        if shape == CellShape::Tet4 {
-            continue;
-        }
+    for cell in deformed.tissue.cells_of_bricks() {
         let brick = deformed.bricks.at_cell(cell);
         let mut sums = CellSums::default();
         let points = brick.at_rest.iter().zip(brick.points);

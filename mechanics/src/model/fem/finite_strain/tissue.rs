@@ -61,11 +61,11 @@ impl<'a> Tissue<'a> {
         numbering: &'a Numbering,
         kept: &Kept,
     ) -> Result<Self, InvertedCell> {
-        let FiniteStrain { mesh, laws, .. } = *problem;
+        let FiniteStrain { nodes, laws, .. } = *problem;
         let simplices = Simplices::new(problem, numbering, kept)?;
         let bricks = Bricks::new(problem, numbering, kept)?;
         let sheet = Sheet::new(problem, numbering);
-        let rest = numbering.by_row(&mesh.nodes);
+        let rest = numbering.by_row(nodes);
         let carries_all =
             bricks.is_empty() && simplices.cells.iter().all(|cell| cell.carried > 0.0);
         let stiffest = laws.iter().map(Law::at_rest).map(|(lambda, mu)| lambda / mu);
@@ -73,7 +73,7 @@ impl<'a> Tissue<'a> {
             true => 1.0 - LOSS,
             false => 1.0 - LOSS * (SOFT / stiffest.fold(0.0, f64::max)).sqrt().min(1.0),
         };
-        let sharing = simplices.cells_that_share().chain(bricks.cells());
+        let sharing = simplices.cells_that_share().chain(bricks.cells_that_share());
         let shares: Vec<f64> = sharing.map(|cell| kept.share(cell)).collect();
         let bulk_in_cells = shares.iter().copied().fold(0.0, f64::max);
         let cells_with_bulk = shares.iter().filter(|&&share| share > 0.0).count();
@@ -156,6 +156,11 @@ impl<'a> Tissue<'a> {
         self.simplices.cells.iter().map(|simplex| simplex.cell as usize)
     }
 
+    /// The cells of the mesh that are taken point by point.
+    pub fn cells_of_bricks(&self) -> impl Iterator<Item = usize> {
+        self.bricks.cells()
+    }
+
     /// In mN mm, of tissue without pressures.
     pub fn energy(&self, x: &[Vector]) -> f64 {
         self.simplices.energy(x) + self.bricks.energy(x) + self.sheet.at(x).energy()
@@ -210,7 +215,11 @@ pub(super) struct Rounding {
 
 impl Elements {
     /// Four-node tetrahedra and full integration of the others.
-    pub const PLAIN: Elements = Elements { stabilised: false, mean_dilatation: false };
+    pub const PLAIN: Elements =
+        Elements { stabilised: false, mean_dilatation: false, quadratic: false };
     /// Elements that do not lock.
-    pub const STABLE: Elements = Elements { stabilised: true, mean_dilatation: true };
+    pub const STABLE: Elements =
+        Elements { stabilised: true, mean_dilatation: true, ..Self::PLAIN };
+    /// Ten-node tetrahedra.
+    pub const QUADRATIC: Elements = Elements { quadratic: true, ..Self::PLAIN };
 }
