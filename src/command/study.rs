@@ -63,8 +63,8 @@ pub struct Arguments {
     /// How often every edge is halved; may be given several times; default: 0 and 1
     #[arg(long, help_heading = WHAT, value_name = "N")]
     level: Vec<u32>,
-    /// Every combination of values of material constants: [REGION.]young_modulus_kpa=V,V or [REGION.]poisson_ratio=V,V;
-    /// may be given several times
+    /// Every combination of values of material constants: [REGION.]young_modulus_kpa=V,V, [REGION.]poisson_ratio=V,V or
+    /// [REGION.]volume_change=V,V; may be given several times
     #[arg(long, help_heading = WHAT, value_name = "CONSTANT=V,V", value_parser = sweep::sweep)]
     sweep: Vec<Sweep>,
     /// Solves of each row, whose median time is told

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use crate::schema::study::document::SweepDocument;
 
 const EVERY_REGION: &str = "*";
-const FORM: &str = "a sweep is [REGION.]young_modulus_kpa=V,V,… or [REGION.]poisson_ratio=V,V,…";
+const FORM: &str = "a sweep is [REGION.]young_modulus_kpa=V,V,…, [REGION.]poisson_ratio=V,V,… or [REGION.]volume_change=V,V,…";
 
 /// One argument: the constant of a region, and the values it takes.
 #[derive(Clone, Debug, PartialEq)]
@@ -19,6 +19,7 @@ pub struct Sweep {
 enum Constant {
     YoungModulus,
     PoissonRatio,
+    VolumeChange,
 }
 
 /// Reads `young_modulus_kpa=10,20` or `fat.poisson_ratio=0.43,0.47`.
@@ -28,6 +29,7 @@ pub fn sweep(text: &str) -> Result<Sweep, String> {
     let constant = match constant {
         "young_modulus_kpa" => Constant::YoungModulus,
         "poisson_ratio" => Constant::PoissonRatio,
+        "volume_change" => Constant::VolumeChange,
         other => return Err(format!("`{other}` is no constant: {FORM}")),
     };
     let number = |value: &str| {
@@ -45,6 +47,7 @@ pub fn document(sweeps: &[Sweep]) -> BTreeMap<String, SweepDocument> {
         match constant {
             Constant::YoungModulus => document.young_modulus_kpa.extend(values),
             Constant::PoissonRatio => document.poisson_ratio.extend(values),
+            Constant::VolumeChange => document.volume_change.extend(values),
         }
     }
     regions

@@ -7,7 +7,7 @@
 use std::collections::BTreeMap;
 
 use super::report::{Outcome, Report, Row};
-use super::sweep::SweptAxis;
+use super::sweep::{Constant, SweptAxis};
 use super::variant::{Study, StudyScene, Truth};
 
 /// D of one way of modelling on one plan.
@@ -143,6 +143,14 @@ impl ConstantMap {
         solved < 2 || self.as_good(axis).len() < solved
     }
 
+    /// Whether Poisson's ratio is looked for and no change of volume with it, which moves the skin as much.
+    pub fn leaves_growth_out(&self) -> bool {
+        let varies = |constant: Constant| {
+            self.axes.iter().any(|axis| axis.constant == constant && axis.values.len() > 1)
+        };
+        varies(Constant::PoissonRatio) && !varies(Constant::VolumeChange)
+    }
+
     /// Whether the best value of an axis is the smallest or the largest of three or more, so that better ones may lie
     /// beyond.
     pub fn is_at_end(&self, axis: usize) -> bool {
@@ -157,7 +165,6 @@ impl ConstantMap {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::study::sweep::Constant;
 
     fn map(distances: [f64; 6], noise: Option<f64>) -> ConstantMap {
         let axis = |constant, values: &[f64]| SweptAxis {
@@ -187,6 +194,10 @@ mod tests {
         assert_eq!((found.is_at_end(0), found.is_at_end(1)), (false, false));
         let sharp = ConstantMap { noise: Some(0.04), ..found.clone() };
         assert!(sharp.is_determined(0));
+        assert!(found.leaves_growth_out());
+        let mut with_growth = found.clone();
+        with_growth.axes[0].constant = Constant::VolumeChange;
+        assert!(!with_growth.leaves_growth_out());
         let unknown = ConstantMap { noise: None, ..found };
         assert_eq!((unknown.as_good(0), unknown.is_determined(0)), (vec![10.0], true));
     }

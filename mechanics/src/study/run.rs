@@ -265,7 +265,7 @@ impl<'a> SceneWork<'a> {
         }
         let skin = skin.as_ref().map_err(Refusal::clone)?;
         let case = levels.case(level, materials)?;
-        self.bench.answer(&case, plan, variant, skin.nodes())
+        self.bench.answer(&case, &materials.plan(plan), variant, skin.nodes())
     }
 
     fn row(

@@ -1,4 +1,4 @@
-//! Sweeps over the constants of regions (Zachow et al. 2006 vary nu and E of muscle and of the
+//! Sweeps over the constants of regions and over changes of their volume (Zachow et al. 2006 vary nu and E of muscle and of the
 //! tissue around it; docs/methods.md#studies): every combination as materials of a study, and the best of them.
 
 use std::collections::BTreeMap;
@@ -6,17 +6,32 @@ use std::collections::BTreeMap;
 use super::report::{Outcome, Report, Row};
 use super::variant::Materials;
 use crate::material::{LinearElastic, MaterialError};
-use crate::prediction::{Case, TissueWindow};
+use crate::prediction::VOLUME_CHANGE;
+use crate::prediction::{Case, Growth, TissueWindow};
 
 /// More combinations are refused.
 pub const MOST_COMBINATIONS: usize = 1000;
 
-/// The values that the constants of a region take; an empty list leaves the constant as it is.
+/// The values that the constants of a region take, and the changes of its volume; an empty list leaves what it is of as it is.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Values {
     /// In kPa.
     pub young_modulus: Vec<f64>,
     pub poisson_ratio: Vec<f64>,
+    /// As shares of the volume, over those of a plan.
+    pub volume_change: Vec<f64>,
+}
+
+impl Values {
+    fn combinations(&self) -> usize {
+        let lists = [&self.young_modulus, &self.poisson_ratio, &self.volume_change];
+        lists.map(|values| values.len().max(1)).iter().product()
+    }
+
+    /// Whether a constant of the material is among them.
+    fn vary_material(&self) -> bool {
+        !self.young_modulus.is_empty() || !self.poisson_ratio.is_empty()
+    }
 }
 
 /// Why a sweep is refused.
@@ -36,6 +51,12 @@ pub enum SweepError {
         "the material of region {region:?} states a law of finite strain, and a sweep varies linear ones"
     )]
     Law { region: String },
+    #[error("{region:?} is a tissue of the image, and only regions of the mesh grow")]
+    TissueGrows { region: String },
+    #[error(
+        "region {region:?}: a change of volume of {volume_change} is outside {} to {}", VOLUME_CHANGE.start(), VOLUME_CHANGE.end()
+    )]
+    VolumeChange { region: String, volume_change: f64 },
     #[error("region {region:?}: {source}")]
     Material { region: String, source: MaterialError },
 }
@@ -47,10 +68,8 @@ pub fn combinations(
     tissues: &[TissueWindow],
     sweep: &BTreeMap<String, Values>,
 ) -> Result<Vec<Materials>, SweepError> {
-    let count =
-        |values: &Values| values.young_modulus.len().max(1) * values.poisson_ratio.len().max(1);
-    let combinations =
-        sweep.values().fold(1, |product: usize, values| product.saturating_mul(count(values)));
+    let product = |product: usize, values: &Values| product.saturating_mul(values.combinations());
+    let combinations = sweep.values().fold(1, product);
     if combinations > MOST_COMBINATIONS {
         return Err(SweepError::TooMany { combinations });
     }
@@ -63,21 +82,12 @@ pub fn combinations(
         let start = tissue.map(|tissue| &tissue.material).or_else(|| base.get(region));
         let start = start.or_else(|| base.get("*"));
         let start = start.ok_or_else(|| SweepError::UnknownRegion { region: region.clone() })?;
-        if start.has_fibre() || start.has_pulling_fibres() {
-            return Err(SweepError::Fibres { region: region.clone() });
-        }
-        if start.stated_law().is_some() {
-            return Err(SweepError::Law { region: region.clone() });
-        }
+        refuse(region, (start, tissue.is_some()), values)?;
         let choices = choices(region, start, values)?;
-        all = all
-            .iter()
-            .flat_map(|before| {
-                choices.iter().map(|(name, material)| {
-                    with(before, (region, tissue.is_some()), name, material)
-                })
-            })
-            .collect();
+        let with = |before: &Materials| -> Vec<Materials> {
+            choices.iter().map(|own| own.over(before, (region, tissue.is_some()))).collect()
+        };
+        all = all.iter().flat_map(with).collect();
     }
     Ok(all)
 }
@@ -95,51 +105,89 @@ pub fn has_region(case: &Case, region: &str) -> bool {
         }
 }
 
-/// What a region may become, each with its name; one nameless choice where nothing varies.
+/// What of a region cannot be swept.
+fn refuse(
+    region: &str,
+    (start, is_tissue): (&LinearElastic, bool),
+    values: &Values,
+) -> Result<(), SweepError> {
+    let region = || region.to_owned();
+    if values.vary_material() && (start.has_fibre() || start.has_pulling_fibres()) {
+        return Err(SweepError::Fibres { region: region() });
+    }
+    if values.vary_material() && start.stated_law().is_some() {
+        return Err(SweepError::Law { region: region() });
+    }
+    if is_tissue && !values.volume_change.is_empty() {
+        return Err(SweepError::TissueGrows { region: region() });
+    }
+    match values.volume_change.iter().find(|change| !VOLUME_CHANGE.contains(change)) {
+        Some(&volume_change) => Err(SweepError::VolumeChange { region: region(), volume_change }),
+        None => Ok(()),
+    }
+}
+
+/// What a region may become; nameless where nothing varies.
+struct Choice {
+    name: String,
+    /// None where its constants stay.
+    material: Option<LinearElastic>,
+    volume_change: Option<f64>,
+}
+
 fn choices(
     region: &str,
     start: &LinearElastic,
     values: &Values,
-) -> Result<Vec<(String, LinearElastic)>, SweepError> {
+) -> Result<Vec<Choice>, SweepError> {
     let varied = |values: &[f64]| match values {
         [] => vec![None],
         values => values.iter().copied().map(Some).collect::<Vec<_>>(),
     };
+    let called = if region == "*" { "all" } else { region };
     let mut choices = Vec::new();
     for e in varied(&values.young_modulus) {
         for nu in varied(&values.poisson_ratio) {
-            let words: Vec<String> =
-                [e.map(|e| format!(" E {e} kPa")), nu.map(|nu| format!(" nu {nu}"))]
-                    .into_iter()
-                    .flatten()
-                    .collect();
             let material = LinearElastic::new(
                 e.unwrap_or(start.young_modulus()),
                 nu.unwrap_or(start.poisson_ratio()),
                 start.density(),
             )
             .map_err(|source| SweepError::Material { region: region.to_owned(), source })?;
-            let called = if region == "*" { "all" } else { region };
-            let name =
-                if words.is_empty() { String::new() } else { called.to_owned() + &words.concat() };
-            choices.push((name, material));
+            let material = values.vary_material().then_some(material);
+            for volume_change in varied(&values.volume_change) {
+                let words = [
+                    e.map(|e| format!(" E {e} kPa")),
+                    nu.map(|nu| format!(" nu {nu}")),
+                    volume_change.map(|change| format!(" volume {:+} %", 100.0 * change)),
+                ];
+                let words: Vec<String> = words.into_iter().flatten().collect();
+                let name = match words.is_empty() {
+                    true => String::new(),
+                    false => called.to_owned() + &words.concat(),
+                };
+                choices.push(Choice { name, material, volume_change });
+            }
         }
     }
     Ok(choices)
 }
 
-fn with(
-    before: &Materials,
-    (region, is_tissue): (&str, bool),
-    name: &str,
-    material: &LinearElastic,
-) -> Materials {
-    let mut with = before.clone();
-    let of = if is_tissue { &mut with.tissues } else { &mut with.by_region };
-    of.insert(region.to_owned(), *material);
-    let names = [before.name.as_str(), name].into_iter().filter(|name| !name.is_empty());
-    with.name = names.collect::<Vec<_>>().join(", ");
-    with
+impl Choice {
+    /// Materials with this choice over what they are before.
+    fn over(&self, before: &Materials, (region, is_tissue): (&str, bool)) -> Materials {
+        let mut with = before.clone();
+        if let Some(material) = self.material {
+            let of = if is_tissue { &mut with.tissues } else { &mut with.by_region };
+            of.insert(region.to_owned(), material);
+        }
+        if let Some(volume_change) = self.volume_change {
+            with.growth.push(Growth { region: region.to_owned(), volume_change });
+        }
+        let names = [&before.name, &self.name].into_iter().filter(|name| !name.is_empty());
+        with.name = names.map(String::as_str).collect::<Vec<_>>().join(", ");
+        with
+    }
 }
 
 /// A constant that takes several values.
@@ -155,16 +203,19 @@ pub enum Constant {
     /// In kPa.
     YoungModulus,
     PoissonRatio,
+    /// As a share of the volume.
+    VolumeChange,
 }
 
 /// The constants of a sweep in the order of its combinations: the last one varies fastest.
 pub fn axes(sweep: &BTreeMap<String, Values>) -> Vec<SweptAxis> {
     let of_region = |(region, values): (&String, &Values)| {
-        let both = [
+        let all = [
             (Constant::YoungModulus, &values.young_modulus),
             (Constant::PoissonRatio, &values.poisson_ratio),
+            (Constant::VolumeChange, &values.volume_change),
         ];
-        both.map(|(constant, values)| SweptAxis {
+        all.map(|(constant, values)| SweptAxis {
             region: region.clone(),
             constant,
             values: values.clone(),

@@ -4,7 +4,9 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use crate::material::LinearElastic;
 use crate::mesh::{TriangleSurface, Vector, VolumeMesh};
-use crate::prediction::{Accepted, Case, ElementChoice, FibreDirection, Method, Plan, Settings};
+use crate::prediction::{
+    Accepted, Case, ElementChoice, FibreDirection, Growth, Method, Plan, Settings,
+};
 use crate::validation::{Alignment, LandmarkPair};
 
 /// Every scene with every variant, or with its own, and with every material, plan and level.
@@ -54,6 +56,19 @@ pub struct Materials {
     pub fibres: BTreeMap<String, FibreDirection>,
     /// Of tissues that an image shows, over those of the case, by their names.
     pub tissues: BTreeMap<String, LinearElastic>,
+    /// Changes of volume by region, over those of a plan.
+    pub growth: Vec<Growth>,
+}
+
+impl Materials {
+    /// A plan with the changes of volume of these.
+    pub(super) fn plan(&self, plan: &Plan) -> Plan {
+        let is_own = |own: &Growth| self.growth.iter().any(|other| other.region == own.region);
+        let mut plan = plan.clone();
+        plan.growth.retain(|own| !is_own(own));
+        plan.growth.extend(self.growth.iter().cloned());
+        plan
+    }
 }
 
 /// A way of modelling under a name for the row.

@@ -378,10 +378,15 @@ impl Documents<'_> {
                         (at.key(region), ErrorCode::UnknownRegion)
                     }
                     SweepError::TwoThings { region } => (at.key(region), ErrorCode::DuplicateName),
-                    SweepError::Fibres { region } | SweepError::Law { region } => {
+                    SweepError::Fibres { region }
+                    | SweepError::Law { region }
+                    | SweepError::TissueGrows { region } => {
                         (at.key(region), ErrorCode::MethodNotAvailable)
                     }
-                    SweepError::Material { region, .. } => (at.key(region), ErrorCode::OutOfRange),
+                    SweepError::Material { region, .. }
+                    | SweepError::VolumeChange { region, .. } => {
+                        (at.key(region), ErrorCode::OutOfRange)
+                    }
                 };
                 faults.add(&place, code, error.to_string());
             }

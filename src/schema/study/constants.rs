@@ -48,6 +48,7 @@ pub struct SweptAxisDocument {
 pub enum ConstantName {
     YoungModulusKpa,
     PoissonRatio,
+    VolumeChange,
 }
 
 /// The mean distance with one value for each axis.
@@ -86,6 +87,7 @@ impl SweptAxisDocument {
             constant: match axis.constant {
                 Constant::YoungModulus => ConstantName::YoungModulusKpa,
                 Constant::PoissonRatio => ConstantName::PoissonRatio,
+                Constant::VolumeChange => ConstantName::VolumeChange,
             },
             values: axis.values.clone(),
             as_good: map.as_good(at),
@@ -99,6 +101,7 @@ impl SweptAxisDocument {
         match self.constant {
             ConstantName::YoungModulusKpa => format!("E of {of}, kPa"),
             ConstantName::PoissonRatio => format!("Poisson's ratio of {of}"),
+            ConstantName::VolumeChange => format!("change of volume of {of}"),
         }
     }
 }
@@ -106,6 +109,13 @@ impl SweptAxisDocument {
 /// What a reader of a map has to know.
 fn warnings(map: &ConstantMap) -> Vec<Warning> {
     let mut found = Vec::new();
+    if map.leaves_growth_out() {
+        let detail = format!(
+            "{}: Poisson's ratio is looked for as if no tissue gained volume or lost it, and 5 % of volume may shift it by .3: sweep              `volume_change` with it",
+            map.label
+        );
+        found.push(Warning::new("growth-left-out", detail));
+    }
     for (at, axis) in map.axes.iter().enumerate() {
         let name = SweptAxisDocument::new(axis, map, at).words();
         let least = map.least().unwrap_or_default();

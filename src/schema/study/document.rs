@@ -130,7 +130,7 @@ pub struct VariantDocument {
     pub tolerance: ToleranceDocument,
 }
 
-/// Values that the constants of a region take; without a list a constant stays what it is.
+/// Values that the constants of a region take, and changes of its volume; without a list a constant stays what it is.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SweepDocument {
@@ -138,12 +138,18 @@ pub struct SweepDocument {
     pub young_modulus_kpa: Vec<f64>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub poisson_ratio: Vec<f64>,
+    /// As `volume_change` of a plan, which it stands over.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub volume_change: Vec<f64>,
 }
 
 impl SweepDocument {
     pub fn to_values(&self) -> Values {
-        let young_modulus = self.young_modulus_kpa.clone();
-        Values { young_modulus, poisson_ratio: self.poisson_ratio.clone() }
+        Values {
+            young_modulus: self.young_modulus_kpa.clone(),
+            poisson_ratio: self.poisson_ratio.clone(),
+            volume_change: self.volume_change.clone(),
+        }
     }
 }
 

@@ -143,11 +143,21 @@ fn study_of(
     plan: &Value,
     truth: Value,
 ) -> Result<(ReportDocument, Vec<String>, TempDir), String> {
+    let sweep = json!({"outer": {"young_modulus_kpa": MODULI, "poisson_ratio": RATIOS}});
+    swept(case, sources, (plan, sweep), truth)
+}
+
+fn swept(
+    case: Value,
+    sources: &Meshes,
+    (plan, sweep): (&Value, Value),
+    truth: Value,
+) -> Result<(ReportDocument, Vec<String>, TempDir), String> {
     let folder = tempfile::tempdir().unwrap();
     let spec = json!({
         "kind": "study", "scenes": [{"case": "twin", "name": "twin", "plans": [plan]}],
         "methods": [{"method": "fem_linear", "label": "fem"}], "repeats": 1, "truth": truth,
-        "sweep": {"outer": {"young_modulus_kpa": MODULI, "poisson_ratio": RATIOS}}
+        "sweep": sweep
     });
     let cases = [("twin".to_owned(), serde_json::from_value(case).unwrap())];
     let input = StudyInput {
@@ -219,6 +229,7 @@ fn transform_plan_and_constants_that_were_planted_come_back() {
     assert!(map.axes.iter().all(|axis| axis.is_determined), "{map:?}");
     assert!(report.scenes[0].unmoved_mm.unwrap() > 0.2, "{:?}", report.scenes);
     assert!(!codes.iter().any(|code| code.starts_with("constant-")), "{codes:?}");
+    assert!(codes.iter().any(|code| code == "growth-left-out"), "{codes:?}");
     let covered =
         report.rows.iter().map(|row| row.numbers.as_ref().unwrap().covered_share.unwrap());
     // The hole has 79 mm2 of the skin.
@@ -249,6 +260,40 @@ fn constants_of_a_tissue_that_a_scan_shows_come_back() {
     let others = map.cells.iter().filter(|cell| cell.values != map.best.values);
     let second = others.map(|cell| cell.mean_mm).fold(f64::INFINITY, f64::min);
     assert!(second > 2.0 * map.best.mean_mm && second > 0.001, "{map:?}");
+}
+
+#[test]
+fn tissue_that_was_lost_comes_back_with_the_ratio_and_shifts_it_where_it_is_left_out() {
+    let (_, done, mut sources, _) = twin();
+    let plan = json!({"segments": [{"name": "jaw", "matrix4x4": done.matrix4()}]});
+    let mut lost = plan.clone();
+    lost["growth"] = json!([{"region": "outer", "volume_change": -0.05}]);
+    let skin = predicted(&sources, PLANTED, &lost).surface().unwrap();
+    sources.0.insert("scan".to_owned(), surface((*skin).clone()));
+    let found = |sweep: Value| {
+        let by_nodes = json!({"mesh": "scan", "metric": "node_wise"});
+        let (report, codes, _) =
+            swept(case(PLANTED), &sources, (&plan, json!({"outer": sweep})), by_nodes).unwrap();
+        let best = report.constant_maps[0].best.clone();
+        (best, codes.iter().any(|code| code == "growth-left-out"))
+    };
+    let (both, is_warned) =
+        found(json!({"poisson_ratio": RATIOS, "volume_change": [-0.1, -0.05, 0.0]}));
+    assert_eq!((both.values, is_warned), (vec![PLANTED.1, -0.05], false));
+    assert!(both.mean_mm < 1e-6, "{}", both.mean_mm);
+    let (alone, is_warned) = found(json!({"poisson_ratio": RATIOS}));
+    assert!(is_warned && alone.mean_mm > 0.05, "{}", alone.mean_mm);
+    assert!((alone.values[0] - PLANTED.1).abs() > 0.05, "{:?}", alone.values);
+}
+
+#[test]
+fn what_a_sweep_of_growth_cannot_mean_is_told_with_its_place() {
+    let (_, done, sources, _) = twin();
+    let plan = json!({"segments": [{"name": "jaw", "matrix4x4": done.matrix4()}]});
+    let sweep = json!({"outer": {"volume_change": [-0.05, -0.7]}});
+    let refused = swept(case(PLANTED), &sources, (&plan, sweep), json!({"mesh": "scan"}));
+    let why = refused.unwrap_err();
+    assert!(why.contains("-0.7 is outside -0.5 to 1") && why.contains("sweep/outer"), "{why}");
 }
 
 #[test]
