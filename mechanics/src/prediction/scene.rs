@@ -387,9 +387,11 @@ impl Scene {
         let cells = self.mesh.cells.iter().zip(&self.material_of_cell);
         let locks = |shape: CellShape, material: u16| {
             let nu = self.materials[material as usize].poisson_ratio();
-            let is_plain = shape != CellShape::Tet4 || self.tetrahedron() == Tetrahedron::Plain;
+            let tetrahedron = (shape == CellShape::Tet4).then(|| self.tetrahedron());
+            let is_plain = tetrahedron.is_none_or(|own| own == Tetrahedron::Plain);
             let is_pointwise = is_plain && dilatation(shape) == Dilatation::Pointwise;
             nu > LOCKING
+                && tetrahedron != Some(Tetrahedron::Quadratic)
                 && (is_pointwise || !self.shares_volume(&self.materials[material as usize]))
         };
         let has_elements = self.settings.method.properties().unknowns == Unknowns::Elements;

@@ -1,6 +1,8 @@
 //! What holds nodes, what is refused, and what must not depend on the observer: docs/verification.md#v27,
 //! docs/verification.md#v35, docs/verification.md#v45, docs/verification.md#v46.
 
+use mechanics::material::LinearElastic;
+use mechanics::material::hyperelastic::{Law, SaintVenantKirchhoff};
 use mechanics::mesh::sample::block;
 use mechanics::mesh::{CellShape, Vector};
 use mechanics::plan::{PlannedSegment, RigidMovement};
@@ -249,6 +251,19 @@ fn plain_tetrahedra_warn_of_locking_above_nu_0_45_and_no_other_element_does() {
         assert!(!warned(CellShape::Hex8, 0.499, element));
     }
     assert!(!warned(CellShape::Tet4, 0.499, ElementChoice::Quadratic));
+}
+
+#[test]
+fn a_law_that_is_taken_at_each_point_locks_in_stabilised_tetrahedra_and_not_in_quadratic_ones() {
+    let law = Law::SaintVenantKirchhoff(SaintVenantKirchhoff { lambda: 60.0, mu: 5.0 });
+    let mut case = jaw_and_skull(CellShape::Tet4);
+    case.materials.insert("*".to_owned(), LinearElastic::of_law(law, 1.0).unwrap());
+    let warned = |element: ElementChoice| {
+        let settings = Settings { method: Method::FemNonlinear, element, ..Settings::default() };
+        let scene = Scene::new(&case, &Plan::default(), &settings).unwrap();
+        scene.warnings.iter().any(|warning| warning.code == "locking")
+    };
+    assert!(warned(ElementChoice::Stabilised) && !warned(ElementChoice::Quadratic));
 }
 
 #[test]

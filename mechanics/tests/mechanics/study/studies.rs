@@ -437,8 +437,11 @@ fn a_sweep_finds_the_constants_that_were_planted() {
     let answer = solve(&planted, &plan, &settings);
     let truth = skin.nodes().iter().map(|&node| answer.displacement[node as usize]).collect();
 
-    let muscle =
-        Values { young_modulus: vec![150.0, 300.0, 450.0], poisson_ratio: vec![0.4, 0.43, 0.46] };
+    let muscle = Values {
+        young_modulus: vec![150.0, 300.0, 450.0],
+        poisson_ratio: vec![0.4, 0.43, 0.46],
+        ..Values::default()
+    };
     let soft = Values { poisson_ratio: vec![0.45, 0.47], ..Values::default() };
     let sweep = BTreeMap::from([("muscle".to_owned(), muscle), ("*".to_owned(), soft)]);
     let materials = combinations(&case.materials, &[], &sweep).unwrap();
