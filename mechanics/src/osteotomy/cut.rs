@@ -97,9 +97,21 @@ pub struct Cut {
     plane: Plane,
     reach: Reach,
     kerf: f64,
-    /// The chain of polygons that it is a piece of, by its number.
-    chain: Option<usize>,
+    link: Option<Link>,
 }
+
+/// The place of a cut in a line of such.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Link {
+    /// The number of the line.
+    line: usize,
+    piece: usize,
+    pieces: usize,
+}
+
+/// Lines are walked this far, in mm, from where they are stated: along no axis and no diagonal, so that no centre of a voxel lies on
+/// a corner of a line, where each of the pieces that meet there would leave it to the other.
+const OFF_GRID: [f64; 3] = [1.0e-6, 0.618e-6, 0.414e-6];
 
 /// An extent in the axes of its plane.
 #[derive(Clone, Debug, PartialEq)]
@@ -112,7 +124,7 @@ enum Reach {
 impl Cut {
     /// All of a plane, by a saw without width.
     pub fn unbounded(name: &str, plane: Plane) -> Cut {
-        Cut { name: name.to_owned(), plane, reach: Reach::Everywhere, kerf: 0.0, chain: None }
+        Cut { name: name.to_owned(), plane, reach: Reach::Everywhere, kerf: 0.0, link: None }
     }
 
     /// As much of a plane as is given, by a saw of that width in mm.
@@ -129,25 +141,26 @@ impl Cut {
             None => Reach::Everywhere,
             Some(extent) => extent.on(&plane)?,
         };
-        Ok(Cut { name: name.to_owned(), plane, reach, kerf, chain: None })
+        Ok(Cut { name: name.to_owned(), plane, reach, kerf, link: None })
     }
 
     /// What a line of points saws that goes into the bone by `depth`, a way in mm: a parallelogram for each piece of the line, which
-    /// meet without a gap. Above each is where (its way along the line) x `depth` points. `chain` is the number of the line.
+    /// meet without a gap. Above each is where (its way along the line) x `depth` points. `number` is that of the line.
     pub fn chained(
         name: &str,
         line: &[Vector],
         depth: Vector,
         kerf: f64,
-        chain: usize,
+        number: usize,
     ) -> Result<Vec<Cut>, CutError> {
-        let piece = |(number, ends): (usize, &[Vector])| {
+        let pieces = line.len().saturating_sub(1);
+        let piece = |(piece, ends): (usize, &[Vector])| {
             let (from, to) = (ends[0], ends[1]);
             let plane = Plane::new(from, (to - from).cross(&depth))?;
             let corners = vec![from, to, to + depth, from + depth];
-            let name = format!("{name}, piece {}", number + 1);
+            let name = format!("{name}{}", numbered(piece));
             let cut = Cut::new(&name, plane, Some(Extent::Polygon { corners }), kerf)?;
-            Ok(Cut { chain: Some(chain), ..cut })
+            Ok(Cut { link: Some(Link { line: number, piece, pieces }), ..cut })
         };
         line.windows(2).enumerate().map(piece).collect()
     }
@@ -155,7 +168,46 @@ impl Cut {
     /// The number of the line that it is a piece of. Such a piece has no sides far from itself: bone of a step lies on both
     /// sides of the plane of each of its pieces.
     pub fn chain(&self) -> Option<usize> {
-        self.chain
+        self.link.map(|link| link.line)
+    }
+
+    /// The name of the cut, or of the line that it is a piece of.
+    pub fn line_name(&self) -> &str {
+        let own = self.link.and_then(|link| self.name.strip_suffix(&numbered(link.piece)));
+        own.unwrap_or(&self.name)
+    }
+
+    /// Whether a point is above the plane; of a piece of a line never undecided, as no centre of a voxel is taken to lie on it.
+    pub fn is_above(&self, point: &Vector) -> bool {
+        self.plane.height(&self.off_grid(point)) > 0.0
+    }
+
+    fn off_grid(&self, point: &Vector) -> Vector {
+        match self.link {
+            Some(_) => point + Vector::from(OFF_GRID),
+            None => *point,
+        }
+    }
+
+    /// Whether bone that is crossed beside the extent, on the way between two points, holds together what this cut should part. Of a
+    /// piece of a line only where the piece goes on: deeper or nearer than it is sawn, and beyond the ends of the line; what lies on its
+    /// plane beside it is parted by the next piece.
+    pub fn is_beside(&self, one: &Vector, other: &Vector) -> bool {
+        if self.is_above(one) == self.is_above(other) || self.parts(one, other) {
+            return false;
+        }
+        let (Some(link), Reach::Polygon(corners)) = (self.link, &self.reach) else { return true };
+        let [from, to, .., back] = corners.as_slice() else { return true };
+        let at = flat(&self.plane, &self.crossing(one, other));
+        let along = side_of(*from, *back, at) / side_of(*from, *back, *to);
+        (link.piece == 0 || along >= 0.0) && (link.piece + 1 == link.pieces || along <= 1.0)
+    }
+
+    /// Where the straight way between two points on both sides of the plane meets it.
+    fn crossing(&self, one: &Vector, other: &Vector) -> Vector {
+        let [one, other] = [one, other].map(|point| self.off_grid(point));
+        let [below, above] = [one, other].map(|point| self.plane.height(&point));
+        one + (other - one) * (below / (below - above))
     }
 
     /// As much of a closed path on the plane as the saw reaches; `None` where its extent is no convex polygon. Where the path falls
@@ -217,16 +269,14 @@ impl Cut {
 
     /// Whether a point is turned to sawdust: nearer to the plane than half the width of the saw, within its extent.
     pub fn saws(&self, point: &Vector) -> bool {
-        self.kerf > 0.0 && self.plane.height(point).abs() <= self.kerf / 2.0 && self.reaches(point)
+        self.kerf > 0.0
+            && self.plane.height(point).abs() <= self.kerf / 2.0
+            && self.reaches(&self.off_grid(point))
     }
 
     /// Whether the saw parts two points: the straight way between them meets the plane within the extent.
     pub fn parts(&self, one: &Vector, other: &Vector) -> bool {
-        let [below, above] = [one, other].map(|point| self.plane.height(point));
-        if (below > 0.0) == (above > 0.0) {
-            return false;
-        }
-        self.reaches(&(one + (other - one) * (below / (below - above))))
+        self.is_above(one) != self.is_above(other) && self.reaches(&self.crossing(one, other))
     }
 
     /// Whether a point is on that side, beyond the width of the saw.
@@ -259,6 +309,11 @@ impl Extent {
             }
         }
     }
+}
+
+/// What tells the name of a piece from that of its line.
+fn numbered(piece: usize) -> String {
+    format!(", piece {}", piece + 1)
 }
 
 /// A point in the axes of a plane.

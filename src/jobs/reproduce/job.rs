@@ -2,7 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use super::doubts::{base_warnings, lies_on_the_other_scan, misfit, undoes_the_plan, unmasked};
+use super::doubts::{
+    base_warnings, lies_on_the_other_scan, misfit, same_scan, undoes_the_plan, unmasked,
+};
 use super::input::ReproduceInput;
 use crate::jobs::clock::Observed;
 use crate::jobs::compare::{by_landmarks, place_of, surface_of};
@@ -155,7 +157,7 @@ impl Scans<'_> {
         let base = align_base(&bone, &after, self.clock).map_err(|error| self.failed(&error))?;
         let mut warnings = base_warnings(&bone, &after, &base);
         warnings.extend(unmasked(spec, &base));
-        let mut segments = Vec::new();
+        let (mut segments, mut all) = (Vec::new(), Vec::new());
         for (index, segment) in spec.segments.iter().enumerate() {
             let at = at.key("segments").index(index);
             let own = match &segment.before {
@@ -181,7 +183,9 @@ impl Scans<'_> {
             };
             warnings.extend(swapped);
             segments.push(self.document(segment, &found));
+            all.push(found);
         }
+        warnings.extend(same_scan(&before, &after, &all));
         let plan = PlanDocument {
             segments: segments.iter().map(plan_segment).collect(),
             frame: frame.map(FrameName::from),

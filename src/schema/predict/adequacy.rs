@@ -15,7 +15,8 @@ pub struct AdequacyDocument {
     /// The same over parts of the skin.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub accepted_regions_mm: BTreeMap<String, f64>,
-    /// Whether the estimate of the model that was taken is within it.
+    /// Whether the estimate of the model that was taken is within it, and its skin does not pass through itself by more, which no
+    /// estimate has.
     pub met: bool,
     /// The model that was taken: `linear`, `second_order` or `finite_strain`, or one of these with what its mesh leaves out
     /// added: `corrected`, `second_order_corrected`, `finite_strain_corrected`.
@@ -87,9 +88,17 @@ impl AdequacyDocument {
                 self.taken, self.accepted_mm
             );
         };
-        let verdict = match self.met {
-            true => "the cheapest model within",
-            false => {
+        let of_regions = taken.map(|rung| &rung.regions_mm).into_iter().flatten();
+        let mut over = of_regions.filter(|(name, error)| {
+            self.accepted_regions_mm.get(*name).is_some_and(|accepted| *error > accepted)
+        });
+        let is_accepted = error <= self.accepted_mm && over.next().is_none();
+        let verdict = match (self.met, is_accepted) {
+            (true, _) => "the cheapest model within",
+            (false, true) => {
+                "the cheapest model whose expected error is accepted, and its skin passes through itself by more than the accepted"
+            }
+            (false, false) => {
                 "the cheapest whose error is within a quarter of the least that was found, short of"
             }
         };

@@ -255,3 +255,21 @@ fn the_back_of_thin_bone_under_tissue_is_not_faced() {
         assert!(solve(&case, &plan, &settings).contact.is_none());
     }
 }
+
+#[test]
+fn what_bone_presses_with_is_listed_so_that_all_reactions_are_in_balance() {
+    for settings in both() {
+        for (raised, lowered) in [(GAP + PRESSED, 0.0), (0.0, GAP + PRESSED)] {
+            let found = solve(&slab(CellShape::Hex8, 0.3), &closed(raised, lowered), &settings);
+            let listed = &found.condition_reactions;
+            let sum: Vector = listed.iter().map(|own| own.force).sum();
+            let plate = listed.last().unwrap();
+            assert_eq!(
+                (plate.pointer.as_str(), plate.segment.as_deref()),
+                ("/case/bones/0", Some("plate"))
+            );
+            assert!(plate.force.z < -100.0 && plate.nodes > 0, "{plate:?}");
+            assert!(sum.norm() < 1e-6 * plate.force.norm(), "{listed:?}");
+        }
+    }
+}

@@ -4,7 +4,7 @@ mod adaptive;
 mod adequate;
 mod closed_form;
 mod conditions;
-mod contact;
+pub(crate) mod contact;
 mod contact_at_finite_strain;
 mod contact_hertz;
 mod contact_on_bone;
