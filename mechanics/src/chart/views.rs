@@ -259,7 +259,7 @@ mod tests {
         let points = wedge();
         let values = [0.3, 99.0, 0.0, 0.1];
         let shown =
-            ViewValues { values: &values, range_mm: 10.0, is_signed: false, name: "moved, mm" };
+            ViewValues { values: &values, range_mm: 10.0, is_signed: false, name: "distance, mm" };
         assert_eq!(shown.colour(9.5), shown.colour(99.0));
         assert_ne!(shown.colour(8.9), shown.colour(9.1));
         let rows = [ViewRow { values: Some(shown), ..row(&points, None) }];
@@ -281,7 +281,7 @@ mod tests {
                 "three-quarter",
                 "lateral",
                 "After",
-                "moved,",
+                "distance,",
                 "mm",
                 "0",
                 "2",

@@ -7,6 +7,9 @@ use mechanics::registration::mirror::check_mirror;
 use mechanics::registration::performed::{BoneBefore, Performed, median_distance};
 use mechanics::registration::{RigidTransform, SurfaceAlignment};
 
+/// The code of scans that are in the wrong order.
+pub(super) const BEFORE_OPERATION: &str = "before-operation-suspect";
+
 /// Bone that was not operated on fits to 0.1 to 0.25 mm, 0.5 % of it beyond 1 mm (Zachow et al. 2006, section 3.2).
 const MISFIT: f64 = 0.25;
 
@@ -102,7 +105,7 @@ pub(super) fn lies_on_the_other_scan(
          from that of `after`: are the two scans swapped?",
         segment.name.trim()
     );
-    let warning = Warning::new("before-operation-suspect", detail);
+    let warning = Warning::new(BEFORE_OPERATION, detail);
     Some(warning.with("to_before_mm", to_before).with("to_after_mm", to_after))
 }
 
@@ -147,6 +150,6 @@ pub(super) fn undoes_the_plan(
          scans before and after the operation swapped?",
         segment.name.trim()
     );
-    let warning = Warning::new("before-operation-suspect", detail);
+    let warning = Warning::new(BEFORE_OPERATION, detail);
     Some(warning.with("to_planned_mm", to_plan).with("to_undone_mm", to_undone))
 }

@@ -3,7 +3,8 @@
 use std::collections::BTreeMap;
 
 use super::doubts::{
-    base_warnings, lies_on_the_other_scan, misfit, same_scan, undoes_the_plan, unmasked,
+    BEFORE_OPERATION, base_warnings, lies_on_the_other_scan, misfit, same_scan, undoes_the_plan,
+    unmasked,
 };
 use super::input::ReproduceInput;
 use crate::jobs::clock::Observed;
@@ -185,7 +186,8 @@ impl Scans<'_> {
             segments.push(self.document(segment, &found));
             all.push(found);
         }
-        warnings.extend(same_scan(&before, &after, &all));
+        let is_swapped = warnings.iter().any(|told| told.code == BEFORE_OPERATION);
+        warnings.extend(same_scan(&before, &after, &all).filter(|_| !is_swapped));
         let plan = PlanDocument {
             segments: segments.iter().map(plan_segment).collect(),
             frame: frame.map(FrameName::from),

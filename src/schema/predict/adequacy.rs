@@ -128,3 +128,41 @@ impl From<&Considered> for RungDocument {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn chosen(met: bool, error_mm: f64, of_region_mm: f64) -> String {
+        let rung = RungDocument {
+            name: "linear".to_owned(),
+            error_mm: Some(error_mm),
+            regions_mm: [("lips".to_owned(), of_region_mm)].into(),
+            expected_s: 1.0,
+            spent_s: Some(1.0),
+            passed_over: None,
+        };
+        let document = AdequacyDocument {
+            accepted_mm: 0.1,
+            accepted_regions_mm: [("lips".to_owned(), 0.2)].into(),
+            met,
+            taken: "linear".to_owned(),
+            mesh_mm: None,
+            linearity_mm: None,
+            third_order_mm: None,
+            mesh_at_rest_mm: None,
+            rungs: vec![rung],
+        };
+        document.why()
+    }
+
+    #[test]
+    fn an_accepted_error_that_is_not_met_is_no_error_that_falls_short() {
+        let through_itself = "its skin passes through itself by more than the accepted 0.1 mm";
+        assert!(chosen(true, 0.05, 0.1).contains("is the cheapest model within 0.1 mm"));
+        assert!(chosen(false, 0.05, 0.1).contains(through_itself));
+        for short in [chosen(false, 0.15, 0.1), chosen(false, 0.05, 0.3)] {
+            assert!(short.ends_with("short of 0.1 mm"), "{short}");
+        }
+    }
+}

@@ -54,7 +54,7 @@ pub(super) fn force(found: &Prediction, of: &str) -> Vector {
 }
 
 /// A bar of 20 mm and 100 mm² with a rigid block half a millimetre from its end.
-pub(crate) fn bar(shape: CellShape) -> Case {
+pub(super) fn bar(shape: CellShape) -> Case {
     let bar = block(Vector::new(20.0, 10.0, 10.0), [6, 3, 3], shape);
     let stop = at(block(Vector::new(4.0, 14.0, 14.0), [1, 4, 4], shape), [20.5, -2.0, -2.0]);
     let mesh = together(&[("bar", bar), ("stop", stop)]);
@@ -66,7 +66,7 @@ pub(crate) fn bar(shape: CellShape) -> Case {
     }
 }
 
-pub(crate) fn pushed(by: f64) -> Plan {
+pub(super) fn pushed(by: f64) -> Plan {
     let push = hold("bar/x_min", [Some(by), Some(0.0), Some(0.0)]);
     Plan { prescribed: vec![push], ..Plan::default() }
 }

@@ -36,7 +36,7 @@ fn solid(low: [f64; 3], high: [f64; 3]) -> TriangleSurface {
 
 /// A slab between planes of symmetry that slides at its bottom, a plate of bone half a millimetre above it, and a block of tissue
 /// far away that the segment of the plate holds.
-fn slab(shape: CellShape, nu: f64) -> Case {
+pub(crate) fn slab(shape: CellShape, nu: f64) -> Case {
     let slab = block(Vector::from(LENGTHS), [5, 4, 3], shape);
     let anchor = at(block(Vector::repeat(4.0), [1, 1, 1], shape), [200.0, 0.0, 0.0]);
     let mut mesh = together(&[("slab", slab), ("anchor", anchor)]);
@@ -54,7 +54,7 @@ fn slab(shape: CellShape, nu: f64) -> Case {
 }
 
 /// The slab raised, and the plate lowered, by so much each.
-fn closed(raised: f64, lowered: f64) -> Plan {
+pub(crate) fn closed(raised: f64, lowered: f64) -> Plan {
     let down = Vector::new(0.0, 0.0, -lowered);
     let movement = RigidMovement::about_pivot(Vector::zeros(), Vector::zeros(), down);
     Plan {
