@@ -255,7 +255,7 @@ async fn of_study(service: &Service, mut spec: StudyDocument) -> ApiResult<NewJo
     let mesh_ids = input.mesh_ids();
     let prepare = |input: &StudyInput, sources: &dyn MeshSource, limits: &Limits| {
         let prepared = input.prepare(sources, limits)?;
-        let truths = truth_costs(&prepared.study.scenes);
+        let truths = truth_costs(&prepared.study);
         Ok((prepared.spec_hash, AcceptedStudy { rows_key: prepared.rows_key, truths }))
     };
     let (mut input, (spec_hash, mut study)) = prepared(service, input, prepare).await?;

@@ -222,7 +222,7 @@ async fn rest(service: &Service, found: &FoundResponse, headers: &HeaderMap) -> 
                 ("Facies-Nonlinearity-Estimate-Mm" = f64, description = "what the displacement leaves out: of order 1 the second-order term, of order 2 the third-order term, from samples; absent where tissue grows or muscles pull"),
                 ("Facies-Within-Linear-Range" = bool, description = "whether that is at most 0.5 mm"),
                 ("Facies-Warning" = Option<String>, description = "the codes of the warnings: outside-linear-range, outside-second-order-range, nonlinearity-unknown, nothing-moves, plan-units-suspect, sliding-normal-turned, skin-overlaps, and those of the case as the response was built"),
-                ("Facies-Not-Measured" = Option<String>, description = "skin-overlaps, without `check_skin`"),
+                ("Facies-Not-Measured" = Option<String>, description = "Codes of warnings that were not looked for: numerical-error-large, and skin-overlaps without `check_skin`"),
                 ("Server-Timing" = String, description = "milliseconds to find the response, to add up its columns, to check the skin, and to write the answer"))),
         (status = 404, description = "there is no such case, or no response was built"),
         (status = 409, description = "the case or the program changed since the response was built"),

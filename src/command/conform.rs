@@ -44,11 +44,11 @@ pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
     let place = Workplace { sources: &sources, limits: &limits, out: &arguments.out };
     let done = work_in_sight(&input, &place)?;
     if let Some(found) = &done.result.conformation {
-        print_found(found);
-        print_muscles(&found.muscles);
         let case = canonical::to_value(&found.case);
         let file = serde_json::json!({ "case": case });
         write(&arguments.out.join(CASE_FILE), format!("{file:#}\n"))?;
+        print_found(found);
+        print_muscles(&found.muscles);
     }
     let check = done.result.conformation.iter().filter_map(|found| found.check.as_ref());
     let of_case = check.flat_map(|check| &check.warnings);

@@ -13,7 +13,7 @@ use crate::jobs::{JobInput, LearnInput, LearnedCase, PredictInput, Workplace};
 use crate::schema::case::document::LengthUnit;
 use crate::schema::learn::document::VirtualCohortDocument;
 use crate::schema::learn::result::{
-    CurveDocument, LearningDocument, ValidationDocument, WidthDocument,
+    CurveDocument, GainsDocument, LearningDocument, ValidationDocument, WidthDocument,
 };
 use crate::schema::{CaseDocument, LearnDocument, Limits, PlanDocument, PredictDocument};
 use mechanics::learning::virtual_cohort::USUAL_MAPPING;
@@ -156,12 +156,13 @@ fn print_validation(own: &ValidationDocument) {
         || "no band".to_owned(),
         |share| format!("{:.1} % in the band of 80 %", 100.0 * share),
     );
-    let gains = |refused: Option<f64>, others: Option<f64>| {
+    let gains = |own: &GainsDocument| {
         let told = |gain: Option<f64>| gain.map_or("-".to_owned(), |own| format!("{own:.3}"));
-        format!("gain {} mm of these, {} of the others", told(refused), told(others))
+        let [refused, others] = [own.gain_of_refused_mm, own.gain_of_others_mm].map(told);
+        format!("gain {refused} mm of these, {others} of the others")
     };
-    let (refused, harmed) = (own.refused.len(), own.harmed.len());
-    let gained = gains(own.gain_of_refused_mm, own.gain_of_others_mm);
+    let (refused, harmed) = (own.gains.refused.len(), own.gains.harmed.len());
+    let gained = gains(&own.gains);
     println!("{}: {coverage}, {harmed} harmed, {refused} refused ({gained})", own.method);
     if let Some(modes) = own.modes {
         let limited =
@@ -169,8 +170,8 @@ fn print_validation(own: &ValidationDocument) {
         println!("{}: {} modes of {} at most{limited}", own.method, modes.count, modes.most);
     }
     if let Some(other) = &own.other_classes {
-        let (refused, harmed) = (other.refused.len(), other.harmed.len());
-        let gained = gains(other.gain_of_refused_mm, other.gain_of_others_mm);
+        let (refused, harmed) = (other.gains.refused.len(), other.gains.harmed.len());
+        let gained = gains(&other.gains);
         println!(
             "{} of other classes: {:.3} mm, {harmed} harmed, {refused} refused ({gained})",
             own.method, other.mean

@@ -17,6 +17,7 @@ use crate::schema::case::document::LengthUnit;
 use crate::schema::meshing::labels::LabelsDocument;
 use crate::schema::meshing::result::MeshingResultDocument;
 use crate::schema::meshing::surfaces::SurfacesDocument;
+use crate::schema::predict::result::FileDocument;
 use crate::schema::wire::canonical;
 use crate::schema::{
     CaseDocument, ErrorCode, Faults, Limits, MeshingDocument, PlanDocument, Pointer,
@@ -101,16 +102,28 @@ pub struct Meshed {
     pub meshes: BTreeMap<String, StoredMesh>,
     /// What there is to say of the scan and the mesh, which every job on the mesh says too.
     pub warnings: Vec<WarningDocument>,
+    found: MeshingResultDocument,
+    total_s: f64,
+    files: Vec<FileDocument>,
+}
+
+impl Meshed {
+    /// Tells what came out; `out` is where it lies.
+    pub fn print(&self, out: &Path) {
+        print_result(&self.found, self.total_s);
+        print_files(&self.files, out);
+    }
 }
 
 /// Meshes, writes the files, and tells what is in them.
 pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
     let Arguments { scan, skin, units, plan, out, scale } = arguments;
     let (skin, plan, units, scale) = (skin.as_deref(), plan.as_deref(), *units, *scale);
-    let Meshed { file, warnings, .. } = scan.mesh(&Beside { skin, plan, units, scale }, out)?;
-    print_warnings(&warnings);
+    let meshed = scan.mesh(&Beside { skin, plan, units, scale }, out)?;
     let path = out.join("case.json");
-    write(&path, format!("{:#}\n", canonical::to_value(&file)))?;
+    write(&path, format!("{:#}\n", canonical::to_value(&meshed.file)))?;
+    meshed.print(out);
+    print_warnings(&meshed.warnings);
     println!("wrote      {}", path.display());
     Ok(())
 }
@@ -120,8 +133,8 @@ impl ScanArguments {
         self.scan.is_some() || self.labels.is_some() || !self.bone.is_empty()
     }
 
-    /// Meshes the scan, or what lies between skin and bone, into a folder and tells what came out: the case with the plan
-    /// without its cuts. Paths of meshes lead from the folder.
+    /// Meshes the scan, or what lies between skin and bone, into a folder: the case with the plan without its cuts. Paths of meshes
+    /// lead from the folder.
     pub fn mesh(&self, beside: &Beside, out: &Path) -> Result<Meshed, CommandError> {
         self.refuse_beside_image(beside)?;
         let plan = beside.plan.map(read::<PlanDocument>).transpose()?;
@@ -133,15 +146,15 @@ impl ScanArguments {
         let input = MeshingInput { job: None, queue_s: None, spec, case: None };
         let _watch = Watch::start(&input.spec.budget);
         let done = work_in_sight(&JobInput::Meshing(input), &place)?;
-        let Some(result) = &done.result.meshing else {
+        let Some(found) = done.result.meshing.clone() else {
             return Err(CommandError::Usage(NO_SCAN.to_owned()));
         };
-        print_result(result, done.result.provenance.timing.total_s);
-        print_files(&done.files, out);
-        let case = result.case.clone();
+        let case = found.case.clone();
         let meshes = in_memory(&case, &done);
         let file = CaseFile { case, plan, spec: PredictDocument::default() };
-        Ok(Meshed { file, meshes, warnings: done.result.warnings })
+        let JobOutput { result, files, .. } = done;
+        let total_s = result.provenance.timing.total_s;
+        Ok(Meshed { file, meshes, warnings: result.warnings, found, total_s, files })
     }
 
     /// Refuses what says of surfaces what an image says itself.

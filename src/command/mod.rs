@@ -32,6 +32,7 @@ pub mod slot;
 pub mod stability;
 mod stability_random;
 pub mod study;
+mod study_screen;
 mod sweep;
 mod watch;
 pub mod worker;

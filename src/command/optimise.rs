@@ -39,9 +39,9 @@ pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
     let place = Workplace { sources: &asked.sources, limits: &limits, out: &arguments.out };
     let done = work_in_sight(&input, &place)?;
     if let Some(found) = &done.result.optimisation {
-        print_found(found);
         let plan = canonical::to_value(&found.plan);
         write(&arguments.out.join(PLAN_FILE), format!("{plan:#}\n"))?;
+        print_found(found);
     }
     print_warnings(&done.result.warnings);
     print_files(&done.files, &arguments.out);

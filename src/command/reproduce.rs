@@ -44,9 +44,9 @@ pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
     let place = Workplace { sources: &sources, limits: &limits, out: &arguments.out };
     let done = work_in_sight(&input, &place)?;
     if let Some(found) = &done.result.reproduction {
-        print_found(found);
         let plan = canonical::to_value(&found.plan);
         write(&arguments.out.join(PLAN_FILE), format!("{plan:#}\n"))?;
+        print_found(found);
     }
     print_warnings(&done.result.warnings);
     print_files(&done.files, &arguments.out);

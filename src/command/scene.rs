@@ -132,8 +132,9 @@ impl SceneArguments {
         self.refuse_beside_scan()?;
         let folder = out.join("mesh");
         let (skin, units, scale) = (self.skin.as_deref(), self.units, self.scale);
-        let Meshed { mut file, meshes, .. } =
-            scan.mesh(&Beside { skin, plan, units, scale }, &folder)?;
+        let meshed = scan.mesh(&Beside { skin, plan, units, scale }, &folder)?;
+        meshed.print(&folder);
+        let Meshed { mut file, meshes, .. } = meshed;
         file.spec = self.spec();
         let sources = FileSource::new(&folder, file.case.units, self.scale).with(meshes);
         Ok(Asked { file, path: folder.clone(), folder, sources })

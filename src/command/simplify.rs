@@ -75,13 +75,13 @@ pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
     let seconds = started.elapsed().as_secs_f64();
     let measured = measured(&simple, &given, *max_deviation_mm)?;
     let told = told([&given, &simple], &measured, (seconds, *max_deviation_mm));
-    print(&told);
     write(out, encoded(&simple, frame, out)?)?;
-    println!("wrote      {}", out.display());
-    match report {
-        Some(path) => write(path, format!("{told:#}\n")),
-        None => Ok(()),
+    if let Some(path) = report {
+        write(path, format!("{told:#}\n"))?;
     }
+    print(&told);
+    println!("wrote      {}", out.display());
+    Ok(())
 }
 
 fn refused(error: &dyn std::error::Error) -> CommandError {

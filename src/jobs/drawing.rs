@@ -84,8 +84,9 @@ impl Finished {
             return Ok(prepared.classes_picture()?.into_bytes());
         }
         let moved = self.skin(&prepared, sources)?;
-        let (frame, numbers) = (prepared.case.frame, &statistics.skin.nodes);
-        Ok(displacement_picture(&prepared.scene, &moved, frame, numbers)?.into_bytes())
+        let (shown, numbers) =
+            ((prepared.case.frame, input.spec.range_mm()), &statistics.skin.nodes);
+        Ok(displacement_picture(&prepared.scene, &moved, shown, numbers)?.into_bytes())
     }
 
     fn report(

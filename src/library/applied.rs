@@ -3,7 +3,7 @@
 use crate::schema::WarningDocument;
 use crate::schema::applied::AppliedSummary;
 use mechanics::mesh::Vector;
-use mechanics::prediction::SKIN_OVERLAPS;
+use mechanics::prediction::{NUMERICAL_ERROR_LARGE, SKIN_OVERLAPS};
 
 /// The skin for one plan.
 pub struct Applied {
@@ -16,9 +16,10 @@ pub struct Applied {
 }
 
 impl Applied {
-    /// The codes of warnings that nobody looked for.
+    /// The codes of warnings that nobody looked for: never what the mesh leaves out, which is of a plan and not of a response.
     pub fn not_measured(&self) -> Vec<String> {
-        (!self.skin_checked).then(|| SKIN_OVERLAPS.to_owned()).into_iter().collect()
+        let skin = (!self.skin_checked).then_some(SKIN_OVERLAPS);
+        [NUMERICAL_ERROR_LARGE].into_iter().chain(skin).map(str::to_owned).collect()
     }
 
     /// f32 little-endian, three a node.

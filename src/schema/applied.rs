@@ -29,7 +29,8 @@ pub struct AppliedDocument {
     #[serde(flatten)]
     pub summary: AppliedSummary,
     pub warnings: Vec<WarningDocument>,
-    /// Codes of warnings that were not looked for: `skin-overlaps` without `check_skin`.
+    /// Codes of warnings that were not looked for: `numerical-error-large`, since a response does not know what its mesh leaves out of
+    /// a plan, and `skin-overlaps` without `check_skin`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub not_measured: Vec<String>,
 }

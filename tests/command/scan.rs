@@ -1,6 +1,7 @@
 //! From a scan to a predicted skin in one command.
 
 use std::fs;
+use std::process::Command;
 
 use serde_json::{Value, json};
 
@@ -199,4 +200,20 @@ fn cuts_without_a_scan_are_refused() {
     let refused = facies(&asked);
     assert_eq!(refused.status.code(), Some(2));
     assert!(text(&refused.stderr).contains("/plan/osteotomy"), "{}", text(&refused.stderr));
+}
+
+#[test]
+fn files_of_a_meshing_are_there_whoever_reads_the_summary() {
+    let folder = tempfile::tempdir().unwrap();
+    let scan = folder.path().join("ct.nrrd");
+    fs::write(&scan, ball_ct()).unwrap();
+    let out = folder.path().join("meshed");
+    // As `facies mesh … | head -0` has it.
+    let (reader, writer) = std::io::pipe().unwrap();
+    drop(reader);
+    let asked = ["mesh", "--scan", path(&scan), "--tetrahedra", "8000", "--out", path(&out)];
+    let done = Command::new(env!("CARGO_BIN_EXE_facies")).args(asked).stdout(writer).output();
+    assert_eq!(done.unwrap().status.code(), Some(141), "nobody reads");
+    let case: Value = serde_json::from_slice(&fs::read(out.join("case.json")).unwrap()).unwrap();
+    assert!(out.join(case["case"]["volume"].as_str().unwrap()).is_file(), "{case}");
 }

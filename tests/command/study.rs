@@ -248,3 +248,26 @@ fn the_small_study_has_every_method_and_their_errors_stand_in_order() {
         .collect();
     assert_eq!(diverged, ["mtm jacobi", "mtm jacobi", "mtm_nonlinear"], "{told}");
 }
+
+#[test]
+fn the_terminal_names_what_fails_what_is_left_out_and_what_speaks_against_an_error() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut asked = spec();
+    asked["methods"] = json!(["fem_linear", {"method": "fem_nonlinear", "label": "finite"}]);
+    asked["thresholds"] = json!({"p95_mm": 0.01, "labels": ["finite"]});
+    let (code, told, report) = study(folder.path(), &asked, &["--level", "0", "--level", "1"]);
+    let report = report.unwrap();
+    assert_eq!((code, report.verdict.outcome), (1, OutcomeName::Worse), "{told}");
+    for wanted in [
+        "linear-truth (2 of ",
+        "fem_linear quadratic has no row: level 1 is the truth itself",
+        "failing    slab, patch 4 mm, finite, ",
+        "is above the threshold 0.01 mm",
+    ] {
+        assert!(told.contains(wanted), "{wanted}: {told}");
+    }
+    assert_eq!(report.verdict.failing.len(), 2);
+    assert!(report.verdict.failing.iter().all(|row| row.value > row.limit));
+    let row = told.lines().find(|line| line.contains(" finite ") && line.contains("linear-truth"));
+    assert!(row.is_some(), "a row is printed with its warnings: {told}");
+}

@@ -35,7 +35,6 @@ use crate::meshing::{MeshingError, MeshingReport, MeshingSettings, TissueMesh, m
 use crate::osteotomy::bone_image::BoneImage;
 use crate::osteotomy::classes::{BoneContact, ClassRules, NodeClasses, TissueBoundary, classify};
 use crate::osteotomy::contact::Contact;
-use crate::osteotomy::cut::Cut;
 use crate::osteotomy::label_error::extent;
 use crate::osteotomy::label_surface::label_surface;
 use crate::osteotomy::labelling::{Labelled, label};
@@ -169,6 +168,8 @@ pub fn build(
     if rules.teeth_slide && teeth.is_none() && !bone.segments.is_empty() {
         warnings.push(teeth_joined());
     }
+    let fine = &rules.meshing.size.regions;
+    warnings.extend(size::without_tissue(fine, &tissue.volume, tissue.report.finest));
     warnings.extend(bone.segments.is_empty().then(uncut));
     warnings.extend(touching(&bone));
     warnings.extend(missed(&bone, &rules.osteotomy));
@@ -186,19 +187,30 @@ pub fn build(
     Ok(Anatomy { volume, meshing: report, bone, classes, bones, landmarks, skin_regions, warnings })
 }
 
-/// Cuts at which nothing is parted: planes beside the bone, or between bones that do not touch.
+/// Cuts at which nothing is parted: planes beside the bone, or between bones that do not touch. A line of pieces is one cut, which
+/// may begin and end beyond the bone: it is told where all of it does.
 fn missed(bone: &Labelled, osteotomy: &Osteotomy) -> Vec<Warning> {
-    let cuts = osteotomy.cuts().iter().enumerate();
-    let missed = cuts.filter(|(number, _)| !bone.contacts.iter().any(|c| c.cut == Some(*number)));
+    let mut cuts: Vec<(&str, usize, bool)> = Vec::new();
+    for (number, cut) in osteotomy.cuts().iter().enumerate() {
+        let meets = bone.contacts.iter().any(|contact| contact.cut == Some(number));
+        match cuts.iter_mut().find(|(name, ..)| cut.chain().is_some() && *name == cut.line_name()) {
+            Some((_, pieces, any_meets)) => {
+                *pieces += 1;
+                *any_meets |= meets;
+            }
+            None => cuts.push((cut.line_name(), 1, meets)),
+        }
+    }
     let bone = extent(bone.labels.bone_box().as_ref());
-    let warning = |(_, cut): (usize, &Cut)| {
+    let warning = |(name, pieces, _): &(&str, usize, bool)| {
+        let of =
+            if *pieces > 1 { format!(" with any of its {pieces} pieces") } else { String::new() };
         let detail = format!(
-            "cut `{}` meets no bone of a segment: {bone}; is it in the same frame?",
-            cut.name
+            "cut `{name}` meets no bone of a segment{of}: {bone}; is it in the same frame?"
         );
-        Warning::new("cut-meets-no-bone", detail)
+        Warning::new("cut-meets-no-bone", detail).with("pieces", *pieces as f64)
     };
-    missed.map(warning).collect()
+    cuts.iter().filter(|(.., meets)| !meets).map(warning).collect()
 }
 
 /// Bone of which nothing can be moved.
@@ -221,13 +233,17 @@ fn unmeshed(name: &str, volume: &VolumeMesh) -> Option<Warning> {
     (!has_nodes).then(|| Warning::new("segment-without-nodes", detail))
 }
 
-/// Segments that touch other bone where nothing is cut, as teeth that meet do.
+/// Segments that touch other bone where nothing is cut, as teeth that meet do. Bone that stays touches sawdust and what is loose
+/// everywhere.
 fn touching(bone: &Labelled) -> Vec<Warning> {
     let name = |owner: Owner| match owner {
         Owner::Segment(segment) => format!("segment `{}`", bone.segments[segment].name),
         Owner::Rest | Owner::Sawn | Owner::Loose => "bone that stays".to_owned(),
     };
+    let is_of_segment =
+        |contact: &&Contact| contact.between.iter().any(|owner| matches!(owner, Owner::Segment(_)));
     let contacts = bone.contacts.iter().filter(|contact| contact.cut.is_none());
+    let contacts = contacts.filter(is_of_segment);
     let warning = |contact: &Contact| {
         let [one, other] = contact.between.map(name);
         let [x, y, z] = contact.centre.into();

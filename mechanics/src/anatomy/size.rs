@@ -1,6 +1,6 @@
 //! Sizing field of a mesh: fine cells around the bone that moves.
 
-use crate::mesh::Vector;
+use crate::mesh::{Vector, VolumeMesh, Warning};
 use crate::meshing::{RegionShape, SizeRegion};
 use crate::osteotomy::Owner;
 use crate::osteotomy::labelling::Labelled;
@@ -16,6 +16,26 @@ pub(super) fn around_segments(bone: &Labelled, finest: f64) -> Vec<SizeRegion> {
         size: finest,
     });
     regions.collect()
+}
+
+/// Places of which the tissue is to be fine, and from which its nearest node is farther than an edge of the finest cells, in mm.
+pub(super) fn without_tissue(
+    regions: &[SizeRegion],
+    volume: &VolumeMesh,
+    finest: f64,
+) -> Vec<Warning> {
+    let warning = |(number, region): (usize, &SizeRegion)| {
+        let distances = volume.nodes.iter().map(|node| region.shape.distance(node));
+        let nearest = distances.fold(f64::INFINITY, f64::min);
+        let [x, y, z]: [f64; 3] = region.shape.middle().into();
+        let detail = format!(
+            "place {number} of `size.fine`, around ({x:.0}, {y:.0}, {z:.0}) mm, holds no tissue, which is {nearest:.1} mm away at its nearest: \
+             nothing was made finer there; is it in the frame of the document?"
+        );
+        let warning = Warning::new("fine-place-empty", detail).with("place", number as f64);
+        (nearest > finest).then(|| warning.with("distance_mm", nearest))
+    };
+    regions.iter().enumerate().filter_map(warning).collect()
 }
 
 fn box_of(bone: &Labelled, segment: usize) -> Option<(Vector, Vector)> {

@@ -1,13 +1,14 @@
 //! A face before, after, and coloured by how far its skin moved, from the front and from beside.
 
 use super::Vector;
-use super::colour::{self, Rgb, sequential};
+use super::colour::{self, Rgb};
 use super::drawing::{Document, Place, Style, wrapped};
 use super::facet::Finish;
-use super::legend::{Scale, round_length};
+use super::legend::round_length;
 use super::raster::{Painted, Panel, PngError, Shot, draw_all};
 use super::svg::svg;
 use super::view::{Camera, Outlook};
+use super::views::ViewValues;
 
 /// What the picture shows. Points in mm; `before` and `after` correspond one to one.
 pub struct DisplacementPicture<'a> {
@@ -19,6 +20,8 @@ pub struct DisplacementPicture<'a> {
     pub outlook: Outlook,
     /// The frame of the coordinates as clients name it, e.g. `LPS`.
     pub frame: &'a str,
+    /// At which colours end, in mm: those of reports and of the page.
+    pub range_mm: f64,
     /// A line of numbers for the foot of the picture.
     pub statistics: &'a str,
 }
@@ -44,9 +47,9 @@ impl DisplacementPicture<'_> {
             .zip(self.after)
             .map(|(before, after)| (after - before).norm())
             .collect();
-        let scale = Scale::covering(moved.iter().copied().fold(0.0, f64::max));
-        let colours: Vec<Rgb> =
-            moved.iter().map(|length| sequential(length / scale.maximum())).collect();
+        let range_mm = self.range_mm;
+        let values = ViewValues { values: &moved, range_mm, is_signed: false, name: "moved, mm" };
+        let colours: Vec<Rgb> = moved.iter().map(|&length| values.colour(length)).collect();
         let cameras = ROWS.map(|(_, around, above)| self.outlook.camera(around, above));
         let layout = Layout::of(&cameras, self);
         let width = 2.0 * MARGIN + 3.0 * PANEL_WIDTH + 3.0 * GAP + LEGEND_WIDTH;
@@ -58,7 +61,7 @@ impl DisplacementPicture<'_> {
         self.write_head(&mut document, width);
         self.write_panels(&mut document, &layout, &cameras, &colours)?;
         layout.write_scale_bar(&mut document);
-        layout.write_legend(&mut document, &scale);
+        values.write_legend(&mut document, layout.beside());
         for (line, words) in foot.iter().enumerate() {
             let y = height - foot_height + 28.0 + 20.0 * line as f64;
             document.text([MARGIN, y], width, Style::of(13.0), words);
@@ -173,24 +176,10 @@ impl Layout {
         document.text([x, y - 6.0], PANEL_WIDTH, Style::of(11.0).faint(), &format!("{length} mm"));
     }
 
-    /// A bar of colours as high as a panel, beside the last column.
-    fn write_legend(&self, document: &mut Document, scale: &Scale) {
+    /// Both panels of the last column, beside which the legend stands.
+    fn beside(&self) -> Place {
         let [top, bottom] = [self.panel(0, 2), self.panel(1, 2)];
-        let x = top.x + PANEL_WIDTH + GAP + 6.0;
-        let height = (bottom.y + bottom.height - top.y) * 0.6;
-        let y = top.y + (bottom.y + bottom.height - top.y - height) / 2.0;
-        let bar = Place { x, y, width: 16.0, height };
-        let colours: Vec<String> =
-            (0..=12).map(|step| colour::hexadecimal(sequential(f64::from(step) / 12.0))).collect();
-        document.gradient(bar, &colours);
-        for &tick in &scale.ticks {
-            let level = y + height * (1.0 - tick / scale.maximum());
-            document.line([x + 16.0, level], [x + 21.0, level]);
-            let at = [x + 25.0, level + 4.0];
-            document.text(at, LEGEND_WIDTH - 25.0, Style::of(12.0), &scale.label(tick));
-        }
-        let room = LEGEND_WIDTH + MARGIN - 6.0;
-        document.text([x, y - 14.0], room, Style::of(12.0).bold(), "moved, mm");
+        Place { height: bottom.y + bottom.height - top.y, ..top }
     }
 }
 
@@ -210,11 +199,12 @@ mod tests {
             after: &after,
             outlook: Outlook::lps(),
             frame: "LPS",
+            range_mm: 5.0,
             statistics: "mean 2.30 mm",
         };
         let svg = picture.to_svg().unwrap();
         assert_eq!(svg.matches("data:image/png;base64,").count(), 6);
-        for words in ["Case &lt;7&gt;", ">2.5<", ">0.0<", "frame LPS", "mean 2.30 mm", ">10 mm<"] {
+        for words in ["Case &lt;7&gt;", ">5<", ">0<", "frame LPS", "mean 2.30 mm", ">10 mm<"] {
             assert!(svg.contains(words), "{words}");
         }
     }

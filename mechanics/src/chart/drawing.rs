@@ -160,6 +160,8 @@ pub enum Item {
     Open {
         class: String,
         words: String,
+        /// Of what it is, for programs: attributes `data-NAME` of an SVG.
+        data: Vec<(&'static str, String)>,
     },
     Close,
 }
@@ -199,7 +201,12 @@ impl Document {
 
     /// What follows until [`Document::close`] belongs together; a viewer shows the words beside the pointer.
     pub fn open(&mut self, class: &str, words: &str) {
-        self.items.push(Item::Open { class: class.to_owned(), words: words.to_owned() });
+        self.open_with(class, words, Vec::new());
+    }
+
+    /// The same with what it is of, for programs: names and values.
+    pub fn open_with(&mut self, class: &str, words: &str, data: Vec<(&'static str, String)>) {
+        self.items.push(Item::Open { class: class.to_owned(), words: words.to_owned(), data });
     }
 
     pub fn close(&mut self) {

@@ -4,14 +4,15 @@
 use super::axis::LogAxis;
 use super::colour::{FRONT, GRID, INK};
 use super::drawing::{Document, Paint, Place, Style, wrapped};
+use super::series::{MethodSeries, mark_data};
 use super::symbol::Symbol;
 
 /// What the picture shows.
 pub struct EstimatesPicture<'a> {
     pub title: &'a str,
     pub subtitle: &'a str,
-    /// The methods, in the order of the legend.
-    pub series: &'a [String],
+    /// The methods of the study, in the order of the legend, which has those with marks.
+    pub series: &'a [MethodSeries],
     pub marks: &'a [EstimateMark],
     /// Lines for the foot of the picture.
     pub notes: &'a [String],
@@ -22,6 +23,8 @@ pub struct EstimatesPicture<'a> {
 pub struct EstimateMark {
     /// Its place in `series`.
     pub series: usize,
+    /// How often each edge of the mesh was halved.
+    pub level: u32,
     /// Mean errors over the skin in mm.
     pub true_mm: f64,
     pub estimated_mm: f64,
@@ -56,10 +59,10 @@ impl EstimatesPicture<'_> {
             document.path(&line, Paint { dashes, ..Paint::line(FRONT, 1.6) });
         }
         for mark in self.marks {
-            let name = self.series.get(mark.series).map_or("?", String::as_str);
+            let name = self.series.get(mark.series).map_or("?", |series| series.name.as_str());
             let EstimateMark { true_mm, estimated_mm, .. } = mark;
             let words = format!("{name}: estimated {estimated_mm:.4} mm, true {true_mm:.4} mm");
-            document.open("mark", &words);
+            document.open_with("mark", &words, mark_data(self.series, mark.series, mark.level));
             let at = [across.place(*true_mm), upwards.place(*estimated_mm)];
             Symbol::of(mark.series).draw(&mut document, at, 4.5, 0.5);
             document.close();
@@ -85,10 +88,14 @@ impl EstimatesPicture<'_> {
         let mut y = HEAD + 14.0;
         document.text([x, y], room, Style::of(13.0).bold(), "method");
         let words = Style::of(12.5);
-        for (series, name) in self.series.iter().enumerate() {
+        let is_drawn = |place: usize| self.marks.iter().any(|mark| mark.series == place);
+        for (place, series) in self.series.iter().enumerate().filter(|(place, _)| is_drawn(*place))
+        {
             y += LEGEND_LINE;
-            Symbol::of(series).draw(document, [x + 9.0, y - 4.0], 6.8, 1.0);
-            document.text([x + 26.0, y], room - 26.0, words, name);
+            document.open_with("legend", &series.name, series.data());
+            Symbol::of(place).draw(document, [x + 9.0, y - 4.0], 6.8, 1.0);
+            document.text([x + 26.0, y], room - 26.0, words, &series.name);
+            document.close();
         }
         for (dashes, name) in
             [("", "estimate and error are equal"), ("6 4", "a factor of two apart")]
@@ -127,9 +134,12 @@ mod tests {
 
     #[test]
     fn equal_errors_lie_on_the_diagonal_and_twice_the_error_on_a_dashed_line() {
-        let series = ["linear FEM".to_owned()];
+        let series = ["linear FEM", "fem", "fem_linear"].map(str::to_owned);
+        let [name, label, method] = series;
+        let series = [MethodSeries { name, label, method }];
         let marks = [(0.1, 0.1), (0.2, 0.4)].map(|(true_mm, estimated_mm)| EstimateMark {
             series: 0,
+            level: 0,
             true_mm,
             estimated_mm,
         });

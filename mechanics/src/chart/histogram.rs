@@ -76,7 +76,7 @@ impl HistogramPicture<'_> {
             document.text(at, 300.0, style, &format!("{:.1} % {words}", 100.0 * side));
         }
         let middle = [PLOT.x + 0.5 * PLOT.width, PLOT.y + PLOT.height + 46.0];
-        document.text(middle, 600.0, Style::of(13.0).middle(), self.values.name);
+        document.text(middle, SIZE[0], Style::of(13.0).middle(), self.values.name);
         document
     }
 }

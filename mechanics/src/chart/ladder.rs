@@ -6,14 +6,15 @@ use super::callout::Taken;
 use super::colour::{FAILED_INK, FRONT, GRID, INK};
 use super::drawing::{Document, Paint, Place, Style, estimated_width, wrapped};
 use super::ladder_legend::Legend;
+use super::series::{MethodSeries, mark_data};
 use super::symbol::Symbol;
 
 /// What the picture shows.
 pub struct LadderPicture<'a> {
     pub title: &'a str,
     pub subtitle: &'a str,
-    /// The methods, in the order of the legend.
-    pub series: &'a [String],
+    /// The methods of the study, in the order of the legend, which has those with marks or failures.
+    pub series: &'a [MethodSeries],
     pub marks: &'a [LadderMark],
     pub failures: &'a [LadderFailure],
     /// Lines for the foot of the picture.
@@ -71,6 +72,7 @@ impl LadderPicture<'_> {
         self.write_names(&mut document, &layout, &front);
         let legend = Legend {
             series: self.series,
+            shown: &self.shown(),
             levels: &self.levels(),
             has_failures: !self.failures.is_empty(),
             has_runs: self.marks.iter().any(|mark| mark.runs.len() > 1),
@@ -92,8 +94,18 @@ impl LadderPicture<'_> {
         levels
     }
 
+    /// The places of the methods that are drawn.
+    fn shown(&self) -> Vec<usize> {
+        let failed = self.failures.iter().map(|failure| failure.series);
+        let mut shown: Vec<usize> =
+            self.marks.iter().map(|mark| mark.series).chain(failed).collect();
+        shown.sort_unstable();
+        shown.dedup();
+        shown
+    }
+
     fn name(&self, series: usize) -> &str {
-        self.series.get(series).map_or("?", String::as_str)
+        self.series.get(series).map_or("?", |series| series.name.as_str())
     }
 
     /// A name with its mesh level, where there are several.
@@ -129,7 +141,8 @@ impl LadderPicture<'_> {
             let x = band.x + 22.0 + column * across as f64;
             let y = band.y + 40.0 + FAILURE_LINE * row as f64;
             let name = self.full_name(failure.series, failure.level);
-            document.open("failure", &format!("{name}: {}", failure.reason));
+            let data = mark_data(self.series, failure.series, failure.level);
+            document.open_with("failure", &format!("{name}: {}", failure.reason), data);
             let (radius, filled) = self.size(failure.level);
             Symbol::of(failure.series).draw(document, [x, y], radius * 0.85, filled);
             let s = 8.0;
@@ -205,9 +218,13 @@ impl LadderPicture<'_> {
                 let steps = format!("M{}", words.join("L"));
                 document.path(&steps, Paint { opacity: 0.45, ..Paint::line(colour, 1.6) });
             }
-            for run in own.filter(|mark| mark.runs.len() > 1).flat_map(|mark| &mark.runs) {
+            let several = own.filter(|mark| mark.runs.len() > 1);
+            for (level, run) in
+                several.flat_map(|mark| mark.runs.iter().map(|run| (mark.level, run)))
+            {
                 let [x, y] = layout.place(run[0], run[1]);
-                document.open("run", &format!("{}: {}", self.name(series), numbers(*run)));
+                let words = format!("{}: {}", self.name(series), numbers(*run));
+                document.open_with("run", &words, mark_data(self.series, series, level));
                 let dot = format!("M{:.1} {y:.1}a2 2 0 1 1 4 0a2 2 0 1 1 -4 0Z", x - 2.0);
                 document.path(&dot, Paint { opacity: 0.4, ..Paint::inside(colour) });
                 document.close();
@@ -219,7 +236,8 @@ impl LadderPicture<'_> {
             let name = self.full_name(mark.series, mark.level);
             let [x, y] = layout.place(mark.wall_s, mark.error_mm);
             let (radius, filled) = self.size(mark.level);
-            document.open("mark", &format!("{name}: {}", numbers([mark.wall_s, mark.error_mm])));
+            let words = format!("{name}: {}", numbers([mark.wall_s, mark.error_mm]));
+            document.open_with("mark", &words, mark_data(self.series, mark.series, mark.level));
             Symbol::of(mark.series).draw(document, [x, y], radius, filled);
             document.close();
         }
@@ -281,7 +299,7 @@ impl Layout {
         let band = Place { x: LEFT, y: HEAD, width, height: band_height };
         let below = if lines == 0 { 0.0 } else { 10.0 };
         let top = HEAD + band_height + below;
-        let legend = Legend::height(picture.series.len()) - band_height - below;
+        let legend = Legend::height(picture.shown().len()) - band_height - below;
         let plot = Place { x: LEFT, y: top, width, height: LEAST_HEIGHT.max(legend) };
         let foot = plot.y + plot.height;
         let runs = || picture.marks.iter().flat_map(|mark| mark.runs.iter().copied());

@@ -2,11 +2,14 @@
 
 use super::colour::{FAILED_INK, FAINT_INK, FRONT};
 use super::drawing::{Document, Paint, Style};
+use super::series::MethodSeries;
 use super::symbol::Symbol;
 
 /// The legend beside the plot.
 pub struct Legend<'a> {
-    pub series: &'a [String],
+    pub series: &'a [MethodSeries],
+    /// The places of those that are drawn.
+    pub shown: &'a [usize],
     /// Mesh levels that are drawn, ascending.
     pub levels: &'a [u32],
     pub has_failures: bool,
@@ -29,11 +32,12 @@ impl Legend<'_> {
         let words = Style::of(12.5);
         let mut y = y + 14.0;
         document.text([x, y], ROOM, heading, "method");
-        for (series, name) in self.series.iter().enumerate() {
+        for (place, series) in self.shown.iter().filter_map(|&at| Some((at, self.series.get(at)?)))
+        {
             y += LINE;
-            document.open("legend", name);
-            Symbol::of(series).draw(document, [x + 9.0, y - 4.0], 6.8, 1.0);
-            document.text([x + 26.0, y], ROOM - 26.0, words, name);
+            document.open_with("legend", &series.name, series.data());
+            Symbol::of(place).draw(document, [x + 9.0, y - 4.0], 6.8, 1.0);
+            document.text([x + 26.0, y], ROOM - 26.0, words, &series.name);
             document.close();
         }
         y += LINE * 1.6;

@@ -11,8 +11,17 @@ fn names(list: &[&str]) -> Vec<String> {
     list.iter().map(|name| (*name).to_owned()).collect()
 }
 
+fn series(list: &[&str]) -> Vec<MethodSeries> {
+    let of = |name: &String| MethodSeries {
+        name: name.clone(),
+        label: format!("label of {name}"),
+        method: "fem_linear".to_owned(),
+    };
+    names(list).iter().map(of).collect()
+}
+
 fn drawn(marks: &[LadderMark], failures: &[LadderFailure]) -> String {
-    let series = names(&["fem <linear>", "msm", "warp & \"fit\""]);
+    let series = series(&["fem <linear>", "msm", "warp & \"fit\""]);
     let notes = names(&["Reproduced by a command."]);
     let picture = LadderPicture {
         title: "a < b",
@@ -45,7 +54,7 @@ fn read(svg: &str) -> Vec<(String, Vec<(String, String)>)> {
 }
 
 fn count(svg: &str, class: &str) -> usize {
-    svg.matches(&format!("<g class=\"{class}\">")).count()
+    svg.matches(&format!("<g class=\"{class}\"")).count()
 }
 
 #[test]
@@ -67,6 +76,30 @@ fn every_mark_run_and_failure_is_drawn() {
     }
     assert!(svg.contains("fem &lt;linear&gt;, level 1: 1 s, p95 error 0.050 mm"));
     assert_eq!(count(&drawn(&marks, &[]), "failure"), 0);
+}
+
+#[test]
+fn what_a_mark_is_of_stands_at_it_and_the_legend_has_what_is_drawn() {
+    let marks = [mark(0, 0, [0.1, 0.5], true), mark(0, 2, [1.0, 0.05], true)];
+    let failures = [LadderFailure { series: 2, level: 0, reason: "diverged".into() }];
+    let svg = drawn(&marks, &failures);
+    let group = |class: &str, wanted: &[(&str, &str)]| {
+        let has = |attributes: &[(String, String)], name: &str, value: &str| {
+            attributes.iter().any(|(own, is)| own == name && is == value)
+        };
+        let groups = read(&svg).into_iter().map(|(_, attributes)| attributes);
+        let own = groups.filter(|attributes| has(attributes, "class", class));
+        own.filter(|of| wanted.iter().all(|(name, value)| has(of, name, value))).count()
+    };
+    let fem = ("data-label", "label of fem &lt;linear&gt;");
+    for level in ["0", "2"] {
+        let of = [fem, ("data-method", "fem_linear"), ("data-level", level)];
+        assert_eq!(group("mark", &of), 1, "{svg}");
+    }
+    let of = [("data-label", "label of warp &amp; &quot;fit&quot;"), ("data-level", "0")];
+    assert_eq!(group("failure", &of), 1);
+    // "msm" has no mark: its symbol stays its own, and the legend is without it.
+    assert_eq!((group("legend", &[]), group("legend", &[fem])), (2, 1));
 }
 
 #[test]
@@ -146,7 +179,7 @@ fn captions_lie_over_no_mark_and_over_no_caption() {
             mark(n as usize % 3, (n % 2) as u32, place, n == 0)
         })
         .collect();
-    let series = names(&["linear FEM, stabilised", "springs", "mass-tensor, damped Jacobi"]);
+    let series = series(&["linear FEM, stabilised", "springs", "mass-tensor, damped Jacobi"]);
     let picture = LadderPicture {
         title: "t",
         subtitle: "s",

@@ -50,8 +50,12 @@ fn written(item: &Item) -> String {
             drawing.height,
             drawing.items.iter().map(written).collect::<String>()
         ),
-        Item::Open { class, words } => {
-            format!("<g class=\"{class}\"><title>{}</title>\n", escaped(words))
+        Item::Open { class, words, data } => {
+            let data: String = data
+                .iter()
+                .map(|(name, value)| format!(" data-{name}=\"{}\"", escaped(value)))
+                .collect();
+            format!("<g class=\"{class}\"{data}><title>{}</title>\n", escaped(words))
         }
         Item::Close => "</g>\n".to_owned(),
     }

@@ -2,7 +2,7 @@
 
 use super::Vector;
 use super::colour::{self, Rgb, sequential, signed};
-use super::drawing::{Document, Place, Style};
+use super::drawing::{Document, Place, Style, wrapped};
 use super::facet::Finish;
 use super::raster::{Image, Painted, PngError, Shot, draw};
 use super::view::{Camera, Outlook};
@@ -54,6 +54,8 @@ const ASPECTS: [f64; 2] = [0.6, 0.92];
 const SHARPNESS: f64 = 1.6;
 /// Degrees around the head to its right side, and above it.
 const VIEWS: [[f64; 2]; 3] = [[0.0, 0.0], [-45.0, 0.0], [-90.0, 0.0]];
+/// Of the name over a legend.
+const NAME_LINE: f64 = 15.0;
 /// Bands of a legend, and of its colours.
 const BANDS: usize = 10;
 
@@ -146,11 +148,17 @@ impl ViewValues<'_> {
         if self.is_signed { signed(share) } else { sequential(share) }
     }
 
-    /// Bands as high as a row, beside its last panel.
-    fn write_legend(&self, document: &mut Document, panel: Place) {
+    /// Bands as high as a panel, beside it, under the name in as many lines as it needs.
+    pub(super) fn write_legend(&self, document: &mut Document, panel: Place) {
         let x = panel.x + panel.width + GAP;
-        let (top, height) = (panel.y + 28.0, panel.height - 40.0);
-        document.text([x, panel.y + 14.0], LEGEND, Style::of(12.5).bold(), self.name);
+        let heading = Style::of(12.5).bold();
+        let lines = wrapped(self.name, LEGEND, heading);
+        for (number, line) in lines.iter().enumerate() {
+            let at = [x, panel.y + 14.0 + NAME_LINE * number as f64];
+            document.text(at, LEGEND, heading, line);
+        }
+        let above = 28.0 + NAME_LINE * lines.len().saturating_sub(1) as f64;
+        let (top, height) = (panel.y + above, panel.height - above - 12.0);
         let low = if self.is_signed { -self.range_mm } else { 0.0 };
         let span = self.range_mm - low;
         for band in 0..BANDS {
@@ -251,7 +259,7 @@ mod tests {
         let points = wedge();
         let values = [0.3, 99.0, 0.0, 0.1];
         let shown =
-            ViewValues { values: &values, range_mm: 10.0, is_signed: false, name: "moved, mm" };
+            ViewValues { values: &values, range_mm: 10.0, is_signed: false, name: "distance, mm" };
         assert_eq!(shown.colour(9.5), shown.colour(99.0));
         assert_ne!(shown.colour(8.9), shown.colour(9.1));
         let rows = [ViewRow { values: Some(shown), ..row(&points, None) }];
@@ -273,7 +281,8 @@ mod tests {
                 "three-quarter",
                 "lateral",
                 "After",
-                "moved, mm",
+                "distance,",
+                "mm",
                 "0",
                 "2",
                 "4",

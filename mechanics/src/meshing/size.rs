@@ -40,6 +40,15 @@ pub enum RegionShape {
     },
 }
 
+impl RegionShape {
+    pub fn middle(&self) -> Vector {
+        match self {
+            RegionShape::Box { low, high } => (low + high) / 2.0,
+            RegionShape::Ball { centre, .. } => *centre,
+        }
+    }
+}
+
 /// Cells are at most `factor` times as large as the tissue is thick, but need not be smaller than `floor`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ThicknessRule {
@@ -134,7 +143,7 @@ impl SizeField {
 
 impl RegionShape {
     /// 0 inside.
-    fn distance(&self, point: &Vector) -> f64 {
+    pub(crate) fn distance(&self, point: &Vector) -> f64 {
         match self {
             RegionShape::Box { low, high } => (point - point.sup(low).inf(high)).norm(),
             RegionShape::Ball { centre, radius } => ((point - centre).norm() - radius).max(0.0),

@@ -27,7 +27,8 @@ pub struct Contact {
 pub struct Bridge {
     pub segment: usize,
     pub cut: usize,
-    /// Faces of voxels beside the extent, on the plane of the cut; 0 where bone goes another way around.
+    /// Faces of voxels beside the extent, on the plane of the cut, of a piece of a line where it goes on; 0 where bone goes another way
+    /// around.
     pub faces: usize,
     pub area_mm2: f64,
     /// In mm; without faces the middle of what the cut reaches.
@@ -125,9 +126,8 @@ pub(super) fn turned_about(
                 let cut = &osteotomy.cuts()[side.cut];
                 let Some(chain) = cut.chain() else { continue };
                 if cut.parts(&place, &other) || cut.saws(&other) {
-                    let is_above = cut.plane().height(&place) > 0.0;
                     let counts = faces.entry((chain, segment)).or_default();
-                    counts[usize::from(is_above != (side.side == Side::Above))] += 1;
+                    counts[usize::from(cut.is_above(&place) != (side.side == Side::Above))] += 1;
                 }
             }
         }
@@ -165,11 +165,10 @@ impl<'a> Across<'a> {
             let (one, other) = (labels.owner(voxel), labels.owner(neighbour.voxel));
             let (Some(Owner::Segment(segment)), true) = (one, one == other) else { continue };
             let [here, there] = [voxel, neighbour.voxel].map(|voxel| grid.centre(voxel));
-            let heights = [here, there].map(|place| bounded.plane().height(&place) > 0.0);
             if bounded.parts(&here, &there) {
                 let area = across.area(grid, neighbour.axis);
                 across.parted.entry(segment).or_default().add(area, (here + there) / 2.0);
-            } else if heights[0] != heights[1] {
+            } else if bounded.is_beside(&here, &there) {
                 across.beside.entry(segment).or_default().push((voxel, neighbour));
             }
         }

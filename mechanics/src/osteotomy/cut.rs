@@ -97,9 +97,21 @@ pub struct Cut {
     plane: Plane,
     reach: Reach,
     kerf: f64,
-    /// The chain of polygons that it is a piece of, by its number.
-    chain: Option<usize>,
+    link: Option<Link>,
 }
+
+/// The place of a cut in a line of such.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Link {
+    /// The number of the line.
+    line: usize,
+    piece: usize,
+    pieces: usize,
+}
+
+/// Lines are walked this far, in mm, from where they are stated: along no axis and no diagonal, so that no centre of a voxel lies on
+/// a corner of a line, where each of the pieces that meet there would leave it to the other.
+const OFF_GRID: [f64; 3] = [1.0e-6, 0.618e-6, 0.414e-6];
 
 /// An extent in the axes of its plane.
 #[derive(Clone, Debug, PartialEq)]
@@ -112,7 +124,7 @@ enum Reach {
 impl Cut {
     /// All of a plane, by a saw without width.
     pub fn unbounded(name: &str, plane: Plane) -> Cut {
-        Cut { name: name.to_owned(), plane, reach: Reach::Everywhere, kerf: 0.0, chain: None }
+        Cut { name: name.to_owned(), plane, reach: Reach::Everywhere, kerf: 0.0, link: None }
     }
 
     /// As much of a plane as is given, by a saw of that width in mm.
@@ -129,25 +141,26 @@ impl Cut {
             None => Reach::Everywhere,
             Some(extent) => extent.on(&plane)?,
         };
-        Ok(Cut { name: name.to_owned(), plane, reach, kerf, chain: None })
+        Ok(Cut { name: name.to_owned(), plane, reach, kerf, link: None })
     }
 
     /// What a line of points saws that goes into the bone by `depth`, a way in mm: a parallelogram for each piece of the line, which
-    /// meet without a gap. Above each is where (its way along the line) x `depth` points. `chain` is the number of the line.
+    /// meet without a gap. Above each is where (its way along the line) x `depth` points. `number` is that of the line.
     pub fn chained(
         name: &str,
         line: &[Vector],
         depth: Vector,
         kerf: f64,
-        chain: usize,
+        number: usize,
     ) -> Result<Vec<Cut>, CutError> {
-        let piece = |(number, ends): (usize, &[Vector])| {
+        let pieces = line.len().saturating_sub(1);
+        let piece = |(piece, ends): (usize, &[Vector])| {
             let (from, to) = (ends[0], ends[1]);
             let plane = Plane::new(from, (to - from).cross(&depth))?;
             let corners = vec![from, to, to + depth, from + depth];
-            let name = format!("{name}, piece {}", number + 1);
+            let name = format!("{name}{}", numbered(piece));
             let cut = Cut::new(&name, plane, Some(Extent::Polygon { corners }), kerf)?;
-            Ok(Cut { chain: Some(chain), ..cut })
+            Ok(Cut { link: Some(Link { line: number, piece, pieces }), ..cut })
         };
         line.windows(2).enumerate().map(piece).collect()
     }
@@ -155,7 +168,46 @@ impl Cut {
     /// The number of the line that it is a piece of. Such a piece has no sides far from itself: bone of a step lies on both
     /// sides of the plane of each of its pieces.
     pub fn chain(&self) -> Option<usize> {
-        self.chain
+        self.link.map(|link| link.line)
+    }
+
+    /// The name of the cut, or of the line that it is a piece of.
+    pub fn line_name(&self) -> &str {
+        let own = self.link.and_then(|link| self.name.strip_suffix(&numbered(link.piece)));
+        own.unwrap_or(&self.name)
+    }
+
+    /// Whether a point is above the plane; of a piece of a line never undecided, as no centre of a voxel is taken to lie on it.
+    pub fn is_above(&self, point: &Vector) -> bool {
+        self.plane.height(&self.off_grid(point)) > 0.0
+    }
+
+    fn off_grid(&self, point: &Vector) -> Vector {
+        match self.link {
+            Some(_) => point + Vector::from(OFF_GRID),
+            None => *point,
+        }
+    }
+
+    /// Whether bone that is crossed beside the extent, on the way between two points, holds together what this cut should part. Of a
+    /// piece of a line only where the piece goes on: deeper or nearer than it is sawn, and beyond the ends of the line; what lies on its
+    /// plane beside it is parted by the next piece.
+    pub fn is_beside(&self, one: &Vector, other: &Vector) -> bool {
+        if self.is_above(one) == self.is_above(other) || self.parts(one, other) {
+            return false;
+        }
+        let (Some(link), Reach::Polygon(corners)) = (self.link, &self.reach) else { return true };
+        let [from, to, .., back] = corners.as_slice() else { return true };
+        let at = flat(&self.plane, &self.crossing(one, other));
+        let along = side_of(*from, *back, at) / side_of(*from, *back, *to);
+        (link.piece == 0 || along >= 0.0) && (link.piece + 1 == link.pieces || along <= 1.0)
+    }
+
+    /// Where the straight way between two points on both sides of the plane meets it.
+    fn crossing(&self, one: &Vector, other: &Vector) -> Vector {
+        let [one, other] = [one, other].map(|point| self.off_grid(point));
+        let [below, above] = [one, other].map(|point| self.plane.height(&point));
+        one + (other - one) * (below / (below - above))
     }
 
     /// As much of a closed path on the plane as the saw reaches; `None` where its extent is no convex polygon. Where the path falls
@@ -217,16 +269,14 @@ impl Cut {
 
     /// Whether a point is turned to sawdust: nearer to the plane than half the width of the saw, within its extent.
     pub fn saws(&self, point: &Vector) -> bool {
-        self.kerf > 0.0 && self.plane.height(point).abs() <= self.kerf / 2.0 && self.reaches(point)
+        self.kerf > 0.0
+            && self.plane.height(point).abs() <= self.kerf / 2.0
+            && self.reaches(&self.off_grid(point))
     }
 
     /// Whether the saw parts two points: the straight way between them meets the plane within the extent.
     pub fn parts(&self, one: &Vector, other: &Vector) -> bool {
-        let [below, above] = [one, other].map(|point| self.plane.height(point));
-        if (below > 0.0) == (above > 0.0) {
-            return false;
-        }
-        self.reaches(&(one + (other - one) * (below / (below - above))))
+        self.is_above(one) != self.is_above(other) && self.reaches(&self.crossing(one, other))
     }
 
     /// Whether a point is on that side, beyond the width of the saw.
@@ -261,6 +311,11 @@ impl Extent {
     }
 }
 
+/// What tells the name of a piece from that of its line.
+fn numbered(piece: usize) -> String {
+    format!(", piece {}", piece + 1)
+}
+
 /// A point in the axes of a plane.
 fn flat(plane: &Plane, point: &Vector) -> [f64; 2] {
     plane.axes.map(|axis| (point - plane.point).dot(&axis))
@@ -288,105 +343,5 @@ fn holds(corners: &[[f64; 2]], [x, y]: &[f64; 2]) -> bool {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn square(kerf: f64) -> Cut {
-        let plane = Plane::new(Vector::new(1.0, 2.0, 3.0), Vector::new(0.0, 0.0, 5.0)).unwrap();
-        let corners = [[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0]];
-        let corners = corners.map(|[x, y]| Vector::new(x, y, -7.0)).to_vec();
-        Cut::new("square", plane, Some(Extent::Polygon { corners }), kerf).unwrap()
-    }
-
-    #[test]
-    fn a_polygon_parts_what_lies_across_it_and_nothing_beside_it() {
-        let cut = square(0.0);
-        let way = |x: f64, y: f64| [Vector::new(x, y, 2.5), Vector::new(x, y, 4.0)];
-        for (x, y, parted) in
-            [(2.0, 2.0, true), (3.9, 0.1, true), (4.1, 2.0, false), (-0.1, 2.0, false)]
-        {
-            let [below, above] = way(x, y);
-            assert_eq!(cut.parts(&below, &above), parted, "{x} {y}");
-            assert_eq!(cut.parts(&above, &below), parted, "{x} {y}");
-            assert!(!cut.parts(&below, &Vector::new(x, y, 2.9)));
-        }
-    }
-
-    #[test]
-    fn a_path_is_clipped_to_what_the_saw_reaches() {
-        let cut = square(0.0);
-        let path = |corners: &[[f64; 2]]| {
-            corners.iter().map(|&[x, y]| Vector::new(x, y, 3.0)).collect::<Vec<_>>()
-        };
-        let area_of = |path: &[Vector]| {
-            let corners: Vec<_> = path.iter().map(|p| flat(cut.plane(), p)).collect();
-            area(&corners).abs()
-        };
-        // A larger square, one that sticks out on one side, and one beside.
-        let clipped = |corners: &[[f64; 2]]| cut.clipped(&path(corners)).unwrap();
-        let all = clipped(&[[-9.0, -9.0], [9.0, -9.0], [9.0, 9.0], [-9.0, 9.0]]);
-        assert!((area_of(&all) - 16.0).abs() < 1e-12);
-        let half = clipped(&[[1.0, 1.0], [9.0, 1.0], [9.0, 3.0], [1.0, 3.0]]);
-        assert!((area_of(&half) - 6.0).abs() < 1e-12, "{half:?}");
-        assert!(clipped(&[[5.0, 5.0], [9.0, 5.0], [9.0, 9.0]]).is_empty());
-        let within = [[1.0, 1.0], [3.0, 1.0], [3.0, 3.0]];
-        assert_eq!(clipped(&within), path(&within));
-    }
-
-    #[test]
-    fn a_line_saws_parallelograms_that_meet_and_have_the_same_side_above() {
-        let line = [[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [4.0, 0.0, 2.0], [9.0, 0.0, 2.0]];
-        let line = line.map(Vector::from);
-        let cuts = Cut::chained("step", &line, Vector::y() * -5.0, 0.5, 7).unwrap();
-        let names: Vec<&str> = cuts.iter().map(|cut| cut.name.as_str()).collect();
-        assert_eq!(names, ["step, piece 1", "step, piece 2", "step, piece 3"]);
-        let normals: Vec<Vector> = cuts.iter().map(|cut| cut.plane().normal()).collect();
-        assert_eq!(normals, [-Vector::z(), Vector::x(), -Vector::z()]);
-        assert!(cuts.iter().all(|cut| cut.chain() == Some(7) && cut.kerf() == 0.5));
-        let parts = |from: [f64; 3], to: [f64; 3]| {
-            let (from, to) = (Vector::from(from), Vector::from(to));
-            cuts.iter().filter(|cut| cut.parts(&from, &to)).count()
-        };
-        assert_eq!(parts([2.0, -1.0, -1.0], [2.0, -1.0, 1.0]), 1);
-        assert_eq!(parts([6.0, -1.0, -1.0], [6.0, -1.0, 1.0]), 0, "below the step");
-        assert_eq!(parts([6.0, -1.0, 1.0], [6.0, -1.0, 3.0]), 1);
-        assert_eq!(parts([3.0, -1.0, 1.0], [5.0, -1.0, 1.0]), 1, "through the riser");
-        assert_eq!(parts([2.0, -6.0, -1.0], [2.0, -6.0, 1.0]), 0, "deeper than it is sawn");
-        let along = Cut::chained("cut", &line, Vector::x(), 0.0, 0).unwrap_err();
-        assert_eq!(along, CutError::Normal);
-    }
-
-    #[test]
-    fn a_saw_with_a_width_leaves_nothing_within_half_of_it() {
-        let cut = square(1.0);
-        let at = |z: f64| Vector::new(2.0, 2.0, z);
-        let sides = |z: f64| [Side::Below, Side::Above].map(|side| cut.leaves(&at(z), side));
-        assert_eq!([2.4, 2.6, 3.4, 3.6].map(|z| cut.saws(&at(z))), [false, true, true, false]);
-        assert_eq!(sides(2.4), [true, false]);
-        assert_eq!(sides(2.6), [false, false]);
-        assert_eq!(sides(3.6), [false, true]);
-    }
-
-    #[test]
-    fn the_axes_of_a_plane_are_right_handed() {
-        for normal in [[0.0, 0.0, 2.0], [1.0, 1.0, 1.0], [-3.0, 0.1, 0.0]] {
-            let plane = Plane::new(Vector::zeros(), Vector::from(normal)).unwrap();
-            let [u, v] = plane.axes();
-            assert!((u.cross(&v) - plane.normal()).norm() < 1e-15);
-        }
-    }
-
-    #[test]
-    fn figures_that_cut_nothing_are_refused() {
-        let plane = Plane::new(Vector::zeros(), Vector::z()).unwrap();
-        let cut = |extent, kerf| Cut::new("cut", plane, extent, kerf).unwrap_err();
-        assert_eq!(Plane::new(Vector::zeros(), Vector::zeros()), Err(CutError::Normal));
-        assert_eq!(Plane::new(Vector::repeat(f64::NAN), Vector::z()), Err(CutError::Point));
-        assert_eq!(cut(None, -1.0), CutError::Kerf { kerf: -1.0 });
-        let disc = Extent::Disc { radius: 0.0 };
-        assert_eq!(cut(Some(disc), 0.0), CutError::Radius { radius: 0.0 });
-        let corners = vec![Vector::zeros(), Vector::x(), Vector::x() * 2.0];
-        let line = cut(Some(Extent::Polygon { corners }), 0.0);
-        assert_eq!(line, CutError::Polygon { corners: 3, area: 0.0 });
-    }
-}
+#[path = "cut_tests.rs"]
+mod tests;

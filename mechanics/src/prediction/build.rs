@@ -139,16 +139,17 @@ impl Scene {
 
 /// The bones of a case that have a surface, with the movements of their segments.
 fn bones(case: &Case, segments: &[PlannedSegment]) -> Vec<BoneSurface> {
-    let of_bone = |bone: &Bone| {
+    let of_bone = |(place, bone): (usize, &Bone)| {
         let segment = segments.iter().find(|segment| segment.name == bone.name);
         Some(BoneSurface {
             name: bone.name.clone(),
+            place,
             is_carried: segment.is_some(),
             surface: case.surfaces.get(&bone.surface)?.clone(),
             movement: segment.map(|segment| segment.movement).unwrap_or_default(),
         })
     };
-    case.bones.iter().filter_map(of_bone).collect()
+    case.bones.iter().enumerate().filter_map(of_bone).collect()
 }
 
 /// The warning of a plan that says something and moves nothing. An empty one is a case without a plan.

@@ -58,7 +58,7 @@ pub use method::{Laws, Method, MethodKind, MethodProperties, Unknowns};
 pub use muscle::PULL;
 pub use muscle_field::{MuscleBody, MuscleField, MuscleTissue};
 pub use nonlinearity::{Estimated, Nonlinearity, NonlinearityUnknown};
-pub use numerical_error::{NotEstimated, NumericalError};
+pub use numerical_error::{NUMERICAL_ERROR_LARGE, NotEstimated, NumericalError};
 pub use numerics_revision::NUMERICS_REVISION;
 pub use problem::{SceneError, SceneErrors};
 pub use reaction::ConditionReaction;
@@ -154,7 +154,7 @@ fn described(scene: &Scene, answer: Answer, progress: &dyn Progress) -> Predicti
     let missing = numerical_error.as_ref().map(|error| at_landmarks(&error.missing));
     Prediction {
         reactions: reaction::by_class(scene, &equilibrium, contact.as_ref()),
-        condition_reactions: reaction::by_condition(scene, &equilibrium),
+        condition_reactions: reaction::by_condition(scene, &equilibrium, contact.as_ref()),
         nonlinearity,
         landmarks: landmarks.into_iter().map(|(name, (moved, _))| (name, moved)).collect(),
         landmarks_missing: missing

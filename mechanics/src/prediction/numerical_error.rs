@@ -12,6 +12,9 @@ use crate::model::problem::ModelError;
 use crate::progress::Progress;
 use crate::solver::SolverError;
 
+/// The code of answers whose mesh is estimated to leave out much.
+pub const NUMERICAL_ERROR_LARGE: &str = "numerical-error-large";
+
 /// The mean over the skin above which an answer says how large its error is, in mm.
 const LARGE_MM: f64 = 0.1;
 
@@ -145,6 +148,6 @@ fn large(scene: &Scene, error: &NumericalError) -> Option<Warning> {
         false => "the mesh leaves out",
     };
     let detail = format!("{what} an estimated {mean:.2} mm in the mean over the skin");
-    let warning = Warning::new("numerical-error-large", detail);
+    let warning = Warning::new(NUMERICAL_ERROR_LARGE, detail);
     Some(warning.with("mean_mm", mean).with("p95_mm", at(0.95)).with("max_mm", at(1.0)))
 }

@@ -10,6 +10,7 @@ use super::contact::Touch;
 use super::scene::Scene;
 use super::stated::{StatedCondition, StatedHold};
 use crate::boundary::NodeClass;
+use crate::boundary::contact::BoneSurface;
 use crate::mesh::Vector;
 use crate::model::fem::contact::Pressed;
 use crate::model::problem::Equilibrium;
@@ -17,13 +18,13 @@ use crate::model::problem::Equilibrium;
 /// Normals of one node that differ by less are one wall.
 const ONE_WALL: f64 = 1e-6;
 
-/// The force that one condition exerts on the tissue.
+/// The force that one condition exerts on the tissue, or a bone that it presses on.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ConditionReaction {
     pub pointer: String,
     /// The name of the segment that moves it.
     pub segment: Option<String>,
-    /// The nodes of which it holds a direction that nothing stronger holds.
+    /// The nodes of which it holds a direction that nothing stronger holds; of a bone those that press on it.
     pub nodes: usize,
     /// In mN.
     pub force: Vector,
@@ -61,8 +62,13 @@ struct Rest {
     is_held: [bool; 3],
 }
 
-/// Sums the reactions of each condition by itself, in the order in which they are stated.
-pub(super) fn by_condition(scene: &Scene, equilibrium: &Equilibrium) -> Vec<ConditionReaction> {
+/// Sums the reactions of each condition by itself, in the order in which they are stated, and after them what the surface of each
+/// bone presses with, so that all of them and the loads add up to zero.
+pub(super) fn by_condition(
+    scene: &Scene,
+    equilibrium: &Equilibrium,
+    contact: Option<&Touch>,
+) -> Vec<ConditionReaction> {
     let mut rest = vec![Rest::default(); scene.mesh.nodes.len()];
     for (hold, reaction) in scene.conditions.holds.iter().zip(&equilibrium.reactions) {
         rest[hold.node as usize] = Rest { force: *reaction, is_held: [true; 3] };
@@ -107,7 +113,29 @@ pub(super) fn by_condition(scene: &Scene, equilibrium: &Equilibrium) -> Vec<Cond
             share_out(&rest[node as usize].force, &walls, &mut sums);
         }
     }
+    sums.extend(by_bone(scene, contact));
     sums
+}
+
+/// What the surface of each bone presses with, where it does.
+fn by_bone(scene: &Scene, contact: Option<&Touch>) -> Vec<ConditionReaction> {
+    let of_bone = |(number, bone): (usize, &BoneSurface)| {
+        let mut own = ConditionReaction {
+            pointer: format!("/case/bones/{}", bone.place),
+            segment: bone.is_carried.then(|| bone.name.clone()),
+            nodes: 0,
+            force: Vector::zeros(),
+        };
+        let pressed = contact.iter().flat_map(|touch| &touch.contact.pressed);
+        for Pressed { row, force } in pressed {
+            if row.bone.is_some_and(|on| on.bone as usize == number) {
+                own.force += row.normal() * *force;
+                own.nodes += 1;
+            }
+        }
+        (own.nodes > 0).then_some(own)
+    };
+    scene.bones.iter().enumerate().filter_map(of_bone).collect()
 }
 
 impl ConditionReaction {

@@ -108,14 +108,20 @@ fn check(from: &[Vector], to: &[Vector]) -> Result<(), AlignmentError> {
     if from.len() < FEWEST {
         return Err(AlignmentError::FewLandmarks { points: from.len(), needed: FEWEST });
     }
-    let mut offsets = Matrix3xX::zeros(from.len());
-    let middle = from.iter().sum::<Vector>() / from.len() as f64;
-    for (column, point) in from.iter().enumerate() {
+    require_thickness(from, SMALLEST_THICKNESS)
+}
+
+/// Refuses points that are thinner than a share of their length: they lie in a plane, or too nearly so for what is wanted of
+/// them. Both are the roots of the mean squared distances from their middle along the principal axes.
+pub fn require_thickness(points: &[Vector], share: f64) -> Result<(), AlignmentError> {
+    let mut offsets = Matrix3xX::zeros(points.len());
+    let middle = points.iter().sum::<Vector>() / points.len() as f64;
+    for (column, point) in points.iter().enumerate() {
         offsets.set_column(column, &(point - middle));
     }
-    let spreads = offsets.singular_values() / (from.len() as f64).sqrt();
+    let spreads = offsets.singular_values() / (points.len() as f64).sqrt();
     let (length, thickness) = (spreads[0], spreads[2]);
-    if thickness <= SMALLEST_THICKNESS * length {
+    if thickness <= share * length {
         return Err(AlignmentError::Coplanar { thickness, length });
     }
     Ok(())

@@ -8,6 +8,7 @@ mod deadline;
 mod error;
 mod estimated;
 mod failure;
+mod held_against;
 mod levels;
 pub mod methods;
 pub mod paired;
@@ -22,14 +23,16 @@ pub mod stability;
 pub mod sweep;
 mod truth;
 mod truth_cost;
+mod truth_error;
 mod truth_words;
 pub mod variant;
 
 pub use answer::LONG_S;
 pub use failure::StudyError;
+pub use held_against::{LINEAR_TRUTH, TRUTH_WITHOUT_CONTACT, WITHIN_TRUTH_ERROR};
 pub use levels::{MOST_CELLS, cells_at};
 pub use report::{Errors, Outcome, Report, Row, SceneReport, Skipped, Solved};
-pub use run::{LINEAR_TRUTH, NOT_RUN, run};
+pub use run::{NOT_RUN, run};
 pub use truth_cost::{TruthCost, TruthMesh, truth_cost};
 pub use variant::{
     ClosedForm, Materials, Scan, ScanMetric, Strain, Study, StudyScene, Truth, Variant,

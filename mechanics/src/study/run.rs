@@ -3,29 +3,24 @@
 use super::Stopwatch;
 use super::answer::{Answer, Bench, NoAnswer, Refusal};
 use super::cell_sizes::cell_size;
-use super::error::{DisplacedSkin, Measured};
 use super::failure::StudyError;
+use super::held_against::{SceneTruths, TrueSkins};
 use super::levels::Levels;
-use super::report::{Outcome, Report, Row, SceneReport, Skipped, Solved};
-use super::scan::{ScannedSkin, before_operation, is_partial};
-use super::truth::{Asked, is_the_truth};
-use super::variant::{Materials, Strain, Study, StudyScene, Truth, Variant};
+use super::report::{Outcome, Report, Row, SceneReport, Skipped};
+use super::scan::ScannedSkin;
+use super::truth::{Asked, is_in_contact, itself};
+use super::variant::{Materials, Study, StudyScene, Truth, Variant};
 use crate::mesh::Warning;
 use crate::prediction::{Plan, Scene, Settings, Skin};
 use crate::progress::Progress;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// The code of answers of finite strain that are held against a linear truth: their error has in it what linearity leaves out of
-/// the truth.
-pub const LINEAR_TRUTH: &str = "linear-truth";
 /// The code of rows that were not begun, because the time of the study was used up.
 pub const NOT_RUN: &str = "not-run";
 
-/// The code of rows whose skin moves where a scan has nothing opposite.
-const PARTIAL: &str = "partial-coverage";
-
 /// Runs every scene with every plan, material, level and variant. The same study gives the same report but for times
-/// and memory. Combinations that are the truth themselves have no row, nor have variants that do not serve a scene.
+/// and memory. Combinations that are the truth themselves have no row, nor have variants that do not serve a scene: both are told
+/// as skipped.
 pub fn run(
     study: &Study,
     stopwatch: &dyn Stopwatch,
@@ -112,28 +107,24 @@ impl<'a> SceneWork<'a> {
         // 3. What is true.
         let begin = self.bench.stopwatch.seconds();
         let asked = Asked { scene: self.scene, skins: &skins, progress: self.bench.progress };
-        let has_answers = attempts.iter().flatten().any(|attempt| attempt.answer.is_ok());
-        let truths = if has_answers { asked.find(&mut levels)? } else { asked.nothing() };
+        let wanted = [false, true].map(|contact| {
+            let answered = attempts.iter().flatten().filter(|attempt| attempt.answer.is_ok());
+            answered.into_iter().any(|own| is_in_contact(self.scene, own.variant) == contact)
+        });
+        let truths = SceneTruths::find(&asked, &mut levels, wanted)?;
         let truth_s = self.bench.stopwatch.seconds() - begin;
 
         // 4. How far apart they are.
         let (mut rows, mut of_scan) = (Vec::new(), OfScan::default());
         let farthest = self.farthest(&attempts);
         let mut attempts = attempts.into_iter();
-        let plans = self.scene.plans.iter().zip(&skins).zip(&truths.skins).zip(&farthest);
-        for ((((plan, _), skin), of_plan), farthest) in plans {
+        let plans = self.scene.plans.iter().zip(&skins).zip(&farthest);
+        for (of_plan, (((plan, _), skin), farthest)) in plans.enumerate() {
             let scanned = self.scanned(skin, farthest);
-            for (materials, truth) in self.scene.materials.iter().zip(of_plan) {
+            for (place, materials) in self.scene.materials.iter().enumerate() {
                 let truth = match &scanned {
-                    Some(scanned) => {
-                        scanned.as_ref().map(TrueSkin::Scanned).map_err(Refusal::clone)
-                    }
-                    None => {
-                        let strain = self.scene.truth.strain();
-                        DisplacedSkin::of(skin, truth, strain)
-                            .map(Box::new)
-                            .map(TrueSkin::Displaced)
-                    }
+                    Some(scanned) => TrueSkins::Scanned(scanned),
+                    None => truths.of(self.scene, skin, (of_plan, place)),
                 };
                 for attempt in attempts.next().into_iter().flatten() {
                     rows.push(self.row(plan, materials, attempt, &truth));
@@ -204,17 +195,16 @@ impl<'a> SceneWork<'a> {
         skin: &Result<Skin, Refusal>,
     ) -> Result<(Vec<Attempt<'a>>, Vec<Skipped>), StudyError> {
         let (mut attempts, mut skipped) = (Vec::new(), Vec::new());
+        let mut unserved: Vec<Skipped> = Vec::new();
         for &level in &self.study.levels {
             for variant in self.study.variants_of(self.place) {
                 if self.bench.progress.is_cancelled() {
                     return Err(StudyError::Cancelled);
                 }
-                if is_the_truth(self.scene, variant, level) {
-                    continue;
-                }
-                let unserved = skipped.iter().find(|other: &&Skipped| other.label == variant.label);
-                if let Some(unserved) = unserved.cloned() {
-                    skipped.push(unserved);
+                let before = unserved.iter().find(|other| other.label == variant.label).cloned();
+                let truth = || itself(self.scene, variant, level);
+                if let Some(none) = before.or_else(|| Some(self.skipped(variant, truth()?))) {
+                    skipped.push(none);
                     continue;
                 }
                 if let Some(before) = late.get(&(level, variant.label.as_str())) {
@@ -226,7 +216,8 @@ impl<'a> SceneWork<'a> {
                     Ok(answer) => Attempt { level, variant, answer: Ok(answer) },
                     Err(NoAnswer::Refused(why)) => Attempt { level, variant, answer: Err(why) },
                     Err(NoAnswer::Unserved(reason)) => {
-                        skipped.push(self.skipped(variant, reason));
+                        unserved.push(self.skipped(variant, reason));
+                        skipped.extend(unserved.last().cloned());
                         continue;
                     }
                     Err(NoAnswer::Late(why)) => {
@@ -268,16 +259,10 @@ impl<'a> SceneWork<'a> {
         self.bench.answer(&case, &materials.plan(plan), variant, skin.nodes())
     }
 
-    fn row(
-        &self,
-        plan: &str,
-        materials: &Materials,
-        attempt: Attempt,
-        truth: &Result<TrueSkin, Refusal>,
-    ) -> Row {
+    fn row(&self, plan: &str, materials: &Materials, attempt: Attempt, truth: &TrueSkins) -> Row {
         let Attempt { level, variant, answer } = attempt;
         let element = answer.as_ref().map_or_else(|_| String::new(), |a| a.elements.clone());
-        let outcome = match answer.and_then(|answer| solved(answer, truth)) {
+        let outcome = match answer.and_then(|answer| truth.judge(variant, answer)) {
             Ok(solved) => Outcome::Solved(Box::new(solved)),
             Err(Refusal { code, detail }) => Outcome::Failed { code, detail },
         };
@@ -320,62 +305,10 @@ struct OfScan {
 impl OfScan {
     fn of(scanned: ScannedSkin, rows: &[Row]) -> Self {
         let unmoved = scanned.unmoved();
+        let told = unmoved.as_ref().and_then(|unmoved| scanned.before_operation(unmoved, rows));
         let ScannedSkin { about, noise, mut warnings, .. } = scanned;
-        warnings.extend(unmoved.and_then(|unmoved| before_operation(unmoved, rows)));
+        warnings.extend(told);
+        let unmoved = unmoved.map(|measured| measured.error.mean);
         OfScan { about: Some(about), unmoved, noise, warnings }
     }
-}
-
-/// What answers are held against.
-enum TrueSkin<'a> {
-    Displaced(Box<DisplacedSkin<'a>>),
-    Scanned(&'a ScannedSkin<'a>),
-}
-
-impl TrueSkin<'_> {
-    fn measure(&self, answer: &Answer) -> Result<Measured, Refusal> {
-        match self {
-            TrueSkin::Displaced(skin) => {
-                let measured = skin.measure(answer);
-                measured.map_err(|error| Refusal::new("not-measured", error.to_string()))
-            }
-            TrueSkin::Scanned(skin) => skin.measure(&answer.displacement),
-        }
-    }
-
-    /// Whether an answer is one of finite strain, and the truth is not.
-    fn is_linear_beside(&self, answer: &Answer) -> bool {
-        match self {
-            TrueSkin::Displaced(skin) => {
-                skin.strain == Some(Strain::Small) && answer.strain == Strain::Finite
-            }
-            TrueSkin::Scanned(_) => false,
-        }
-    }
-}
-
-fn solved(mut answer: Answer, truth: &Result<TrueSkin, Refusal>) -> Result<Solved, Refusal> {
-    let truth = truth.as_ref().map_err(Refusal::clone)?;
-    let measured = truth.measure(&answer)?;
-    let is_beside = truth.is_linear_beside(&answer);
-    answer.warnings.extend(is_beside.then(|| LINEAR_TRUTH.to_owned()));
-    answer.warnings.extend(is_partial(measured.covered_share).then(|| PARTIAL.to_owned()));
-    Ok(Solved {
-        unknowns: answer.unknowns,
-        iterations: answer.iterations,
-        wall_s: answer.time.wall_s,
-        repeats: answer.time.repeats,
-        peak_mb: answer.time.peak_mb,
-        skin_mean_mm: measured.skin_mean_mm,
-        error: measured.error,
-        closest_point: measured.closest_point,
-        regions: measured.regions,
-        numerical_error: measured.estimated.numerical_error,
-        linearity_error: measured.estimated.linearity_error,
-        effectivity: measured.estimated.effectivity,
-        chosen: answer.chosen,
-        smallest_det_f: answer.smallest_det_f,
-        warnings: answer.warnings,
-        covered_share: measured.covered_share,
-    })
 }

@@ -146,10 +146,27 @@ impl<'a> ScannedSkin<'a> {
         })
     }
 
-    /// D of the skin as it is before anything moves; none where it cannot be measured.
-    pub(super) fn unmoved(&self) -> Option<f64> {
+    /// Of the skin as it is before anything moves; none where it cannot be measured.
+    pub(super) fn unmoved(&self) -> Option<Measured> {
         let rest = vec![Vector::zeros(); self.skin.surface.points.len()];
-        self.measure(&rest).ok().map(|measured| measured.error.mean)
+        self.measure(&rest).ok()
+    }
+
+    /// A warning where no answer is nearer to the scan than the skin at rest: by the distance that is asked for, and by closest points
+    /// too, since partners of points may be those of another scan.
+    pub(super) fn before_operation(&self, unmoved: &Measured, rows: &[Row]) -> Option<Warning> {
+        let by = |of: fn(&Errors, &Errors) -> f64| {
+            let mean = |row: &Row| match &row.outcome {
+                Outcome::Solved(solved) => Some(of(&solved.error, &solved.closest_point)),
+                Outcome::Failed { .. } => None,
+            };
+            let rest = of(&unmoved.error, &unmoved.closest_point);
+            before_operation(rest, rows.iter().filter_map(mean))
+        };
+        by(|error, _| error.mean).or_else(|| match self.partners {
+            Partners::None => None,
+            Partners::Points(_) | Partners::Landmarks(_) => by(|_, closest| closest.mean),
+        })
     }
 
     fn distances(&self, predicted: &TriangleSurface) -> Result<[Distances; 2], Refusal> {
@@ -184,13 +201,8 @@ impl<'a> ScannedSkin<'a> {
     }
 }
 
-/// A warning where no answer is nearer to the scan than the skin at rest.
-pub(super) fn before_operation(unmoved: f64, rows: &[Row]) -> Option<Warning> {
-    let mean = |row: &Row| match &row.outcome {
-        Outcome::Solved(solved) => Some(solved.error.mean),
-        Outcome::Failed { .. } => None,
-    };
-    let least = rows.iter().filter_map(mean).min_by(f64::total_cmp)?;
+fn before_operation(unmoved: f64, answers: impl Iterator<Item = f64>) -> Option<Warning> {
+    let least = answers.min_by(f64::total_cmp)?;
     let detail = format!(
         "the scan is {unmoved:.3} mm from the skin at rest and {least:.3} mm or more from every answer: is it the scan before the operation?"
     );

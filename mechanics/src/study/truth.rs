@@ -1,23 +1,20 @@
 //! Reference solution of a scene, at the skin nodes of level 0.
 //!
-//! A refined truth is finite elements on a finer mesh. At small strain it is linear in the movements of segments, so
-//! that twelve load cases a segment serve every plan that is made of movements (`response`).
-//! Its own error is told by extrapolation from the mesh before it:
-//!
-//! e = |u_t - u_(t-1)| / (2^p - 1)        p = log2(mean |u_(t-1) - u_(t-2)| / mean |u_t - u_(t-1)|)
-//!
-//! With two meshes only p = 1: where held tissue meets free tissue u grows with the root of the distance, and
-//! twice its exponent is the order at which such a place spoils the rest, whatever the element.
+//! A refined truth is finite elements on a finer mesh. At small strain and without contact it is linear in the movements of
+//! segments, so that twelve load cases a segment serve every plan that is made of movements (`response`). Rows with contact are
+//! held against a truth with contact, plan by plan. How far a truth is off itself: `truth_error.rs`.
 
 use super::StudyError;
 use super::answer::{NoAnswer, Refusal, solve};
-use super::error;
 use super::levels::Levels;
+use super::truth_error::{OwnError, own_error};
 use super::truth_words::{grouped, halved};
 use super::variant::{ClosedForm, Materials, Strain, StudyScene, Truth, Variant};
 use crate::mesh::{CellShape, Vector, VolumeMesh};
 use crate::plan::RigidMovement;
-use crate::prediction::{Case, ElementChoice, ModelError, Plan, Scene, Settings, Skin};
+use crate::prediction::{
+    Case, ContactKind, ElementChoice, ModelError, Plan, Scene, Settings, Skin,
+};
 use crate::progress::Progress;
 use crate::response::{self, Columns, ResponseError};
 use crate::solver::SolverError;
@@ -31,9 +28,6 @@ const MEMORY_MB: f64 = 12_000.0;
 /// Plans for each segment from which on twelve columns cost less than a solve for each plan.
 pub(super) const PLANS_A_SEGMENT: usize = 3;
 
-/// Orders outside of this are chance: the meshes are too coarse to show one.
-const ORDERS: std::ops::RangeInclusive<f64> = 0.5..=4.0;
-
 /// The displacement of skin nodes in mm, or why there is none.
 pub(super) type Found = Result<Vec<Vector>, Refusal>;
 
@@ -46,6 +40,9 @@ pub(super) struct Truths {
     pub error_mm: Option<[f64; 2]>,
 }
 
+/// How a refined truth is solved.
+type How = (ElementChoice, Strain, ContactKind);
+
 /// A scene whose truth is wanted.
 pub(super) struct Asked<'a> {
     pub scene: &'a StudyScene,
@@ -54,19 +51,42 @@ pub(super) struct Asked<'a> {
     pub progress: &'a dyn Progress,
 }
 
-/// Whether a variant at a level is the discretisation that is held for true, or a finer one of its kind.
-pub(super) fn is_the_truth(scene: &StudyScene, variant: &Variant, level: u32) -> bool {
+/// Why a variant at a level has no row, where it is the discretisation that is held for true, or a finer one of its kind.
+pub(super) fn itself(scene: &StudyScene, variant: &Variant, level: u32) -> Option<String> {
     let settings = &variant.settings;
     let mesh = &scene.case.volume;
-    match &scene.truth {
-        Truth::Refined { times, element, strain } => {
-            level >= *times
-                && variant.accepted.is_none()
-                && settings.method == strain.method()
-                && settings.membrane.is_none()
-                && in_effect(settings.element, mesh) == in_effect(*element, mesh)
-        }
-        Truth::ClosedForm(_) | Truth::Known(_) | Truth::Scan(_) => false,
+    let Truth::Refined { times, element, strain } = scene.truth else { return None };
+    let element = match is_in_contact(scene, variant) {
+        true => in_contact(element),
+        false => element,
+    };
+    let is_itself = level >= times
+        && variant.accepted.is_none()
+        && settings.method == strain.method()
+        && settings.membrane.is_none()
+        && settings.contact.holds_sliding()
+        && in_effect(settings.element, mesh) == in_effect(element, mesh);
+    is_itself.then(|| {
+        format!(
+            "level {level} is the truth itself or finer than it: that is the same method and element, {}",
+            halved(times)
+        )
+    })
+}
+
+/// Whether the rows of a variant are held against a truth that was solved with contact.
+pub(super) fn is_in_contact(scene: &StudyScene, variant: &Variant) -> bool {
+    variant.settings.contact.is_unilateral() && matches!(scene.truth, Truth::Refined { .. })
+}
+
+/// The element of a truth with contact: quadratic ones know none.
+pub(super) fn in_contact(element: ElementChoice) -> ElementChoice {
+    match element {
+        ElementChoice::Quadratic => ElementChoice::Stabilised,
+        ElementChoice::Auto
+        | ElementChoice::Stabilised
+        | ElementChoice::MeanDilatation
+        | ElementChoice::Plain => element,
     }
 }
 
@@ -81,13 +101,22 @@ fn in_effect(element: ElementChoice, mesh: &VolumeMesh) -> ElementChoice {
 }
 
 impl Asked<'_> {
-    pub(super) fn find(&self, levels: &mut Levels) -> Result<Truths, StudyError> {
+    /// The truth of rows without contact, which slide where they may, or of those with it.
+    pub(super) fn find(
+        &self,
+        levels: &mut Levels,
+        contact: ContactKind,
+    ) -> Result<Truths, StudyError> {
         match &self.scene.truth {
             Truth::ClosedForm(formula) => Ok(self.closed_form(formula)),
             Truth::Known(displacement) => Ok(self.known(displacement)),
             Truth::Scan(_) => Ok(self.scanned()),
             Truth::Refined { times, element, strain } => {
-                self.refined(levels, *times, (*element, *strain))
+                let element = match contact.is_unilateral() {
+                    true => in_contact(*element),
+                    false => *element,
+                };
+                self.refined(levels, *times, (element, *strain, contact))
             }
         }
     }
@@ -138,12 +167,7 @@ impl Asked<'_> {
             .collect()
     }
 
-    fn refined(
-        &self,
-        levels: &mut Levels,
-        times: u32,
-        how: (ElementChoice, Strain),
-    ) -> Result<Truths, StudyError> {
+    fn refined(&self, levels: &mut Levels, times: u32, how: How) -> Result<Truths, StudyError> {
         // 1. The finest mesh and, for its error, one or two before it.
         let mut fields: Vec<Vec<Vec<Found>>> = Vec::new();
         let mut words = String::new();
@@ -177,7 +201,8 @@ impl Asked<'_> {
             Strain::Small => "",
             Strain::Finite => " at finite strain",
         };
-        let words = format!("{words}{strain}, {}; {own_words}", halved(times));
+        let touching = if how.2.is_unilateral() { " with contact" } else { "" };
+        let words = format!("{words}{strain}{touching}, {}; {own_words}", halved(times));
         Ok(Truths { skins: finest, words, error_mm: own.map(|own| own.mean_and_p95) })
     }
 
@@ -185,7 +210,7 @@ impl Asked<'_> {
         &self,
         levels: &mut Levels,
         (level, materials): (u32, &Materials),
-        (element, strain): (ElementChoice, Strain),
+        (element, strain, contact): How,
     ) -> Result<Solved, StudyError> {
         let usual = Settings::default();
         let relative_residual = match strain {
@@ -193,7 +218,7 @@ impl Asked<'_> {
             Strain::Finite => usual.relative_residual,
         };
         let (method, memory_mb) = (strain.method(), MEMORY_MB);
-        let settings = Settings { method, element, relative_residual, memory_mb, ..usual };
+        let settings = Settings { method, element, contact, relative_residual, memory_mb, ..usual };
         let case = match levels.case(level, materials) {
             Ok(case) => case,
             Err(refusal) => {
@@ -203,8 +228,8 @@ impl Asked<'_> {
         };
         let finer = Finer { case, settings, progress: self.progress };
         let columns = match strain {
-            Strain::Small => finer.columns(&self.scene.plans)?,
-            Strain::Finite => None,
+            Strain::Small if !contact.is_unilateral() => finer.columns(&self.scene.plans)?,
+            Strain::Small | Strain::Finite => None,
         };
         let mut words = columns.as_ref().map_or_else(String::new, |columns| {
             let elements = columns.elements.join(", ");
@@ -258,35 +283,6 @@ impl Asked<'_> {
 struct Solved {
     skins: Vec<Found>,
     words: String,
-}
-
-/// How far the finest of some fields is from the limit.
-struct OwnError {
-    order: f64,
-    is_observed: bool,
-    mean_and_p95: [f64; 2],
-}
-
-/// From the same field on two or three meshes, coarsest first.
-fn own_error(fields: &[&Vec<Vector>], areas: &[f64]) -> Option<OwnError> {
-    let steps: Vec<_> = fields
-        .windows(2)
-        .map(|pair| {
-            let apart: Vec<f64> =
-                pair[0].iter().zip(pair[1]).map(|(a, b)| (a - b).norm()).collect();
-            error::errors(&apart, areas)
-        })
-        .collect::<Result<_, _>>()
-        .ok()?;
-    let last = steps.last()?;
-    let observed = match steps.as_slice() {
-        [before, last] => (before.mean / last.mean).log2(),
-        _ => f64::NAN,
-    };
-    let is_observed = observed.is_finite();
-    let order = if is_observed { observed.clamp(*ORDERS.start(), *ORDERS.end()) } else { 1.0 };
-    let share = 1.0 / (order.exp2() - 1.0);
-    Some(OwnError { order, is_observed, mean_and_p95: [last.mean * share, last.p95 * share] })
 }
 
 /// A finer case to be solved as the truth.
@@ -373,23 +369,4 @@ fn described(elements: &str, unknowns: usize, how: &str) -> String {
 /// The level from which on meshes are solved, so that the error of the finest is known.
 pub(super) fn coarsest(times: u32) -> u32 {
     times.saturating_sub(2)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::{Vector, own_error};
-
-    #[test]
-    fn the_error_of_the_finest_field_is_extrapolated_from_the_steps_before() {
-        let on = |h: f64| vec![Vector::new(1.0 + 0.2 * h * h, 0.0, 0.0)];
-        let fields = [on(4.0), on(2.0), on(1.0)];
-        let fields: Vec<_> = fields.iter().collect();
-        let own = own_error(&fields, &[1.0]).expect("three fields");
-        // Rounding only.
-        assert!(own.is_observed && (own.order - 2.0).abs() < 1e-12);
-        assert!((own.mean_and_p95[0] - 0.2).abs() < 1e-12);
-        let own = own_error(&fields[1..], &[1.0]).expect("two fields");
-        assert!(!own.is_observed && (own.mean_and_p95[0] - 0.6).abs() < 1e-12);
-        assert!(own_error(&fields[2..], &[1.0]).is_none());
-    }
 }

@@ -1,8 +1,10 @@
 //! The cost of a refined truth, told before anything is solved: its meshes, their unknowns and the solves on them.
 
 use super::levels::cells_at;
-use super::truth::{PLANS_A_SEGMENT, coarsest, is_of_segments, moved_segments};
-use super::variant::{Strain, StudyScene, Truth};
+use super::truth::{
+    PLANS_A_SEGMENT, coarsest, in_contact, is_in_contact, is_of_segments, moved_segments,
+};
+use super::variant::{Strain, StudyScene, Truth, Variant};
 use crate::mesh::CellShape;
 use crate::prediction::{ElementChoice, Plan};
 
@@ -14,6 +16,8 @@ const WITH_EDGES: f64 = 8.0;
 pub struct TruthCost {
     /// Coarsest first: the finest, and one or two before it that tell its error.
     pub meshes: Vec<TruthMesh>,
+    /// Solved on each mesh: one, or one with contact and one without.
+    pub truths: usize,
     pub strain: Strain,
 }
 
@@ -23,15 +27,23 @@ pub struct TruthMesh {
     pub cells: f64,
     /// Of each solve.
     pub unknowns: f64,
-    /// For all plans and materials; unit movements of a segment count as the plans that cost as much.
+    /// For all plans and materials, with contact and without; unit movements of a segment count as the plans that cost as much.
     pub solves: usize,
 }
 
-/// The cost of the truth of a scene; none where nothing is solved for it.
-pub fn truth_cost(scene: &StudyScene) -> Option<TruthCost> {
+/// The cost of the truth that the rows of these variants are held against; none where nothing is solved for it.
+pub fn truth_cost<'a>(
+    scene: &StudyScene,
+    variants: impl IntoIterator<Item = &'a Variant>,
+) -> Option<TruthCost> {
     let Truth::Refined { times, element, strain } = scene.truth else { return None };
     let volume = &scene.case.volume;
-    let solves = solves(scene, strain) * scene.materials.len();
+    let (touching, others): (Vec<&Variant>, Vec<&Variant>) =
+        variants.into_iter().partition(|variant| is_in_contact(scene, variant));
+    let with = if touching.is_empty() { 0 } else { scene.plans.len() };
+    let without = if others.is_empty() { 0 } else { solves(scene, strain) };
+    let solves = (with + without) * scene.materials.len();
+    let element = if others.is_empty() { in_contact(element) } else { element };
     let is_quadratic = element == ElementChoice::Quadratic
         && volume.cells.iter().any(|(shape, _)| shape == CellShape::Tet4);
     let per_node = if is_quadratic { 3.0 * WITH_EDGES } else { 3.0 };
@@ -40,7 +52,8 @@ pub fn truth_cost(scene: &StudyScene) -> Option<TruthCost> {
         unknowns: per_node * cells_at(volume.nodes.len(), level),
         solves,
     };
-    Some(TruthCost { meshes: (coarsest(times)..=times).map(mesh).collect(), strain })
+    let truths = [with, without].iter().filter(|solves| **solves > 0).count();
+    Some(TruthCost { meshes: (coarsest(times)..=times).map(mesh).collect(), truths, strain })
 }
 
 /// Solves on one mesh with one material.

@@ -185,8 +185,8 @@ impl Found {
                 },
                 OutputName::ClassesSvg => planned.classes_picture()?.into_bytes(),
                 OutputName::DisplacementSvg => {
-                    let numbers = &statistics.skin.nodes;
-                    displacement_picture(scene, &skin.surface, frame, numbers)?.into_bytes()
+                    let (shown, of) = ((frame, input.spec.range_mm()), &statistics.skin.nodes);
+                    displacement_picture(scene, &skin.surface, shown, of)?.into_bytes()
                 }
                 skin_file => match skin.encode(skin_file, frame, &field_data)? {
                     Some(bytes) => bytes,

@@ -226,8 +226,9 @@ impl Finished<'_> {
                 },
                 OutputName::ClassesSvg => self.prepared.classes_picture()?.into_bytes(),
                 OutputName::DisplacementSvg => {
-                    let numbers = &self.statistics.skin.nodes;
-                    displacement_picture(scene, &self.skin.surface, frame, numbers)?.into_bytes()
+                    let (shown, numbers) =
+                        ((frame, input.spec.range_mm()), &self.statistics.skin.nodes);
+                    displacement_picture(scene, &self.skin.surface, shown, numbers)?.into_bytes()
                 }
                 skin => match self.skin.encode(skin, frame, &field_data)? {
                     Some(bytes) => bytes,

@@ -4,7 +4,8 @@ use mechanics::chart::{PngError, ViewOutline, ViewRow, ViewValues, ViewsPicture}
 use mechanics::mesh::{Frame, TriangleSurface, Vector};
 
 use super::content::{Block, Figure, Report, Section, Table};
-use super::tables::{mm, provenance, report, texts, warnings};
+use super::tables::{mm, provenance, report, texts};
+use super::warnings::warnings;
 use super::words::{Words, filled, words};
 use crate::jobs::result::pictures::outlook;
 use crate::schema::Language;

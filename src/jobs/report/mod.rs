@@ -11,6 +11,7 @@ mod prediction;
 mod room;
 mod study;
 mod tables;
+mod warnings;
 mod words;
 
 pub use comparison::{ComparisonFacts, SIGNED_RANGE_MM, comparison_report};

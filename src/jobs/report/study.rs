@@ -3,7 +3,8 @@
 use mechanics::chart::drawing::Document;
 
 use super::content::{Block, Figure, Report, Section, Table};
-use super::tables::{mm, provenance, report, texts, warnings};
+use super::tables::{mm, provenance, report, texts};
+use super::warnings::warnings;
 use super::words::{Words, filled, words};
 use crate::schema::Language;
 use crate::schema::predict::result::ResultDocument;
@@ -48,6 +49,9 @@ fn outcome(study: &ReportDocument, words: &Words) -> Section {
     let mut blocks = vec![Block::Paragraph(format!("{told}: {counts}"))];
     if !verdict.reasons.is_empty() {
         blocks.push(Block::List(verdict.reasons.clone()));
+    }
+    if !verdict.failing.is_empty() {
+        blocks.push(Block::List(verdict.failing.iter().map(|row| row.sentence()).collect()));
     }
     Section::new(words.outcome, blocks)
 }

@@ -1,12 +1,12 @@
-//! What all reports tell: warnings, where the numbers come from, and numbers as words.
+//! What all reports tell: where the numbers come from, and numbers as words.
 
 use mechanics::mesh::Frame;
 
 use super::content::{Block, Report, Section, Table};
 use super::room::fitted;
 use super::words::{Words, words};
+use crate::schema::Language;
 use crate::schema::predict::result::{ProvenanceDocument, ResultDocument};
-use crate::schema::{Language, WarningDocument};
 
 /// Lengths in mm: two decimals, three below 0.1.
 pub fn mm(value: f64) -> String {
@@ -23,15 +23,6 @@ pub fn number_or_dash(value: Option<f64>) -> String {
 pub fn signed(value: f64) -> String {
     let text = mm(value);
     if value >= 5e-4 { format!("+{text}") } else { text }
-}
-
-pub fn warnings(list: &[WarningDocument], words: &Words) -> Section {
-    if list.is_empty() {
-        let none = Block::Paragraph(words.no_warnings.to_owned());
-        return Section::new(words.warnings, vec![none]);
-    }
-    let told = list.iter().map(|warning| format!("{} ({})", warning.detail, warning.code));
-    Section::new(words.warnings, vec![Block::List(told.collect())])
 }
 
 /// Versions, hashes, the plan and when it was made.

@@ -7,6 +7,9 @@ use mechanics::registration::mirror::check_mirror;
 use mechanics::registration::performed::{BoneBefore, Performed, median_distance};
 use mechanics::registration::{RigidTransform, SurfaceAlignment};
 
+/// The code of scans that are in the wrong order.
+pub(super) const BEFORE_OPERATION: &str = "before-operation-suspect";
+
 /// Bone that was not operated on fits to 0.1 to 0.25 mm, 0.5 % of it beyond 1 mm (Zachow et al. 2006, section 3.2).
 const MISFIT: f64 = 0.25;
 
@@ -15,6 +18,11 @@ const MOVED: f64 = 0.02;
 
 /// In mm: bone nearer than that lies on a surface.
 const LIES: f64 = 0.25;
+
+/// A segment that goes and turns by less was not moved: a hundredth of what planned movements are, and a tenth of what a registration
+/// of bone leaves.
+const STAYS_MM: f64 = 0.02;
+const STAYS_DEG: f64 = 0.02;
 
 /// Farther than that from one scan, as a multiple of how far from the other, it lies on the other only.
 const FARTHER: f64 = 3.0;
@@ -97,8 +105,30 @@ pub(super) fn lies_on_the_other_scan(
          from that of `after`: are the two scans swapped?",
         segment.name.trim()
     );
-    let warning = Warning::new("before-operation-suspect", detail);
+    let warning = Warning::new(BEFORE_OPERATION, detail);
     Some(warning.with("to_before_mm", to_before).with("to_after_mm", to_after))
+}
+
+/// Both scans are the same surface, or no segment goes anywhere: something that an operation never does.
+pub(super) fn same_scan(
+    before: &TriangleSurface,
+    after: &TriangleSurface,
+    found: &[Performed],
+) -> Option<Warning> {
+    let is_same = before.points == after.points && before.triangles == after.triangles;
+    let gone = |own: &Performed| (own.movement.apply(&own.centre) - own.centre).norm();
+    let farthest = found.iter().map(gone).fold(0.0, f64::max);
+    let turned = found.iter().map(|own| own.movement.angle().to_degrees()).fold(0.0, f64::max);
+    let stays = !found.is_empty() && farthest <= STAYS_MM && turned <= STAYS_DEG;
+    (is_same || stays).then(|| {
+        let told = if is_same { "the scans before and after the operation are one surface" } else { "no segment was moved" };
+        let detail = format!(
+            "{told}: the segment that goes farthest goes {farthest:.3} mm, and the one that turns most turns {turned:.3} degrees; is `after` \
+             the scan before the operation?"
+        );
+        let warning = Warning::new("nothing-performed", detail).with("farthest_mm", farthest);
+        warning.with("turned_deg", turned)
+    })
 }
 
 /// A movement that is nearer to the plan backwards than to the plan, by how far the middle of the segment goes.
@@ -120,6 +150,6 @@ pub(super) fn undoes_the_plan(
          scans before and after the operation swapped?",
         segment.name.trim()
     );
-    let warning = Warning::new("before-operation-suspect", detail);
+    let warning = Warning::new(BEFORE_OPERATION, detail);
     Some(warning.with("to_planned_mm", to_plan).with("to_undone_mm", to_undone))
 }

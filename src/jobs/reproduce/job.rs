@@ -2,7 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use super::doubts::{base_warnings, lies_on_the_other_scan, misfit, undoes_the_plan, unmasked};
+use super::doubts::{
+    BEFORE_OPERATION, base_warnings, lies_on_the_other_scan, misfit, same_scan, undoes_the_plan,
+    unmasked,
+};
 use super::input::ReproduceInput;
 use crate::jobs::clock::Observed;
 use crate::jobs::compare::{by_landmarks, place_of, surface_of};
@@ -155,7 +158,7 @@ impl Scans<'_> {
         let base = align_base(&bone, &after, self.clock).map_err(|error| self.failed(&error))?;
         let mut warnings = base_warnings(&bone, &after, &base);
         warnings.extend(unmasked(spec, &base));
-        let mut segments = Vec::new();
+        let (mut segments, mut all) = (Vec::new(), Vec::new());
         for (index, segment) in spec.segments.iter().enumerate() {
             let at = at.key("segments").index(index);
             let own = match &segment.before {
@@ -181,7 +184,10 @@ impl Scans<'_> {
             };
             warnings.extend(swapped);
             segments.push(self.document(segment, &found));
+            all.push(found);
         }
+        let is_swapped = warnings.iter().any(|told| told.code == BEFORE_OPERATION);
+        warnings.extend(same_scan(&before, &after, &all).filter(|_| !is_swapped));
         let plan = PlanDocument {
             segments: segments.iter().map(plan_segment).collect(),
             frame: frame.map(FrameName::from),

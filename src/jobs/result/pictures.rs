@@ -57,11 +57,11 @@ pub fn classes_picture(scene: &Scene, frame: Frame, title: &str) -> Result<Strin
     .to_svg()
 }
 
-/// `displacement.svg`: the skin before, after, and coloured by how far it moves.
+/// `displacement.svg`: the skin before, after, and coloured by how far it moves, from 0 to a range in mm.
 pub fn displacement_picture(
     scene: &Scene,
     moved: &TriangleSurface,
-    frame: Frame,
+    (frame, range_mm): (Frame, f64),
     statistics: &StatDocument,
 ) -> Result<String, PngError> {
     let before = &scene.skin.surface;
@@ -83,6 +83,7 @@ pub fn displacement_picture(
         after: &moved.points,
         outlook: outlook(frame, before),
         frame: frame.name(),
+        range_mm,
         statistics: &numbers,
     }
     .to_svg()

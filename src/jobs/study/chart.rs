@@ -4,11 +4,30 @@ use super::words::{in_words, scene_in_words, variant_in_words};
 use crate::schema::study::report::{ReportDocument, RowDocument, RowStatus};
 use mechanics::chart::drawing::Document;
 use mechanics::chart::svg::svg;
-use mechanics::chart::{EstimateMark, EstimatesPicture, LadderFailure, LadderMark, LadderPicture};
-use mechanics::study::{LINEAR_TRUTH, pareto};
+use mechanics::chart::{
+    EstimateMark, EstimatesPicture, LadderFailure, LadderMark, LadderPicture, MethodSeries,
+};
+use mechanics::study::{LINEAR_TRUTH, TRUTH_WITHOUT_CONTACT, WITHIN_TRUTH_ERROR, pareto};
 
 /// The longest reason that a chart tells; the report has it in full.
 const REASON: usize = 110;
+
+/// What rows with these warnings are not: as near to the truth, or as far from it, as they are drawn.
+pub const MARKED: [(&str, &str); 3] = [
+    (
+        LINEAR_TRUTH,
+        "answers of finite strain are held against a linear truth: what linearity leaves out of it counts as their error.",
+    ),
+    (
+        TRUTH_WITHOUT_CONTACT,
+        "answers with contact are held against a truth without: what contact changes counts as their error, which cannot be compared \
+         with that of the other rows.",
+    ),
+    (
+        WITHIN_TRUTH_ERROR,
+        "nearer to the truth than the truth is known: their error says that it is small, and not how small.",
+    ),
+];
 
 /// The chart of one scene, or of all where none is named, as SVG.
 pub fn chart(report: &ReportDocument, scene: Option<&str>) -> String {
@@ -19,11 +38,11 @@ pub fn chart(report: &ReportDocument, scene: Option<&str>) -> String {
 pub fn chart_drawing(report: &ReportDocument, scene: Option<&str>) -> Document {
     let rows: Vec<&RowDocument> =
         report.rows.iter().filter(|row| scene.is_none_or(|scene| row.scene == scene)).collect();
-    let labels = labels(&rows);
+    let series = series(report);
     let (mut marks, mut failures) = (Vec::new(), Vec::new());
-    for (place, &label) in labels.iter().enumerate() {
+    for (place, MethodSeries { label, .. }) in series.iter().enumerate() {
         for level in levels(&rows, label) {
-            let of = |row: &&RowDocument| row.label == label && row.level == level;
+            let of = |row: &&RowDocument| row.label == *label && row.level == level;
             let own: Vec<&RowDocument> = rows.iter().copied().filter(of).collect();
             marks.extend(mark(&own, place, level));
             failures.extend(failed(&own, place, level));
@@ -36,7 +55,7 @@ pub fn chart_drawing(report: &ReportDocument, scene: Option<&str>) -> Document {
     let picture = LadderPicture {
         title: &title(report, scene),
         subtitle: &subtitle(report, &rows, scene),
-        series: &in_words_of(&labels),
+        series: &series,
         marks: &marks,
         failures: &failures,
         notes: &notes(report, &rows, scene),
@@ -48,12 +67,13 @@ pub fn chart_drawing(report: &ReportDocument, scene: Option<&str>) -> Document {
 pub fn estimates_chart(report: &ReportDocument) -> Option<String> {
     let known = |row: &&RowDocument| row.numbers.as_ref().is_some_and(|n| n.effectivity.is_some());
     let rows: Vec<&RowDocument> = report.rows.iter().filter(known).collect();
-    let labels = labels(&rows);
+    let methods = series(report);
     let mark = |row: &&RowDocument| {
         let numbers = row.numbers.as_ref()?;
-        let series = labels.iter().position(|label| *label == row.label)?;
-        let true_mm = numbers.mean_mm;
-        Some(EstimateMark { series, true_mm, estimated_mm: numbers.effectivity? * true_mm })
+        let series = methods.iter().position(|own| own.label == row.label)?;
+        let (level, true_mm) = (row.level, numbers.mean_mm);
+        let estimated_mm = numbers.effectivity? * true_mm;
+        Some(EstimateMark { series, level, true_mm, estimated_mm })
     };
     let marks: Vec<EstimateMark> = rows.iter().filter_map(mark).collect();
     let within =
@@ -66,7 +86,7 @@ pub fn estimates_chart(report: &ReportDocument) -> Option<String> {
             within.count(),
             marks.len()
         ),
-        series: &in_words_of(&labels),
+        series: &methods,
         marks: &marks,
         notes: &[
             "Estimated without the truth: what the mesh leaves out, and what linearity does where the truth is one of finite \
@@ -79,19 +99,23 @@ pub fn estimates_chart(report: &ReportDocument) -> Option<String> {
     (!marks.is_empty()).then(|| svg(&picture.to_drawing(), title))
 }
 
-/// Labels of rows, each once.
-fn labels<'a>(rows: &[&'a RowDocument]) -> Vec<&'a str> {
-    let mut labels: Vec<&str> = Vec::new();
-    for row in rows {
-        if !labels.contains(&row.label.as_str()) {
-            labels.push(&row.label);
+/// The ways of modelling of a report in the order of its rows, each once: every chart of it gives each the same symbol, whichever
+/// of them it shows.
+fn series(report: &ReportDocument) -> Vec<MethodSeries> {
+    let mut series: Vec<MethodSeries> = Vec::new();
+    for row in &report.rows {
+        if !series.iter().any(|known| known.label == row.label) {
+            let (label, method) = (row.label.clone(), row.method.clone());
+            let is_apart = |other: &RowDocument| {
+                other.label == label
+                    && other.warnings.iter().any(|own| own == TRUTH_WITHOUT_CONTACT)
+            };
+            let apart = if report.rows.iter().any(is_apart) { " (not comparable)" } else { "" };
+            let name = variant_in_words(&label) + apart;
+            series.push(MethodSeries { name, label, method });
         }
     }
-    labels
-}
-
-fn in_words_of(labels: &[&str]) -> Vec<String> {
-    labels.iter().map(|label| variant_in_words(label)).collect()
+    series
 }
 
 fn levels(rows: &[&RowDocument], label: &str) -> Vec<u32> {
@@ -195,15 +219,16 @@ fn notes(report: &ReportDocument, rows: &[&RowDocument], scene: Option<&str>) ->
         let (name, truth) = (scene_in_words(&about.name), in_words(&about.truth));
         notes.push(format!("Truth of the {name}: {truth}{error}."));
     }
-    let is_beside = |row: &&RowDocument| row.warnings.iter().any(|code| code == LINEAR_TRUTH);
-    if rows.iter().any(is_beside) {
-        let words = "Answers of finite strain are held against a linear truth: what linearity leaves out of it counts as their error.";
-        notes.push(words.to_owned());
-    }
+    let marked = MARKED.iter().filter_map(|(code, words)| {
+        let is_told = |row: &&&RowDocument| row.warnings.iter().any(|own| own == code);
+        let count = rows.iter().filter(is_told).count();
+        (count > 0).then(|| format!("{count} of {} rows ({code}): {words}", rows.len()))
+    });
+    notes.extend(marked);
     let left_out = report.skipped.iter();
     for skipped in left_out.filter(|skipped| scene.is_none_or(|scene| skipped.scene == scene)) {
         notes.push(format!(
-            "{} does not apply to {}: {}.",
+            "{} has no row on {}: {}.",
             variant_in_words(&skipped.label),
             scene_in_words(&skipped.scene),
             in_words(&skipped.reason)

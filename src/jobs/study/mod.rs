@@ -16,7 +16,7 @@ mod truth;
 pub mod verdict;
 pub mod words;
 
-pub use chart::{chart, chart_drawing, estimates_chart};
+pub use chart::{MARKED, chart, chart_drawing, estimates_chart};
 pub use input::StudyInput;
 pub use job::study_job;
 pub use prepare::ALL_METHODS;

@@ -105,10 +105,11 @@ fn all_methods(study: &Study) -> Warning {
 
 /// How often truths are solved on a mesh with one set of materials.
 pub fn truth_meshes(study: &Study) -> usize {
-    let of = |scene: &StudyScene| {
-        truth_cost(scene).map_or(0, |cost| cost.meshes.len() * scene.materials.len())
+    let of = |(place, scene): (usize, &StudyScene)| {
+        let cost = truth_cost(scene, study.variants_of(place));
+        cost.map_or(0, |cost| cost.truths * cost.meshes.len() * scene.materials.len())
     };
-    study.scenes.iter().map(of).sum()
+    study.scenes.iter().enumerate().map(of).sum()
 }
 
 /// How many rows a study has, with those that turn out to be the truth itself.

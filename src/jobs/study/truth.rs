@@ -12,6 +12,7 @@ use crate::schema::study::truth::{TruthDocument, TruthMethodName, TruthMetric};
 use crate::schema::{ErrorCode, Faults, Pointer, Problem, Triple};
 use mechanics::mesh::{Frame, TriangleSurface, Vector};
 use mechanics::prediction::ElementChoice;
+use mechanics::registration::thin_plate_spline::require_thickness;
 use mechanics::study::scenes::usual_truth_element;
 use mechanics::study::{MOST_CELLS, Scan, ScanMetric, Strain, StudyScene, Truth, cells_at};
 use mechanics::validation::LandmarkPair;
@@ -42,6 +43,10 @@ impl Documents<'_> {
         }
     }
 }
+
+/// Landmarks of a spline are at least so thick, as a share of their length: where they are thinner, the millimetre by which one is
+/// placed wrong is several on skin that lies off their plane.
+const LEAST_THICKNESS: f64 = 0.05;
 
 /// Skin counts that some answer moves by more than this, in mm, where nothing else is stated: more than registration
 /// leaves of bone that nothing was done to.
@@ -147,7 +152,20 @@ fn metric(
             };
             let pairs: Result<Vec<LandmarkPair>, Problem> =
                 truth.landmarks_mm.iter().map(pair).collect();
-            Ok(ScanMetric::Landmarks(pairs?))
+            let pairs = pairs?;
+            let (of_case, of_scan): (Vec<Vector>, Vec<Vector>) =
+                pairs.iter().map(|pair| (pair.prediction, pair.actual)).unzip();
+            for (whose, points) in [("case", of_case), ("scan", of_scan)] {
+                require_thickness(&points, LEAST_THICKNESS).map_err(|error| {
+                    let count = points.len();
+                    let detail = format!(
+                        "the {count} landmarks of the {whose} do not tell where a thin-plate spline takes what lies off their plane: {error}; \
+                         {LEAST_THICKNESS} of the length is the least thickness"
+                    );
+                    refused(at.key("landmarks_mm"), ErrorCode::AlignmentFailed, detail)
+                })?;
+            }
+            Ok(ScanMetric::Landmarks(pairs))
         }
     }
 }

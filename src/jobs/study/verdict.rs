@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use crate::schema::study::document::{ThresholdsDocument, TolerancesDocument};
 use crate::schema::study::report::{
-    NumbersDocument, OutcomeName, ReportDocument, RowDocument, RowStatus, RowVerdict,
-    RulesDocument, StudySceneDocument, VerdictDocument,
+    FailingRowDocument, NumbersDocument, OutcomeName, ReportDocument, RowDocument, RowStatus,
+    RowVerdict, RulesDocument, StudySceneDocument, VerdictDocument,
 };
 use mechanics::plan::doubt::NOTHING_MOVES;
 
@@ -14,6 +14,11 @@ use mechanics::plan::doubt::NOTHING_MOVES;
 const NO_ERROR_MM: f64 = 1e-4;
 const NO_ITERATIONS: f64 = 5.0;
 const NO_TIME_S: f64 = 0.02;
+
+/// Measures as rows have them.
+const MEAN: &str = "mean_mm";
+const P95: &str = "p95_mm";
+const WALL: &str = "wall_s";
 
 /// An earlier study to hold rows against.
 pub enum Baseline<'a> {
@@ -39,13 +44,19 @@ pub fn judge(report: &mut ReportDocument, baseline: &Baseline) {
     };
     let rules = report.rules.clone();
     let scenes = &report.scenes;
+    let mut failing = Vec::new();
     for row in &mut report.rows {
         let answers_the_same = |_: &&RowDocument| match baseline {
             Baseline::Report(earlier) => is_same_question(row, scenes, earlier),
             Baseline::NotAsked | Baseline::Missing(_) => false,
         };
         let earlier = before.get(&place(row)).copied().filter(answers_the_same);
-        (row.verdict, row.reasons) = judge_row(row, earlier, &rules);
+        let (verdict, found) = judge_row(row, earlier, &rules);
+        if matches!(verdict, RowVerdict::Worse | RowVerdict::Failed) {
+            failing.extend(found.iter().map(|reason| reason.of(row)));
+        }
+        row.verdict = verdict;
+        row.reasons = found.into_iter().map(|reason| reason.words).collect();
     }
     let now: Vec<Place> = report.rows.iter().map(place).collect();
     let common = before.keys().filter(|earlier| now.contains(earlier)).count();
@@ -53,7 +64,7 @@ pub fn judge(report: &mut ReportDocument, baseline: &Baseline) {
         !now.contains(place) && (row.status == RowStatus::Solved || !is_skipped(report, row))
     };
     let lost = before.iter().filter(is_lost).count();
-    report.verdict = whole(report, baseline, (common, lost));
+    report.verdict = VerdictDocument { failing, ..whole(report, baseline, (common, lost)) };
 }
 
 /// Whether the variant of a row is told to serve its scene not.
@@ -70,19 +81,51 @@ fn unheld(report: &ReportDocument) -> Vec<&str> {
     labels.filter(|label| !has_row(label) && is_left_out(label)).collect()
 }
 
+/// Why a row is no pass: in a sentence, and what it has of a measure and may have, where it has it.
+#[derive(Default)]
+struct Reason {
+    measure: Option<&'static str>,
+    value: Option<f64>,
+    limit: Option<f64>,
+    words: String,
+}
+
+impl Reason {
+    fn of(&self, row: &RowDocument) -> FailingRowDocument {
+        let finite = |value: Option<f64>| value.filter(|value| value.is_finite());
+        FailingRowDocument {
+            scene: row.scene.clone(),
+            plan: row.plan.clone(),
+            label: row.label.clone(),
+            material: row.material.clone(),
+            level: row.level,
+            measure: self.measure.map(str::to_owned),
+            value: finite(self.value),
+            limit: finite(self.limit),
+            reason: self.words.clone(),
+        }
+    }
+}
+
+impl From<String> for Reason {
+    fn from(words: String) -> Self {
+        Reason { words, ..Reason::default() }
+    }
+}
+
 fn judge_row(
     row: &RowDocument,
     before: Option<&RowDocument>,
     rules: &RulesDocument,
-) -> (RowVerdict, Vec<String>) {
+) -> (RowVerdict, Vec<Reason>) {
     let numbers = match (row.status, &row.numbers) {
-        (RowStatus::NotRun, _) => return (RowVerdict::NotRun, vec![not_run(row)]),
+        (RowStatus::NotRun, _) => return (RowVerdict::NotRun, vec![not_run(row).into()]),
         (RowStatus::Solved, Some(numbers)) => numbers,
         _ => return failed(row, before, rules),
     };
     if row.warnings.iter().any(|code| code == NOTHING_MOVES) {
         let why = "its plan moves nothing, and every method answers that without error".to_owned();
-        return (RowVerdict::Failed, vec![why]);
+        return (RowVerdict::Failed, vec![why.into()]);
     }
     let mut reasons = Vec::new();
     if let Some(thresholds) = &rules.thresholds {
@@ -103,34 +146,36 @@ fn failed(
     row: &RowDocument,
     before: Option<&RowDocument>,
     rules: &RulesDocument,
-) -> (RowVerdict, Vec<String>) {
+) -> (RowVerdict, Vec<Reason>) {
     let kind = row.error.as_ref().map_or("unknown", |error| error.kind.as_str());
     let detail = row.error.as_ref().map_or("", |error| error.detail.as_str());
     if rules.expected_failures.contains(&row.label) {
-        return (RowVerdict::KnownFailure, vec![format!("may fail: {kind}: {detail}")]);
+        return (RowVerdict::KnownFailure, vec![format!("may fail: {kind}: {detail}").into()]);
     }
     let earlier = before.and_then(|row| row.error.as_ref());
     if earlier.is_some_and(|earlier| earlier.kind == kind) {
-        return (RowVerdict::KnownFailure, vec![format!("as in the baseline: {kind}: {detail}")]);
+        let words = format!("as in the baseline: {kind}: {detail}");
+        return (RowVerdict::KnownFailure, vec![words.into()]);
     }
     let solved_before = before.is_some_and(|row| row.status == RowStatus::Solved);
     let words = if solved_before { "solved in the baseline, now " } else { "" };
-    (RowVerdict::Failed, vec![format!("{words}{kind}: {detail}")])
+    (RowVerdict::Failed, vec![format!("{words}{kind}: {detail}").into()])
 }
 
 /// The thresholds that a row exceeds.
-fn above(row: &RowDocument, numbers: &NumbersDocument, bounds: &ThresholdsDocument) -> Vec<String> {
+fn above(row: &RowDocument, numbers: &NumbersDocument, bounds: &ThresholdsDocument) -> Vec<Reason> {
     if !bounds.labels.is_empty() && !bounds.labels.contains(&row.label) {
         return Vec::new();
     }
     let measured = [
-        ("mean error", numbers.mean_mm, bounds.mean_mm, "mm"),
-        ("p95 error", numbers.p95_mm, bounds.p95_mm, "mm"),
-        ("wall time", numbers.wall_s, bounds.wall_s, "s"),
+        (MEAN, "mean error", numbers.mean_mm, bounds.mean_mm, "mm"),
+        (P95, "p95 error", numbers.p95_mm, bounds.p95_mm, "mm"),
+        (WALL, "wall time", numbers.wall_s, bounds.wall_s, "s"),
     ];
-    let exceeds = measured.into_iter().filter_map(|(name, value, bound, unit)| {
+    let exceeds = measured.into_iter().filter_map(|(measure, name, value, bound, unit)| {
         let bound = bound.filter(|&bound| value > bound)?;
-        Some(format!("{name} {value:.4} {unit} is above the threshold {bound} {unit}"))
+        let words = format!("{name} {value:.4} {unit} is above the threshold {bound} {unit}");
+        Some(Reason { measure: Some(measure), value: Some(value), limit: Some(bound), words })
     });
     exceeds.collect()
 }
@@ -140,10 +185,11 @@ fn grown(
     now: &NumbersDocument,
     before: &NumbersDocument,
     tolerances: &TolerancesDocument,
-) -> Vec<String> {
-    let error = Growth { name: "p95 error", unit: " mm", digits: 4, slack: NO_ERROR_MM };
-    let iterations = Growth { name: "iterations", unit: "", digits: 0, slack: NO_ITERATIONS };
-    let time = Growth { name: "wall time", unit: " s", digits: 4, slack: NO_TIME_S };
+) -> Vec<Reason> {
+    let growth = |measure, name, unit, digits, slack| Growth { measure, name, unit, digits, slack };
+    let error = growth(P95, "p95 error", " mm", 4, NO_ERROR_MM);
+    let iterations = growth("iterations", "iterations", "", 0, NO_ITERATIONS);
+    let time = growth(WALL, "wall time", " s", 4, NO_TIME_S);
     let measured = [
         error.beyond(now.p95_mm, before.p95_mm, Some(tolerances.p95_ratio)),
         iterations.beyond(
@@ -158,6 +204,8 @@ fn grown(
 
 /// A number of a row that may grow.
 struct Growth {
+    /// As documents call it.
+    measure: &'static str,
     name: &'static str,
     unit: &'static str,
     digits: usize,
@@ -167,16 +215,18 @@ struct Growth {
 
 impl Growth {
     /// The sentence where it grew by more than is allowed; without a ratio it is not judged.
-    fn beyond(&self, now: f64, before: f64, ratio: Option<f64>) -> Option<String> {
-        let Growth { name, unit, digits, slack } = *self;
+    fn beyond(&self, now: f64, before: f64, ratio: Option<f64>) -> Option<Reason> {
+        let Growth { measure, name, unit, digits, slack } = *self;
+        let of = |limit, words| Reason { measure: Some(measure), value: Some(now), limit, words };
         if ratio.is_some() && !before.is_finite() {
-            return Some(format!("{name} of the baseline is no number"));
+            return Some(of(None, format!("{name} of the baseline is no number")));
         }
         let ratio = ratio.filter(|ratio| now > before * ratio && now > before + slack)?;
         let times = now / before;
-        Some(format!(
+        let words = format!(
             "{name} {now:.digits$}{unit} is {times:.2} times the {before:.digits$}{unit} of the baseline, {ratio} are allowed"
-        ))
+        );
+        Some(of(Some(f64::max(before * ratio, before + slack)), words))
     }
 }
 
@@ -289,5 +339,6 @@ fn whole(
         not_run: not_run as u64,
         skipped: report.skipped.iter().map(|skipped| skipped.rows).sum(),
         baseline,
+        failing: Vec::new(),
     }
 }

@@ -187,6 +187,21 @@ pub struct ValidationDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub coverage: Option<f64>,
+    #[serde(flatten)]
+    pub gains: GainsDocument,
+    /// Of a deformation model of all cases.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub modes: Option<ModesDocument>,
+    /// Where each case is predicted from those of other classes of surgery. Absent where one has fewer than two of these.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub other_classes: Option<OtherClassesDocument>,
+}
+
+/// Whom a method betters and whom it harms.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct GainsDocument {
     /// Cases that are farther from the others than 95 % of these among each other: a prediction of them is refused.
     pub refused: Vec<String>,
     /// Cases that it brings farther from the truth than mechanics does.
@@ -198,14 +213,6 @@ pub struct ValidationDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub gain_of_others_mm: Option<f64>,
-    /// Of a deformation model of all cases.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false)]
-    pub modes: Option<ModesDocument>,
-    /// Where each case is predicted from those of other classes of surgery. Absent where one has fewer than two of these.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false)]
-    pub other_classes: Option<OtherClassesDocument>,
 }
 
 /// The modes of a deformation model.
@@ -223,15 +230,8 @@ pub struct ModesDocument {
 pub struct OtherClassesDocument {
     pub mean: f64,
     pub p95: f64,
-    /// Cases of which a prediction is refused.
-    pub refused: Vec<String>,
-    pub harmed: Vec<String>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false)]
-    pub gain_of_refused_mm: Option<f64>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false)]
-    pub gain_of_others_mm: Option<f64>,
+    #[serde(flatten)]
+    pub gains: GainsDocument,
 }
 
 /// The nested error of a method by the number of cases that it learned from.
@@ -280,15 +280,7 @@ impl LearnedColumnDocument {
     }
 }
 
-/// Whom a method betters and whom it harms.
-struct Gains {
-    refused: Vec<String>,
-    harmed: Vec<String>,
-    of_refused: Option<f64>,
-    of_others: Option<f64>,
-}
-
-impl Gains {
+impl GainsDocument {
     /// Of a method, against what mechanics says of the same cases.
     fn new(column: &Column, is_refused: &[bool], mechanical: &[f64], names: &[String]) -> Self {
         let own = column.means();
@@ -302,10 +294,10 @@ impl Gains {
             (!cases.is_empty()).then(|| sum / cases.len() as f64)
         };
         let refused = those(&|case| is_refused[case]);
-        Gains {
+        GainsDocument {
             harmed: named(&those(&|case| gains[case] < 0.0)),
-            of_refused: gain(&refused),
-            of_others: gain(&those(&|case| !is_refused[case])),
+            gain_of_refused_mm: gain(&refused),
+            gain_of_others_mm: gain(&those(&|case| !is_refused[case])),
             refused: named(&refused),
         }
     }
@@ -314,25 +306,18 @@ impl Gains {
 impl ValidationDocument {
     /// Of a method, against what mechanics says of the same cases.
     pub fn new(validated: &Validated, mechanical: &[f64], names: &[String]) -> Self {
-        let gains = Gains::new(&validated.nested, &validated.is_refused, mechanical, names);
-        let other = |own: &OtherClasses| {
-            let gains = Gains::new(&own.column, &own.is_refused, mechanical, names);
-            OtherClassesDocument {
-                mean: own.column.mean(),
-                p95: own.column.p95(),
-                refused: gains.refused,
-                harmed: gains.harmed,
-                gain_of_refused_mm: gains.of_refused,
-                gain_of_others_mm: gains.of_others,
-            }
+        let gains = |column: &Column, is_refused: &[bool]| {
+            GainsDocument::new(column, is_refused, mechanical, names)
+        };
+        let other = |own: &OtherClasses| OtherClassesDocument {
+            mean: own.column.mean(),
+            p95: own.column.p95(),
+            gains: gains(&own.column, &own.is_refused),
         };
         ValidationDocument {
             method: validated.nested.name.clone(),
             coverage: validated.coverage,
-            harmed: gains.harmed,
-            gain_of_refused_mm: gains.of_refused,
-            gain_of_others_mm: gains.of_others,
-            refused: gains.refused,
+            gains: gains(&validated.nested, &validated.is_refused),
             modes: validated.modes.map(Into::into),
             other_classes: validated.other_classes.as_ref().map(other),
         }

@@ -15,7 +15,8 @@ pub struct AdequacyDocument {
     /// The same over parts of the skin.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub accepted_regions_mm: BTreeMap<String, f64>,
-    /// Whether the estimate of the model that was taken is within it.
+    /// Whether the estimate of the model that was taken is within it, and its skin does not pass through itself by more, which no
+    /// estimate has.
     pub met: bool,
     /// The model that was taken: `linear`, `second_order` or `finite_strain`, or one of these with what its mesh leaves out
     /// added: `corrected`, `second_order_corrected`, `finite_strain_corrected`.
@@ -87,9 +88,17 @@ impl AdequacyDocument {
                 self.taken, self.accepted_mm
             );
         };
-        let verdict = match self.met {
-            true => "the cheapest model within",
-            false => {
+        let of_regions = taken.map(|rung| &rung.regions_mm).into_iter().flatten();
+        let mut over = of_regions.filter(|(name, error)| {
+            self.accepted_regions_mm.get(*name).is_some_and(|accepted| *error > accepted)
+        });
+        let is_accepted = error <= self.accepted_mm && over.next().is_none();
+        let verdict = match (self.met, is_accepted) {
+            (true, _) => "the cheapest model within",
+            (false, true) => {
+                "the cheapest model whose expected error is accepted, and its skin passes through itself by more than the accepted"
+            }
+            (false, false) => {
                 "the cheapest whose error is within a quarter of the least that was found, short of"
             }
         };
@@ -116,6 +125,44 @@ impl From<&Considered> for RungDocument {
             expected_s: considered.expected_s,
             spent_s: considered.spent_s,
             passed_over: considered.passed_over.clone(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn chosen(met: bool, error_mm: f64, of_region_mm: f64) -> String {
+        let rung = RungDocument {
+            name: "linear".to_owned(),
+            error_mm: Some(error_mm),
+            regions_mm: [("lips".to_owned(), of_region_mm)].into(),
+            expected_s: 1.0,
+            spent_s: Some(1.0),
+            passed_over: None,
+        };
+        let document = AdequacyDocument {
+            accepted_mm: 0.1,
+            accepted_regions_mm: [("lips".to_owned(), 0.2)].into(),
+            met,
+            taken: "linear".to_owned(),
+            mesh_mm: None,
+            linearity_mm: None,
+            third_order_mm: None,
+            mesh_at_rest_mm: None,
+            rungs: vec![rung],
+        };
+        document.why()
+    }
+
+    #[test]
+    fn an_accepted_error_that_is_not_met_is_no_error_that_falls_short() {
+        let through_itself = "its skin passes through itself by more than the accepted 0.1 mm";
+        assert!(chosen(true, 0.05, 0.1).contains("is the cheapest model within 0.1 mm"));
+        assert!(chosen(false, 0.05, 0.1).contains(through_itself));
+        for short in [chosen(false, 0.15, 0.1), chosen(false, 0.05, 0.3)] {
+            assert!(short.ends_with("short of 0.1 mm"), "{short}");
         }
     }
 }

@@ -137,7 +137,8 @@ pub struct ResultDocument {
     #[serde(default)]
     #[schema(deprecated)]
     pub reaction_mn: BTreeMap<String, Triple>,
-    /// The same for each condition of the case and the plan by itself.
+    /// The same for each condition of the case and the plan by itself, and for each bone that tissue presses on: with the loads they
+    /// add up to zero.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub reactions: Vec<ReactionDocument>,
     pub provenance: ProvenanceDocument,
@@ -199,13 +200,13 @@ pub struct FileDocument {
 /// The force that one condition exerts on the tissue.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct ReactionDocument {
-    /// Its place in the case or the plan, e.g. `/case/sliding/0` or `/plan/prescribed/1`.
+    /// Its place in the case or the plan, e.g. `/case/sliding/0`, `/plan/prescribed/1` or `/case/bones/0`.
     pub condition: String,
     /// The segment that moves it; absent of what no segment moves.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub segment: Option<String>,
-    /// The nodes of which it holds a direction that no stronger condition holds.
+    /// The nodes of which it holds a direction that no stronger condition holds; of a bone the points that press on it.
     pub nodes: u64,
     /// In mN.
     pub force_mn: Triple,

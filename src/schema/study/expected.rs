@@ -6,7 +6,7 @@ use utoipa::ToSchema;
 use crate::schema::methods::time_band;
 use crate::schema::predict::time_band::TimeBandDocument;
 use mechanics::prediction::NEWTON_MAY_TAKE;
-use mechanics::study::{Strain, StudyScene, TruthCost, truth_cost};
+use mechanics::study::{Strain, Study, StudyScene, TruthCost, truth_cost};
 
 /// The cost of the truth of one scene that is solved on finer meshes; no part of any row.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
@@ -21,7 +21,7 @@ pub struct TruthCostDocument {
     pub cells: u64,
     /// Of the finest.
     pub unknowns: u64,
-    /// On each mesh, for all plans and materials.
+    /// On each mesh, for all plans and materials, with contact and without as rows are.
     pub solves: u64,
     /// Of all solves on one thread, in s.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -34,9 +34,11 @@ fn linear() -> String {
 }
 
 /// The truths of scenes that are solved for.
-pub fn truth_costs(scenes: &[StudyScene]) -> Vec<TruthCostDocument> {
-    let cost = |scene: &StudyScene| Some(document(&scene.name, &truth_cost(scene)?));
-    scenes.iter().filter_map(cost).collect()
+pub fn truth_costs(study: &Study) -> Vec<TruthCostDocument> {
+    let cost = |(place, scene): (usize, &StudyScene)| {
+        Some(document(&scene.name, &truth_cost(scene, study.variants_of(place))?))
+    };
+    study.scenes.iter().enumerate().filter_map(cost).collect()
 }
 
 fn document(scene: &str, cost: &TruthCost) -> TruthCostDocument {

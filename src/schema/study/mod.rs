@@ -10,3 +10,4 @@ pub mod reference;
 pub mod report;
 pub mod scene;
 pub mod truth;
+pub mod verdict;

@@ -9,6 +9,7 @@ use super::cell_sizes::CellSizesDocument;
 use super::constants::ConstantMapDocument;
 use super::document::{ThresholdsDocument, TolerancesDocument};
 pub use super::scene::{StudySceneDocument, TruthErrorDocument};
+pub use super::verdict::{FailingRowDocument, OutcomeName, VerdictDocument};
 use crate::schema::engine::EngineDocument;
 
 /// The report of a study. Errors are distances at the skin nodes of level 0 from where the truth has them, by area; of a
@@ -42,7 +43,8 @@ pub struct ReportDocument {
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     #[schema(required = false)]
     pub constant_maps: Vec<ConstantMapDocument>,
-    /// What does not apply, which has no rows and judges nothing: variants that do not serve a scene.
+    /// What has no rows and judges nothing: variants that do not serve a scene, and levels at which a variant is the truth itself or
+    /// finer.
     #[serde(default)]
     #[schema(required = false)]
     pub skipped: Vec<SkippedDocument>,
@@ -72,64 +74,7 @@ pub struct RowsOfDocument {
     pub created: String,
 }
 
-/// Whether a change may pass.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum OutcomeName {
-    /// Everything ran, and nothing is worse.
-    Pass,
-    /// A row is above a threshold, worse than in the baseline, or failed.
-    Worse,
-    /// Rows did not run, or none was solved, or the baseline has rows that this study lacks.
-    #[default]
-    Incomplete,
-    /// A baseline was asked for, and there is none to compare with.
-    NoBaseline,
-}
-
-impl OutcomeName {
-    pub fn name(self) -> &'static str {
-        match self {
-            OutcomeName::Pass => "pass",
-            OutcomeName::Worse => "worse",
-            OutcomeName::Incomplete => "incomplete",
-            OutcomeName::NoBaseline => "no-baseline",
-        }
-    }
-
-    /// With which the command line ends.
-    pub fn exit_code(self) -> u8 {
-        match self {
-            OutcomeName::Pass => 0,
-            OutcomeName::Worse => 1,
-            OutcomeName::Incomplete => 4,
-            OutcomeName::NoBaseline => 5,
-        }
-    }
-}
-
-/// The outcome and what led to it.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct VerdictDocument {
-    pub outcome: OutcomeName,
-    /// Sentences with the numbers.
-    pub reasons: Vec<String>,
-    pub rows: u64,
-    pub solved: u64,
-    pub failed: u64,
-    pub worse: u64,
-    pub not_run: u64,
-    /// Rows that there would be if every variant served every scene.
-    #[serde(default)]
-    #[schema(required = false)]
-    pub skipped: u64,
-    /// The job of the baseline.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false)]
-    pub baseline: Option<String>,
-}
-
-/// A variant that does not serve a scene.
+/// A variant that does not serve a scene, or is the truth itself at a level.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 pub struct SkippedDocument {
     pub scene: String,

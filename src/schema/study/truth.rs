@@ -17,7 +17,7 @@ use mechanics::study::Strain;
 const MOST_LEVEL: u32 = 4;
 
 /// Of a spline.
-const FEWEST_LANDMARKS: usize = 4;
+const FEWEST_LANDMARKS: usize = 5;
 
 /// No skin moves farther, in mm.
 const FARTHEST_MM: f64 = 100.0;
@@ -152,8 +152,8 @@ impl TruthDocument {
         match (self.metric, count) {
             (TruthMetric::TpsCp, 0..FEWEST_LANDMARKS) => {
                 let detail = format!(
-                    "a thin-plate spline needs {FEWEST_LANDMARKS} landmarks that lie in no plane, here are {count}; four of them give an \
-                     affine map only"
+                    "a thin-plate spline needs {FEWEST_LANDMARKS} landmarks that lie in no plane, here are {count}; four of them meet \
+                     every affine map, so that nothing would show a wrong one"
                 );
                 faults.add(&place, ErrorCode::AlignmentFailed, detail);
             }

@@ -25,11 +25,15 @@ fn meshed(risks: Value) -> Result<(ResultDocument, TempDir), String> {
 }
 
 fn meshed_by(osteotomy: Value) -> Result<(ResultDocument, TempDir), String> {
+    meshed_finely(osteotomy, json!([]))
+}
+
+fn meshed_finely(osteotomy: Value, fine: Value) -> Result<(ResultDocument, TempDir), String> {
     let read = format::read(&ball_ct(), &ReadLimits::default()).unwrap();
     let scan = StoredMesh::new(read, None, "scan".to_owned());
     let sources = Meshes(BTreeMap::from([("scan".to_owned(), scan)]));
     let spec = json!({
-        "kind": "mesh", "scan": "scan", "thresholds_hu": {"skin": -480, "bone": 620}, "size": {"tetrahedra": 8000},
+        "kind": "mesh", "scan": "scan", "thresholds_hu": {"skin": -480, "bone": 620}, "size": {"tetrahedra": 8000, "fine": fine},
         "osteotomy": osteotomy
     });
     let spec = serde_json::from_value(spec).unwrap();
@@ -113,6 +117,52 @@ fn a_stepped_cut_is_meshed_and_each_of_its_pieces_has_the_area_of_the_bone_there
     let [segment] = &meshing.segments[..] else { panic!("{:?}", meshing.segments) };
     let wanted = (low + 0.5 * (high - low)) / 1000.0;
     assert!((segment.volume_ml / wanted - 1.0).abs() < 0.08, "{segment:?} {wanted}");
+}
+
+#[test]
+fn a_wide_saw_is_not_told_to_touch_bone_that_stays_as_its_dust_does() {
+    let (result, _folder) = meshed_by(json!({
+        "cuts": [{"name": "low", "point_mm": [0, 0, 48], "normal": [0, 0, 2], "kerf_mm": 9}],
+        "segments": [{"name": "jaw", "below": ["low"]}]}))
+    .unwrap();
+    let codes: Vec<&str> = result.warnings.iter().map(|warning| warning.code.as_str()).collect();
+    assert!(!codes.contains(&"bones-touch"), "{:?}", result.warnings);
+}
+
+#[test]
+fn a_line_that_begins_beside_the_bone_is_one_cut_and_told_once_where_all_of_it_is_there() {
+    let told = |line: Value| -> Vec<(String, Value)> {
+        let mut asked = steps(80.0);
+        asked["polylines"][0]["polyline_mm"] = line;
+        let (result, _folder) = meshed_by(asked).unwrap();
+        let missed = result.warnings.into_iter().filter(|own| own.code == "cut-meets-no-bone");
+        missed.map(|own| (own.detail, json!(own.numbers))).collect()
+    };
+    let beside = json!([
+        [0, 15, 44],
+        [20, 15, 44],
+        [60, 15, 44],
+        [60, 15, 52],
+        [100, 15, 52],
+        [120, 15, 52]
+    ]);
+    assert_eq!(told(beside), []);
+    let nowhere = told(json!([[20, 15, 144], [60, 15, 144], [60, 15, 152], [100, 15, 152]]));
+    let [(detail, numbers)] = &nowhere[..] else { panic!("{nowhere:?}") };
+    assert!(
+        detail.starts_with("cut `steps` meets no bone of a segment with any of its 3 pieces"),
+        "{detail}"
+    );
+    assert_eq!(numbers["pieces"], json!(3.0));
+}
+
+#[test]
+fn a_place_that_is_to_be_fine_and_holds_no_tissue_is_told() {
+    let fine = json!([{"sphere_mm": [60, 55, 92, 4]}, {"box_mm": [500, 0, 0, 520, 20, 20]}, {"sphere_mm": [60, 55, -400, 5]}]);
+    let (result, _folder) = meshed_finely(steps(80.0), fine).unwrap();
+    let told = result.warnings.iter().filter(|own| own.code == "fine-place-empty");
+    let places: Vec<&Value> = told.map(|own| &own.numbers["place"]).collect();
+    assert_eq!(places, [&json!(1.0), &json!(2.0)], "{:?}", result.warnings);
 }
 
 #[test]

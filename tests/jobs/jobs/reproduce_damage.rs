@@ -13,12 +13,13 @@ fn told(sources: &Meshes, spec: &Value) -> Vec<(String, Value)> {
     told.filter(|(code, _)| DOUBTS.contains(&code.as_str())).collect()
 }
 
-const DOUBTS: [&str; 5] = [
+const DOUBTS: [&str; 6] = [
     "before-operation-suspect",
     "mirrored?",
     "another-person-suspect",
     "segment-misfit",
     "base-unmasked",
+    "nothing-performed",
 ];
 
 fn codes(sources: &Meshes, spec: &Value) -> Vec<String> {
@@ -92,6 +93,25 @@ fn a_segment_that_is_a_part_of_the_scan_is_told_by_the_plan_that_it_undoes() {
     let mut unplanned = spec;
     unplanned.as_object_mut().unwrap().remove("planned");
     assert_eq!(codes(&sources, &unplanned), [""; 0], "nothing says which scan was the first");
+}
+
+#[test]
+fn the_same_scan_twice_is_told() {
+    let (_, sources, mut spec) = performed();
+    spec["segments"] = json!([{"name": "jaw", "before": {"mesh": "jaw"}}]);
+    spec.as_object_mut().unwrap().remove("planned");
+    spec["after"]["mesh"] = "before".into();
+    let found = told(&sources, &spec);
+    let [(code, warning)] = &found[..] else { panic!("{found:?}") };
+    assert_eq!(code, DOUBTS[5]);
+    assert!(warning["farthest_mm"].as_f64().unwrap() < 1e-3, "{warning}");
+    assert!(warning["detail"].as_str().unwrap().contains("one surface"), "{warning}");
+    // Written anew, with other points.
+    let again = changed(&sources, "before", |at| at + Vector::repeat(1e-4));
+    let mut sources = sources;
+    sources.0.insert("again".to_owned(), again.0["before"].clone());
+    spec["after"]["mesh"] = "again".into();
+    assert_eq!(codes(&sources, &spec), [DOUBTS[5]]);
 }
 
 #[test]

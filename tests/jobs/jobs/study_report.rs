@@ -391,3 +391,75 @@ fn rows_of_earlier_programs_have_no_estimates_and_no_chart_of_them() {
     let line = csv(&report).lines().nth(1).unwrap().to_owned();
     assert!(line.ends_with(",,,,"), "{line}");
 }
+
+#[test]
+fn an_outcome_names_its_failing_rows_with_what_they_exceed() {
+    let before = report(&[solved("fem", 0, [1.0, 0.1])], usual());
+    let mut row = solved("fem", 0, [1.0, 0.3]);
+    row["iterations"] = json!(50);
+    let rules = json!({"tolerances": {}, "expected_failures": [], "thresholds": {"mean_mm": 0.1, "p95_mm": 0.5}});
+    let rows = [row, solved("quiet", 0, [1.0, 0.1]), failed("msm", "failed", "solver-diverged")];
+    let judged = judged(&rows, rules, &Baseline::Report(&before));
+    let found: Vec<(&str, Option<&str>, Option<f64>, Option<f64>)> = judged
+        .verdict
+        .failing
+        .iter()
+        .map(|row| (row.label.as_str(), row.measure.as_deref(), row.value, row.limit))
+        .collect();
+    let expected = [
+        ("fem", Some("mean_mm"), Some(0.15), Some(0.1)),
+        ("fem", Some("p95_mm"), Some(0.3), Some(0.1 * 1.05)),
+        ("fem", Some("iterations"), Some(50.0), Some(10.0)),
+        ("msm", None, None, None),
+    ];
+    assert_eq!(found, expected);
+    let first = judged.verdict.failing[0].sentence();
+    assert_eq!(
+        first,
+        "slab, 4 mm, fem, case, level 0: mean error 0.1500 mm is above the threshold 0.1 mm"
+    );
+    let told = serde_json::to_value(judged.summary()).unwrap();
+    assert_eq!(told["verdict"]["failing"][1]["limit"], json!(0.1 * 1.05));
+    let passed = self::judged(&rows[1..2], usual(), &Baseline::NotAsked);
+    assert!(passed.verdict.failing.is_empty());
+}
+
+/// The colours within the legend entry of a variant.
+fn colours<'a>(svg: &'a str, label: &str) -> Vec<&'a str> {
+    let entry = format!("<g class=\"legend\" data-label=\"{label}\"");
+    let group = svg.split(&entry).nth(1).unwrap_or_else(|| panic!("no {label}"));
+    let group = group.split("</g>").next().unwrap();
+    group.split("stroke=\"").skip(1).map(|part| part.split('"').next().unwrap()).collect()
+}
+
+#[test]
+fn a_way_of_modelling_has_one_symbol_in_every_chart_of_a_report() {
+    let mut rows = [solved("msm newton", 0, [1.0, 0.1]), solved("fem_linear plain", 0, [2.0, 0.1])];
+    rows[1]["effectivity"] = json!(0.8);
+    let mut other = solved("fem_linear plain", 1, [2.0, 0.1]);
+    other["scene"] = json!("sphere");
+    let report = report(&[rows[0].clone(), rows[1].clone(), other], usual());
+    let all = chart(&report, None);
+    let of_all = colours(&all, "fem_linear plain");
+    assert_ne!(of_all, colours(&all, "msm newton"));
+    for svg in [chart(&report, Some("sphere")), estimates_chart(&report).unwrap()] {
+        assert_eq!(colours(&svg, "fem_linear plain"), of_all);
+        assert!(
+            !svg.contains("data-label=\"msm newton\""),
+            "what a chart does not show is not in its legend"
+        );
+    }
+    assert!(all.contains("<g class=\"mark\" data-label=\"fem_linear plain\" data-method=\"fem_linear\" data-level=\"1\">"));
+}
+
+#[test]
+fn rows_that_cannot_be_compared_are_told_in_the_legend_and_below_the_chart() {
+    let mut rows = [solved("fem_linear plain", 0, [1.0, 0.1]), solved("pressing", 0, [2.0, 0.1])];
+    rows[1]["warnings"] = json!(["truth-without-contact", "within-truth-error"]);
+    let svg = chart(&report(&rows, usual()), None);
+    let words = visible(&svg).join(" ");
+    assert!(words.contains("pressing (not comparable)"), "{words}");
+    for told in ["1 of 2 rows (truth-without-contact)", "1 of 2 rows (within-truth-error)"] {
+        assert!(words.contains(told), "{words}");
+    }
+}

@@ -330,8 +330,25 @@ fn constants_come_back_by_points_and_by_landmarks_too() {
         json!({"mesh": "other points", "metric": "tps_cp", "landmarks_mm": of(&planted)});
     assert!(least(by_landmarks.clone()) < 1e-6);
 
+    // The skin before the operation under the landmarks of that after it.
+    sources.0.insert("before".to_owned(), surface(scanned(&rest)));
+    let mut before = by_landmarks.clone();
+    before["mesh"] = json!("before");
+    let (_, codes, _) = study_of(case.clone(), &sources, &plan, before).unwrap();
+    assert!(codes.iter().any(|code| code == "before-operation-suspect"), "{codes:?}");
+
     let refused =
         |truth: Value| study_of(case.clone(), &sources, &plan, truth).map(|_| ()).unwrap_err();
+    let mut four = by_landmarks.clone();
+    four["landmarks_mm"].as_object_mut().unwrap().remove("mark 0");
+    let told = refused(four);
+    assert!(told.contains("needs 5 landmarks") && told.contains("here are 4"), "{told}");
+    let mut flat = by_landmarks.clone();
+    for (_, mark) in flat["landmarks_mm"].as_object_mut().unwrap() {
+        mark[2] = json!(0.001 * mark[2].as_f64().unwrap());
+    }
+    let told = refused(flat);
+    assert!(told.contains("the 5 landmarks of the scan") && told.contains("mm thick"), "{told}");
     let mut unknown = by_landmarks.clone();
     unknown["landmarks_mm"]["nose"] = json!([0, 0, 0]);
     let mut few = by_landmarks.clone();

@@ -118,7 +118,7 @@ async fn a_study_is_told_as_document_table_test_results_and_chart() {
     );
     let chart = report(&server, &job, "?format=svg").await;
     let text = String::from_utf8(chart.bytes.clone()).unwrap();
-    assert_eq!(text.matches("<g class=\"mark\">").count(), 2);
+    assert_eq!(text.matches("<g class=\"mark\" ").count(), 2);
 
     // The header Accept is the other way to ask.
     let path = format!("/v1/jobs/{}/report", job["id"].as_str().unwrap());

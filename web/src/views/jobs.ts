@@ -8,7 +8,6 @@ import { mm, when } from "../figures.js";
 import { aboutJob, tail } from "./called.js";
 import { kindOf, statusOf } from "./kinds.js";
 import { reportLinks } from "./reports.js";
-import { variantInWords } from "../variants.js";
 
 /** Jobs under way are looked at again after so long, in ms. */
 const AGAIN = 2000;
@@ -107,7 +106,7 @@ async function report(app: App, job: Job, into: HTMLElement): Promise<void> {
     told.replaceChildren(...(mark === undefined ? [] : [words.rowsOfMark(`${mark.label}, ${words.level} ${mark.level}`, shown.length, rows.length), " ", button(words.allRows, () => choose(undefined))]));
     place.replaceChildren(rowTable(words, shown));
   };
-  const { drawing, choose } = clickable(chart, rows, words.chart, (mark) => {
+  const { drawing, choose } = clickable(chart, words.chart, (mark) => {
     note({ study: job.id, mark: mark === undefined ? undefined : `${mark.level},${mark.label}` });
     show(mark);
   });
@@ -129,17 +128,13 @@ export interface Mark {
   level: number;
 }
 
-/** The rows of a group of the chart, by its words, which begin with the way of modelling and, where there are several, its mesh level. */
-export function markOf(title: string, rows: Mark[]): Mark | undefined {
-  const several = new Set(rows.map(({ level }) => level)).size > 1;
-  const called = ({ label, level }: Mark) => (several ? `${variantInWords(label)}, level ${level}` : variantInWords(label));
-  const fitting = rows.filter((row) => title.startsWith(`${called(row)}: `));
-  const [longest] = fitting.sort((one, other) => called(other).length - called(one).length);
-  return longest === undefined ? undefined : { label: longest.label, level: longest.level };
+/** What a group of the chart is of, as its data attributes say; nothing of groups that are no marks, and of charts of earlier programs. */
+export function markOf({ label, level }: Record<string, string | undefined>): Mark | undefined {
+  return label === undefined || level === undefined ? undefined : { label, level: Number(level) };
 }
 
 /** The chart of the service as a part of the page, whose marks are buttons; its words are the service's, and the policy of the page lets none of them run. */
-function clickable(chart: string, rows: StudyRow[], label: string, chosen: (mark: Mark | undefined) => void) {
+function clickable(chart: string, label: string, chosen: (mark: Mark | undefined) => void) {
   const root = document.importNode(new DOMParser().parseFromString(chart, "image/svg+xml").documentElement, true);
   root.setAttribute("class", "drawing chart");
   root.setAttribute("role", "group");
@@ -148,7 +143,7 @@ function clickable(chart: string, rows: StudyRow[], label: string, chosen: (mark
   root.querySelector(":scope > title")?.remove();
   const marks = [...root.querySelectorAll<SVGElement>("g.mark, g.failure")].flatMap((element) => {
     const title = element.querySelector("title")?.textContent ?? "";
-    const mark = markOf(title, rows);
+    const mark = markOf({ ...element.dataset });
     return mark === undefined ? [] : [{ element, mark, title }];
   });
   const is = (one: Mark | undefined, other: Mark) => one?.label === other.label && one.level === other.level;

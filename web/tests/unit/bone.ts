@@ -112,13 +112,8 @@ test("a stored plan turns about the points that it names, and others keep theirs
   assert.equal(fromDocument(stored, { upper: [7, 7, 7], ...own }, "LPS")?.segments.jaw?.forward, 1);
 });
 
-test("a mark is of the way of modelling and mesh level that its words begin with", () => {
-  const rows = [{ label: "fem", level: 0 }, { label: "fem", level: 1 }, { label: "fem: corrected", level: 1 }];
-  assert.deepEqual(markOf("fem, level 1: 0.2 s", rows), { label: "fem", level: 1 });
-  assert.deepEqual(markOf("fem: corrected, level 1: 0.2 s", rows), { label: "fem: corrected", level: 1 });
-  assert.deepEqual(markOf("fem: corrected: 0.2 s", [{ label: "fem", level: 2 }, { label: "fem: corrected", level: 2 }]), { label: "fem: corrected", level: 2 });
-  assert.equal(markOf("msm, level 1: 0.2 s", rows), undefined);
-  assert.deepEqual(markOf("fem: 0.2 s", [{ label: "fem", level: 2 }]), { label: "fem", level: 2 });
-  const named = [{ label: "fem_linear plain", level: 0 }, { label: "mtm damped_jacobi", level: 0 }, { label: "my_own label", level: 0 }];
-  assert.deepEqual(["linear FEM, plain: 1 s", "mass-tensor, damped Jacobi: 1 s", "my own label: 1 s"].map((title) => markOf(title, named)), named);
+test("a mark is of the way of modelling and mesh level that its data say, and what has none is no mark", () => {
+  assert.deepEqual(markOf({ label: "fem: corrected", method: "fem_linear", level: "1" }), { label: "fem: corrected", level: 1 });
+  assert.equal(markOf({ label: "fem", method: "fem_linear" }), undefined);
+  assert.equal(markOf({}), undefined);
 });

@@ -22,6 +22,8 @@ const AS_NEAR: f64 = 1e-9;
 #[derive(Clone, Debug)]
 pub struct BoneSurface {
     pub name: String,
+    /// Its place among the bones of the case.
+    pub place: usize,
     /// Whether a segment has its name and carries it.
     pub is_carried: bool,
     pub surface: Arc<TriangleSurface>,

@@ -242,7 +242,7 @@ impl Climb<'_> {
         let so_far = self.least_share();
         let left = self.accepted.time_s - self.elapsed();
         let why = if so_far <= 1.0 {
-            "a cheaper model is adequate".to_owned()
+            "the expected error of a cheaper model is accepted".to_owned()
         } else if expected.is_none() && !self.in_contact {
             "its error is not known".to_owned()
         } else if share > 1.0 && share > WORTHWHILE * so_far {

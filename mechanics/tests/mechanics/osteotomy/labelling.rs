@@ -137,8 +137,48 @@ fn a_stepped_cut_that_is_not_deep_enough_leaves_a_bridge() {
     let found = parted(&block(), stepped(8.0), vec![below_the_steps()]);
     let bridged: Vec<usize> = found.bridges.iter().map(|bridge| bridge.cut).collect();
     assert_eq!(bridged, [0, 1, 2]);
-    // Behind y = 8 three or four rows of voxels of eight columns hang together.
-    assert!(found.bridges.iter().all(|bridge| bridge.faces >= 8 * 3), "{:?}", found.bridges);
+    // Behind y = 8 three or four rows of voxels of eight columns, or four layers of the riser, hang together, and nothing else.
+    for bridge in &found.bridges {
+        let rows = bridge.faces / if bridge.cut == 1 { 4 } else { 8 };
+        let area = if bridge.cut == 1 { 2.0 } else { 1.0 } * bridge.faces as f64;
+        assert!((3..=4).contains(&rows), "{bridge:?}");
+        assert_eq!(bridge.area_mm2, area, "{bridge:?}");
+        assert!(bridge.centre.y > 9.0, "{bridge:?}");
+    }
+}
+
+#[test]
+fn a_line_whose_corners_lie_on_centres_of_voxels_parts_the_bone_without_a_bridge() {
+    // Corners in x from 9 to 10 and in z from 12 to 14, where centres lie at whole x and even z.
+    for x in [9.0, 9.5, 10.0] {
+        for z in [12.0, 13.0, 14.0] {
+            for (turn, depth) in [(false, 14.0), (true, -14.0)] {
+                let line = [[0.0, 0.0, z], [x, 0.0, z], [x, 0.0, z + 8.0], [20.0, 0.0, z + 8.0]];
+                let mut line = line.map(Vector::from);
+                if turn {
+                    line.reverse();
+                }
+                // Sawn from before the bone, or walked the other way and sawn from behind it.
+                line.iter_mut().for_each(|point| point.y = if turn { 13.0 } else { 0.0 });
+                let cuts = Cut::chained("step", &line, Vector::y() * depth, 0.0, 0).unwrap();
+                let found = parted(&block(), cuts, vec![below_the_steps()]);
+                assert_eq!(found.bridges, [], "{x} {z} {turn}");
+                let columns = |from: f64, to: f64| {
+                    (2..=17).filter(|&at| f64::from(at) > from && f64::from(at) < to).count()
+                };
+                let layers = |to: f64| (2..=15).filter(|&at| 2.0 * f64::from(at) < to).count();
+                // What lies on the line goes with either side.
+                let least = 10 * (columns(0.0, x) * layers(z) + columns(x, 20.0) * layers(z + 8.0));
+                let most = least + 10 * (16 + layers(z + 8.0));
+                let voxels = found.segments[0].voxels;
+                assert!(
+                    (least..=most).contains(&voxels),
+                    "{x} {z} {turn}: {least} {voxels} {most}"
+                );
+                assert!(found.contacts.iter().all(|contact| contact.cut.is_some()));
+            }
+        }
+    }
 }
 
 /// Two blocks that touch at a neck of 2 x 2 voxels between x = 9 and x = 11, dimmer than the blocks.

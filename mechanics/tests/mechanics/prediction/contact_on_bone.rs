@@ -36,7 +36,7 @@ fn solid(low: [f64; 3], high: [f64; 3]) -> TriangleSurface {
 
 /// A slab between planes of symmetry that slides at its bottom, a plate of bone half a millimetre above it, and a block of tissue
 /// far away that the segment of the plate holds.
-fn slab(shape: CellShape, nu: f64) -> Case {
+pub(crate) fn slab(shape: CellShape, nu: f64) -> Case {
     let slab = block(Vector::from(LENGTHS), [5, 4, 3], shape);
     let anchor = at(block(Vector::repeat(4.0), [1, 1, 1], shape), [200.0, 0.0, 0.0]);
     let mut mesh = together(&[("slab", slab), ("anchor", anchor)]);
@@ -54,7 +54,7 @@ fn slab(shape: CellShape, nu: f64) -> Case {
 }
 
 /// The slab raised, and the plate lowered, by so much each.
-fn closed(raised: f64, lowered: f64) -> Plan {
+pub(crate) fn closed(raised: f64, lowered: f64) -> Plan {
     let down = Vector::new(0.0, 0.0, -lowered);
     let movement = RigidMovement::about_pivot(Vector::zeros(), Vector::zeros(), down);
     Plan {
@@ -253,5 +253,23 @@ fn the_back_of_thin_bone_under_tissue_is_not_faced() {
         let mut plan = closed(0.0, 0.0);
         plan.prescribed.push(push);
         assert!(solve(&case, &plan, &settings).contact.is_none());
+    }
+}
+
+#[test]
+fn what_bone_presses_with_is_listed_so_that_all_reactions_are_in_balance() {
+    for settings in both() {
+        for (raised, lowered) in [(GAP + PRESSED, 0.0), (0.0, GAP + PRESSED)] {
+            let found = solve(&slab(CellShape::Hex8, 0.3), &closed(raised, lowered), &settings);
+            let listed = &found.condition_reactions;
+            let sum: Vector = listed.iter().map(|own| own.force).sum();
+            let plate = listed.last().unwrap();
+            assert_eq!(
+                (plate.pointer.as_str(), plate.segment.as_deref()),
+                ("/case/bones/0", Some("plate"))
+            );
+            assert!(plate.force.z < -100.0 && plate.nodes > 0, "{plate:?}");
+            assert!(sum.norm() < 1e-6 * plate.force.norm(), "{listed:?}");
+        }
     }
 }

@@ -9,18 +9,20 @@ use mechanics::mesh::sample::block;
 use mechanics::mesh::{CellShape, Vector};
 use mechanics::plan::{PlannedSegment, RigidMovement};
 use mechanics::prediction::{
-    Case, CaseSegment, ElementChoice, Method, MethodKind, Plan, RegionNames, Scene, Settings,
-    TissueWindow,
+    Case, CaseSegment, ContactKind, ElementChoice, Method, MethodKind, Plan, RegionNames, Scene,
+    Settings, TissueWindow,
 };
 use mechanics::progress::{Phase, Progress, Unobserved};
 use mechanics::study::report::Solved;
 use mechanics::study::scenes::{SCENES, scene_of, slab, slab_hex, sphere_of, usual_truth};
 use mechanics::study::sweep::{Judged, SweepError, Values, best, combinations};
 use mechanics::study::{
-    Errors, LINEAR_TRUTH, Materials, NOT_RUN, Outcome, Report, Row, Stopwatch, Strain, Study,
-    StudyError, StudyScene, Truth, Variant, convergence, methods, pareto, run, truth_cost,
+    ClosedForm, Errors, LINEAR_TRUTH, Materials, NOT_RUN, Outcome, Report, Row, Stopwatch, Strain,
+    Study, StudyError, StudyScene, TRUTH_WITHOUT_CONTACT, Truth, Variant, WITHIN_TRUTH_ERROR,
+    convergence, methods, pareto, run, truth_cost,
 };
 
+use crate::prediction::contact_on_bone;
 use crate::scenes::{StopsAfter, case_of, material, set, solve};
 
 /// Time stands still, so that reports can be compared whole.
@@ -253,7 +255,7 @@ fn what_a_truth_costs_is_known_before_and_told_while_it_is_solved() {
     let study = study(slab_with(|name| name != "patch 1 mm"), plain(), &[0]);
     let scene = &study.scenes[0];
     let (cells, nodes) = (scene.case.volume.cells.len(), scene.case.volume.nodes.len());
-    let cost = truth_cost(scene).unwrap();
+    let cost = truth_cost(scene, &study.variants).unwrap();
     // Level 0, for the error of the truth, and level 1. Seven plans are summed from unit movements of a segment, which
     // cost as three.
     let cells_at: Vec<f64> = cost.meshes.iter().map(|mesh| mesh.cells).collect();
@@ -269,7 +271,7 @@ fn what_a_truth_costs_is_known_before_and_told_while_it_is_solved() {
     hexahedra.materials.truncate(1);
     hexahedra.truth =
         Truth::Refined { times: 2, element: ElementChoice::MeanDilatation, strain: Strain::Small };
-    let cost = truth_cost(&hexahedra).unwrap();
+    let cost = truth_cost(&hexahedra, &plain()).unwrap();
     let (cells, nodes) = (hexahedra.case.volume.cells.len(), hexahedra.case.volume.nodes.len());
     assert_eq!((cost.meshes.len(), cost.meshes[2].solves), (3, 2));
     assert_eq!(
@@ -277,7 +279,7 @@ fn what_a_truth_costs_is_known_before_and_told_while_it_is_solved() {
         (64.0 * cells as f64, (192 * nodes) as f64)
     );
     hexahedra.truth = Truth::Known(Vec::new());
-    assert_eq!(truth_cost(&hexahedra), None);
+    assert_eq!(truth_cost(&hexahedra, &plain()), None);
 }
 
 #[test]
@@ -662,7 +664,7 @@ fn a_truth_of_finite_strain_is_near_finite_strain_and_far_from_linearity() {
         Variant { label: "auto".to_owned(), ..methods::auto() },
     ];
     let study = study(scene, variants, &[0, 1]);
-    let cost = truth_cost(&study.scenes[0]).unwrap();
+    let cost = truth_cost(&study.scenes[0], &study.variants).unwrap();
     assert_eq!((cost.strain, cost.meshes[0].solves), (Strain::Finite, 1));
     let report = of(&study);
     assert!(report.scenes[0].truth.contains("at finite strain"), "{}", report.scenes[0].truth);
@@ -693,4 +695,114 @@ fn answers_of_finite_strain_say_that_their_truth_is_linear() {
     let is_told = |row: &Solved| row.warnings.iter().any(|code| code == LINEAR_TRUTH);
     assert_eq!([linear, nonlinear].map(is_told), [false, true]);
     assert!(linear.effectivity.is_some() && nonlinear.effectivity.is_none());
+}
+
+/// Tissue that is raised by 1.2 mm under a plate of bone half a millimetre above it: with contact its skin stops there.
+fn under_a_plate(truth: Truth) -> StudyScene {
+    let case = contact_on_bone::slab(CellShape::Hex8, 0.3);
+    let by_region = case.materials.clone();
+    StudyScene {
+        name: "plate".to_owned(),
+        case,
+        plans: vec![("raised".to_owned(), contact_on_bone::closed(1.2, 0.0))],
+        materials: vec![Materials { by_region, name: "case".to_owned(), ..Materials::default() }],
+        truth,
+    }
+}
+
+fn touching(label: &str, element: ElementChoice, contact: ContactKind) -> Variant {
+    let plain = variant(label, element);
+    Variant { settings: Settings { contact, ..plain.settings.clone() }, ..plain }
+}
+
+#[test]
+fn rows_with_contact_are_held_against_a_truth_with_contact() {
+    for strain in [Strain::Small, Strain::Finite] {
+        let element = ElementChoice::MeanDilatation;
+        let truth = Truth::Refined { times: 1, element, strain };
+        let variants = vec![
+            variant("free", ElementChoice::Plain),
+            touching("pressing", ElementChoice::Plain, ContactKind::Unilateral),
+            touching("auto", ElementChoice::Plain, ContactKind::Auto),
+        ];
+        let study = study(under_a_plate(truth), variants, &[0]);
+        let cost = truth_cost(&study.scenes[0], &study.variants).unwrap();
+        assert_eq!((cost.truths, cost.meshes[1].solves), (2, 2));
+        let told = Meshes::default();
+        let report = run(&study, &Still, &told).unwrap();
+        assert_eq!(told.0.into_inner(), cost.truths * cost.meshes.len());
+        let words = &report.scenes[0].truth;
+        assert!(
+            words.contains(". Of rows with contact: ") && words.contains(" with contact, "),
+            "{words}"
+        );
+        for row in &report.rows {
+            let solved = solved(row);
+            // Even strain of a sixteenth: what linearity leaves out of it is less than a twentieth of a millimetre.
+            assert!(solved.error.mean < 0.05, "{strain:?} {} {:?}", row.label, solved.error);
+            assert!(!solved.warnings.iter().any(|code| code == TRUTH_WITHOUT_CONTACT));
+        }
+        let [free, pressing, auto] = [0, 1, 2].map(|row| solved(&report.rows[row]).skin_mean_mm);
+        assert!((free - 1.2).abs() < 0.01 && pressing < 0.9, "{free} {pressing}");
+        assert!((auto - pressing).abs() < 1e-6, "{auto} {pressing}");
+        let only = self::study(
+            under_a_plate(Truth::Refined { times: 1, element, strain }),
+            vec![touching("pressing", ElementChoice::Plain, ContactKind::Unilateral)],
+            &[0],
+        );
+        let report = of(&only);
+        assert!(!report.scenes[0].truth.contains("Of rows"), "{}", report.scenes[0].truth);
+    }
+}
+
+#[test]
+fn rows_with_contact_beside_a_formula_without_are_marked() {
+    let formula = ClosedForm { displacement: |_, _, _| Vector::x() * 1.5, walls: |_| {} };
+    let variants = vec![
+        variant("free", ElementChoice::Plain),
+        touching("pressing", ElementChoice::Plain, ContactKind::Unilateral),
+    ];
+    let report = of(&study(under_a_plate(Truth::ClosedForm(formula)), variants, &[0]));
+    let is_told = |row: &Row| solved(row).warnings.iter().any(|c| c == TRUTH_WITHOUT_CONTACT);
+    assert_eq!([0, 1].map(|row| is_told(&report.rows[row])), [false, true]);
+}
+
+#[test]
+fn levels_that_are_the_truth_are_told_as_skipped() {
+    let scene = slab_with(|name| name == "patch 4 mm");
+    let variants = vec![
+        variant("stabilised", ElementChoice::Stabilised),
+        variant("quadratic", ElementChoice::Quadratic),
+    ];
+    let report = of(&study(scene, variants, &[0, 1]));
+    assert_eq!(report.rows.len(), 3);
+    let [skipped] = report.skipped.as_slice() else { panic!("{:?}", report.skipped) };
+    assert_eq!((skipped.label.as_str(), skipped.rows), ("quadratic", 1));
+    assert_eq!(
+        skipped.reason,
+        "level 1 is the truth itself or finer than it: that is the same method and element, every edge of level 0 halved once"
+    );
+}
+
+#[test]
+fn rows_that_are_nearer_to_the_truth_than_it_is_known_are_marked() {
+    let mut scene = slab_with(|name| name == "patch 4 mm");
+    scene.truth = Truth::Refined { times: 1, element: ElementChoice::Plain, strain: Strain::Small };
+    let variants = vec![
+        variant("stabilised", ElementChoice::Stabilised),
+        variant("plain", ElementChoice::Plain),
+    ];
+    let report = of(&study(scene, variants, &[0]));
+    let [own, _] = report.scenes[0].truth_error_mm.unwrap();
+    let told: Vec<bool> = report
+        .rows
+        .iter()
+        .map(|row| {
+            let Solved { error, warnings, .. } = solved(row);
+            let is_told = warnings.iter().any(|code| code == WITHIN_TRUTH_ERROR);
+            assert_eq!(is_told, error.mean < own, "{} {error:?} {own}", row.label);
+            is_told
+        })
+        .collect();
+    assert!(told.contains(&true), "{told:?}");
 }
