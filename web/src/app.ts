@@ -30,7 +30,7 @@ export function refusal(error: unknown, words: Words, again?: () => void): HTMLE
   const places = error instanceof Refused ? error.problem.errors ?? [] : [];
   announce(detail);
   return make("div", { className: "refusal", role: "alert" },
-    make("strong", {}, error instanceof JobFailed ? words.jobFailed : lost ? words.lost : words.refused), " ", detail,
+    make("strong", {}, error instanceof JobFailed ? words.jobFailed : lost ? words.lost : error instanceof Refused && error.problem.status === 404 ? words.notThere : words.refused), " ", detail,
     places.length > 1 && make("ul", {}, ...places.map((place) => make("li", {}, make("code", {}, place.pointer), ` ${place.detail}`))),
     known && make("a", { href: `/errors#${error.code}`, className: "code" }, error.code),
     again !== undefined && button(words.tryAgain, again));

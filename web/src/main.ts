@@ -61,6 +61,7 @@ function failed(app: App, error: unknown): void {
     void open();
   };
   app.stage.replaceChildren(wantsKey ? keyForm(app.words, asked) : refusal(error, app.words, () => void open()));
+  if (error instanceof Refused && error.problem.status === 404) app.stage.append(make("a", { className: "button", href: "#/cases" }, app.words.toCases));
 }
 
 function shell(app: App): void {

@@ -2,6 +2,7 @@
 import { Refused, type Documents } from "../api.js";
 import { ProgressLine, refusal, type App } from "../app.js";
 import { button, make, select } from "../dom.js";
+import { count as inGroups } from "../figures.js";
 import { address } from "../route.js";
 import { guess, documentOf, type Role, type SetRoles } from "../roles.js";
 import { scanEditor, surfacesEditor } from "./meshed.js";
@@ -101,7 +102,7 @@ function editor(app: App, mesh: Documents["MeshDocument"], name: string, bones: 
   const text = make("textarea", { spellcheck: false, aria: { label: words.document } });
   const found = make("div", { role: "status" });
   const write = () => { text.value = JSON.stringify(documentOf(settings, roles, bones.map((file) => stem(file.name))), null, 2); };
-  const rows = sets.map(([set, count]) => make("li", {}, make("span", { className: "name" }, `${set} · ${count} ${words.nodes}`),
+  const rows = sets.map(([set, count]) => make("li", {}, make("span", { className: "name" }, `${set} · ${words.nodeCount(inGroups(count))}`),
     named(select(set, ROLES.map((role) => [role, words.role[role]] as const), roles[set]!, (role) => { roles[set] = role as Role; write(); })),
     count === 0 && make("span", { className: "warned" }, words.emptySet)));
   /** What is wrong stands beside the set that it is wrong of, too. */

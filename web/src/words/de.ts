@@ -5,7 +5,7 @@ export const de: Words = {
   notice: "Forschungssoftware, kein Medizinprodukt",
   cases: "Fälle", jobs: "Aufträge", studies: "Studien", plan: "Plan", overview: "Fall", inverse: "Rückwärts planen", comparison: "Vergleich",
   result: "Ergebnis", language: "Sprache", appearance: "Darstellung", asSystem: "Wie das System", light: "Hell", dark: "Dunkel",
-  loading: "Lädt…", refused: "Abgelehnt.", lost: "Keine Verbindung.", jobFailed: "Der Auftrag ist gescheitert.", tryAgain: "Noch einmal",
+  loading: "Lädt…", refused: "Abgelehnt.", notThere: "Nicht vorhanden.", toCases: "Zu den Fällen", lost: "Keine Verbindung.", jobFailed: "Der Auftrag ist gescheitert.", tryAgain: "Noch einmal",
   unreachable: "Der Dienst ist nicht erreichbar. Was zu sehen ist, kann veraltet sein.", noWarnings: "Keine Warnungen.",
   calls: "Aufrufe des Dienstes", copyAsCurl: "Als curl kopieren", copied: "Kopiert", notCopied: "Nicht kopiert: die Zeile wählen",
   noClipboard: "An dieser Adresse lässt der Browser keine Seite kopieren (über https und auf localhost tut er es): eine Zeile wählen, was sie ganz markiert, und kopieren.",
@@ -13,6 +13,7 @@ export const de: Words = {
   key: "Schlüssel", goOn: "Weiter",
 
   noCases: "Noch keine Fälle. Unten ein Netz ablegen.", state: "Zustand", cells: "Zellen", nodes: "Knoten",
+  nodeCount: (nodes) => `${nodes} Knoten`,
   size: (nodes, cells) => `${nodes} Knoten, ${cells} Zellen`,
   addCase: "Fall anlegen", dropHere: "Ein Netz, oder ein Netz mit Falldokument (case.json) und Knochen, hier ablegen", chooseFiles: "Dateien wählen",
   fileHint: "Volumennetze als VTU, VTK oder Gmsh; Oberflächen als VTP, STL oder PLY; ein CT als NRRD, NIfTI oder MetaImage mit einem Dokument, das die Vernetzung beschreibt.",
@@ -39,6 +40,10 @@ export const de: Words = {
   building: "Die Antwort der Haut wird vorbereitet", movesMost: "Die Haut bewegt sich um", atMost: "höchstens",
   order1: "Linear", order2: "Zweite Ordnung", second: "Zweite Ordnung dazu",
   secondWhy: "Lineare Elastizität lässt weg, was mit dem Quadrat der Bewegung wächst. Das dazuzurechnen dauert einmal einige Minuten.",
+  secondBuilding: "Zweite Ordnung, im Hintergrund", secondReady: "Die zweite Ordnung ist fertig: die Haut hat sie jetzt.",
+  secondThere: "Was mit dem Quadrat einer Bewegung wächst, ist in der Haut. Wo, zeigen die Farben „Zweite Ordnung: was linear fehlt“.",
+  secondLarge: (mb) => `Die zweite Ordnung dieses Falls ist ${mb} MB groß und wird nur auf Wunsch gebaut.`,
+  secondOther: "Diese Antwort wurde anders gebaut, als der Fall sagt: die zweite Ordnung des Falls gehörte nicht zu ihr.",
   leftOut: (mm) => `im Mittel etwa ${mm} mm`,
   secondAdds: (mm) => `die zweite Ordnung fügt im Mittel ${mm} mm hinzu`,
   outside: "Jenseits dessen, was diesem Modell zuzutrauen ist: ganz vorhersagen.",
@@ -100,7 +105,7 @@ export const de: Words = {
   material: "Material", level: "Netzstufe", meanMm: "Mittel mm", toComparison: "Auf der Haut zeigen", pictures: "Bilder",
 
   compareWhy: "Die vorhergesagte Haut gegen eine wirkliche halten, nach der Operation.", actual: "Wirkliche Haut (VTP, STL oder PLY)", actualSkin: "Wirkliche Haut", predictionAlone: "Vorhersage allein", actualHint: "Grüner Umriss: die wirkliche Haut, wo die Registrierung sie hinlegt.", align: "Zuerst registrieren", alignIcp: "mit ICP", alignNone: "nein",
-  compareNow: "Vergleichen", histogram: "Abstände", registration: "Registrierung", turned: "gedreht", shifted: "verschoben", residual: "rms",
+  chooseFile: "Datei wählen", compareNow: "Vergleichen", histogram: "Abstände", registration: "Registrierung", turned: "gedreht", shifted: "verschoben", residual: "rms",
   chooseJob: "Vorhersage", noPredictions: "Noch keine Vorhersage dieses Falls: erst eine planen.",
 
   kinds: {
@@ -111,6 +116,9 @@ export const de: Words = {
   states: { ready: "bereit", meshing: "wird vernetzt", failed: "gescheitert" },
   toCase: "Fall öffnen", toStudies: "Studien öffnen", makeCase: "Diesen Fall anlegen", furtherRows: (count) => `und ${count} weitere`,
   kind: "Art", status: "Zustand", progress: "Fortschritt", created: "Angelegt", noJobs: "Keine Aufträge.", noStudies: "Noch keine Studien. Eine Studie ist ein Auftrag der Art study.",
+  outcomes: { pass: "bestanden", worse: "schlechter als verlangt", incomplete: "unvollständig", "no-baseline": "nichts zum Vergleichen da" },
+  onFront: "Beste Kompromisse aus Fehler und Zeit", rowsOf: (solved, all) => `${solved} von ${all} Zeilen gelöst`,
+  rowStates: { failed: "gescheitert", worse: "schlechter", not_run: "nicht gelaufen", skipped: "ausgelassen" },
   verdict: "Urteil", report: "Bericht", chart: "Diagramm", rows: "Zeilen", variant: "Variante", scene: "Szene", wall: "s", p95mm: "p95 mm",
 
   materials: "Materialien aus der Literatur", asStated: "wie im Fall", otherRegions: "alles übrige Gewebe", measuredModuli: "Gemessene Moduln", tissue: "Gewebe", source: "Quelle", doubt: "Was dagegen spricht",
@@ -167,7 +175,7 @@ export const de: Words = {
   bothPlans: "Zahlen beider Pläne",
   plansAre: (mean, most) => `Die Häute beider Pläne liegen im Mittel ${mean} mm und höchstens ${most} mm auseinander.`,
   partsNotTold: (names) => `Hier nicht gesagt, da keine Menge des Netzes ihre Knoten nennt: ${names}.`,
-  leftOutNowhere: "Wo im Gesicht das liegt, weiß eine lineare Antwort nicht: sie kennt nur das Mittel über die Haut. Eine zweite Ordnung, wo sie sich dazurechnen lässt, und `Ganz vorhersagen` färben es.",
+  leftOutNowhere: "Wo im Gesicht das liegt, weiß eine lineare Antwort nicht: sie kennt nur das Mittel über die Haut. Die zweite Ordnung und „Ganz vorhersagen“ färben es.",
   clickMarks: "Eine Marke anklicken, oder mit der Tabulatortaste hingehen und Enter drücken: die Zeilen dahinter stehen darunter.",
   allRows: "Alle Zeilen",
   rowsOfMark: (name, count, all) => `${name}: ${count} von ${all} Zeilen`,
