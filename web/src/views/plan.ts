@@ -136,7 +136,8 @@ class Planning {
     bench.offer([
       { name: "displacement", label: words.displacement, scheme: "length", range_mm: 10, values: () => this.moved_mm },
       ...(this.sum.second_mm === undefined ? [] : [
-        { name: "second", label: words.secondOrder, scheme: "length" as const, range_mm: 1, values: () => lengths(this.sum.second_mm!) }]),
+        { name: "second", label: words.secondOrder, scheme: "length" as const, range_mm: 1, values: () => lengths(this.sum.second_mm!) },
+        { name: "left", label: words.leftOutMap, scheme: "length" as const, range_mm: 1, values: () => this.sum.leftOut_mm(loaded.description.second_order!.third_order_mm) }]),
     ]);
     this.order.show(loaded);
   }

@@ -186,7 +186,7 @@ class PlansCompared {
       const apart = lengthsOver(this.apart, areas, inside);
       return [name, ...moved.map((one) => length(lengthsOver(one, areas, inside), "mean")), length(apart, "mean"), length(apart, "p95"), length(apart, "max")];
     };
-    return table(words.plansApartBy, [words.region, ...names.map((name) => `${name}, ${words.mean}`), `${words.apart}, ${words.mean}`, words.p95, words.max],
+    return table(words.plansApartBy, [words.region, ...names.map((name) => `${short(name, 15)}, ${words.mean}`), `${words.apart}, ${words.mean}`, words.p95, words.max],
       [row(words.whole), ...Object.entries(this.known.parts).map(([name, inside]) => row(name, inside))]);
   }
 
@@ -207,7 +207,7 @@ class PlansCompared {
       const [one, other] = [a, b].map(({ plan }) => (kind === "growth" ? 100 : 1) * (plan.inner[kind][name] ?? 0)) as Sides<number>;
       return row(`${name}, ${kind === "growth" ? "%" : "kPa"}`, one, other, 1);
     }));
-    return table(words.bothPlans, [words.movement, ...names, words.apart], [...segments, ...inner]);
+    return table(words.bothPlans, [words.movement, ...names.map((name) => short(name, 15)), words.apart], [...segments, ...inner]);
   }
 
   private links(applied: Sides<Applied>): HTMLElement {

@@ -41,7 +41,7 @@ export const de: Words = {
   order1: "Linear", order2: "Zweite Ordnung", second: "Zweite Ordnung dazu",
   secondWhy: "Lineare Elastizität lässt weg, was mit dem Quadrat der Bewegung wächst. Das dazuzurechnen dauert einmal einige Minuten.",
   secondBuilding: "Zweite Ordnung, im Hintergrund", secondReady: "Die zweite Ordnung ist fertig: die Haut hat sie jetzt.",
-  secondThere: "Was mit dem Quadrat einer Bewegung wächst, ist in der Haut. Wo, zeigen die Farben „Zweite Ordnung: was linear fehlt“.",
+  secondThere: "Was mit dem Quadrat einer Bewegung wächst, ist in der Haut. Farben zeigen, wo das ist, und wo etwa so viel fehlt, wie oben steht: über die Haut verteilt wie die zweite Ordnung.",
   secondLarge: (mb) => `Die zweite Ordnung dieses Falls ist ${mb} MB groß und wird nur auf Wunsch gebaut.`,
   secondOther: "Diese Antwort wurde anders gebaut, als der Fall sagt: die zweite Ordnung des Falls gehörte nicht zu ihr.",
   leftOut: (mm) => `im Mittel etwa ${mm} mm`,

@@ -39,7 +39,7 @@ export const en = {
   order1: "Linear", order2: "Second order", second: "Add the second order",
   secondWhy: "Linear elasticity leaves out what grows with the square of a movement. Adding it takes a few minutes of computing, once.",
   secondBuilding: "Second order, in the background", secondReady: "The second order is ready: the skin has it now.",
-  secondThere: "What grows with the square of a movement is in the skin. Colours show where, as “Second order: what linear leaves out”.",
+  secondThere: "What grows with the square of a movement is in the skin. Colours show where that is, and where about as much is left out as the strip says: shared out over the skin as the second order is.",
   secondLarge: (mb: string) => `The second order of this case is ${mb} MB to fetch, and is built only when asked for.`,
   secondOther: "This response was built in another way than the case says: the second order of the case would not belong to it.",
   leftOut: (mm: string) => `mean about ${mm} mm`,
