@@ -24,7 +24,7 @@ export interface SkinMap {
   values: () => ArrayLike<number> | undefined;
 }
 
-const RANGES = [0.5, 1, 2, 5, 10, 20];
+const RANGES = [0.1, 0.2, 0.5, 1, 2, 5, 10, 20];
 const SHOWN = "map";
 /** A camera that was turned by hand, in the address beside the standard view that it was turned from. */
 const CAMERA = "camera";

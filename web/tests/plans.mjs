@@ -1,4 +1,4 @@
-// Stored plans by their names, two of them compared, a view that an address opens again, and what a linear response cannot say.
+// Stored plans by their names, two of them compared, a view that an address opens again.
 import assert from "node:assert/strict";
 import { addressed, apart, check, ended, excused, fits, go, json, opened, pictured, planned, positions, serious, slide, slider, address, caseId, plan, AGREED_MM } from "./tools.mjs";
 
@@ -118,11 +118,5 @@ export async function plans(page) {
     await other.context().close();
     await page.keyboard.press("1");
     await addressed(page, /camera=/, false);
-  });
-
-  await check("a linear response says in words that it does not know where its error is", async () => {
-    await slide(page, "mandible", "forward", -4);
-    await page.locator(".trust", { hasText: "Left out by the model" }).getByText(/about \d\.\d\d mm/).waitFor();
-    await page.locator(".panel").getByText("Where on the face this is, a linear response does not know").waitFor();
   });
 }

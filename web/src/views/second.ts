@@ -65,7 +65,7 @@ export class SecondOrder {
       const loaded = await loadedResponse(app, id, job);
       if (isLeft()) return;
       // What the response that is there was built with, materials above all, its description does not say.
-      if (!asked && !isSameModel(linear, loaded)) { this.said.replaceChildren(make("p", { className: "fine" }, words.secondOther)); return; }
+      if (loaded.columns.second === undefined || (!asked && !isSameModel(linear, loaded))) { this.said.replaceChildren(make("p", { className: "fine" }, words.secondOther)); return; }
       this.planner.ready(loaded);
       announce(words.secondReady);
     } catch (error) {

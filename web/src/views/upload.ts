@@ -6,6 +6,7 @@ import { count as inGroups } from "../figures.js";
 import { address } from "../route.js";
 import { guess, documentOf, type Role, type SetRoles } from "../roles.js";
 import { scanEditor, surfacesEditor } from "./meshed.js";
+import type { Words } from "../words/en.js";
 
 /** The name stands before the choice already: it is for those who do not see that. */
 function named(choice: HTMLLabelElement): HTMLLabelElement {
@@ -46,11 +47,20 @@ export function uploadForm(app: App): HTMLElement {
 interface Stated { case?: unknown; volume?: unknown; meshing?: unknown }
 const isCase = (stated: Stated) => stated.case !== undefined || stated.volume !== undefined || stated.meshing !== undefined;
 
+/** What is no JSON is refused by the name of its file. */
+function parsed(words: Words, name: string, text: string): Stated {
+  try {
+    return JSON.parse(text) as Stated;
+  } catch (error) {
+    throw new Error(words.noJson(name, String(error instanceof Error ? error.message : error)));
+  }
+}
+
 /** Files with a document are sent as they are; a mesh alone is looked at first. */
 async function taken(app: App, files: File[], said: HTMLElement, next: HTMLElement): Promise<void> {
   const { words } = app;
   const documents = await Promise.all(files.filter(({ name }) => name.endsWith(".json"))
-    .map(async (file) => JSON.parse(await file.text()) as Stated));
+    .map(async (file) => parsed(words, file.name, await file.text())));
   const meshes = files.filter(({ name }) => !name.endsWith(".json"));
   // A folder may hold what else to ask of its meshes, as the one of `facies face` does.
   const stated = documents.find(isCase) ?? documents[0];

@@ -17,6 +17,7 @@ export const de: Words = {
   size: (nodes, cells) => `${nodes} Knoten, ${cells} Zellen`,
   addCase: "Fall anlegen", dropHere: "Ein Netz, oder ein Netz mit Falldokument (case.json) und Knochen, hier ablegen", chooseFiles: "Dateien wählen",
   fileHint: "Volumennetze als VTU, VTK oder Gmsh; Oberflächen als VTP, STL oder PLY; ein CT als NRRD, NIfTI oder MetaImage mit einem Dokument, das die Vernetzung beschreibt.",
+  noJson: (file, why) => `${file} ist kein JSON: ${why}`,
   document: "Falldokument", documentHint: "Dateien heißen darin wie sie selbst, ohne Endung.", sendCase: "Senden", sending: "Sendet",
   frame: "Achsen", units: "Einheit", sets: "Knotenmengen",
   setsHint: "Sagen, was jede Menge des Netzes ist. Das Dokument daneben folgt und darf von Hand geändert werden.",

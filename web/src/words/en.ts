@@ -15,6 +15,7 @@ export const en = {
   size: (nodes: string, cells: string) => `${nodes} nodes, ${cells} cells`,
   addCase: "Add a case", dropHere: "Drop a mesh, or a mesh with its case document (case.json) and bones, here", chooseFiles: "Choose files",
   fileHint: "VTU, VTK or Gmsh volume meshes; surfaces as VTP, STL or PLY; a CT as NRRD, NIfTI or MetaImage with a document that says how it is meshed.",
+  noJson: (file: string, why: string) => `${file} is not JSON: ${why}`,
   document: "Case document", documentHint: "Files are called by their names without the ending.", sendCase: "Send", sending: "Sending",
   frame: "Frame", units: "Units", sets: "Sets of nodes",
   setsHint: "Say what each set of the mesh is. The document beside follows, and may be changed by hand.",
