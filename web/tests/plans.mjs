@@ -51,6 +51,10 @@ export async function plans(page) {
     const [a, b] = [await kept("six back", [0, 6, 0]), await kept("three forward", [0, -3, 1])];
     await go(page, plan);
     await planned(page);
+    // On the linear response, whose answers to differences of plans are differences of its answers.
+    const linear = (await json(`/v1/jobs?kind=response&status=successful&case=${caseId}`)).items.at(-1).id;
+    const newest = ({ pathname, search }) => pathname === `/v1/cases/${caseId}/response` && search === "";
+    await page.route(newest, (route) => route.continue({ url: `${route.request().url()}?job=${linear}` }));
     await page.getByRole("link", { name: "Compare two plans" }).click();
     await page.getByLabel("First plan").selectOption(a.id);
     await page.getByLabel("Second plan").selectOption(b.id);
@@ -72,12 +76,13 @@ export async function plans(page) {
     await page.getByText("side by side", { exact: true }).click();
     await addressed(page, /show=sides/);
     const rest = await page.evaluate(() => [...document.querySelector(".screen").scene.resting.points_mm]);
-    const applied = async (of) => (await json(`/v1/cases/${caseId}/response/apply`, { plan: of.plan })).displacement_mm.flat();
+    const applied = async (of) => (await json(`/v1/cases/${caseId}/response/apply?job=${linear}`, { plan: of.plan })).displacement_mm.flat();
     const left = await page.evaluate(() => [...document.querySelector(".screen").scene.twin.geometry.attributes.position.array]);
     assert(apart(left.map((value, at) => value - rest[at]), await applied(a)) < AGREED_MM, "the first on the left");
     assert(apart((await positions(page)).map((value, at) => value - rest[at]), await applied(b)) < AGREED_MM, "the second on the right");
     assert.deepEqual(await page.locator(".halves span").allTextContents(), ["six back", "three forward"]);
     await pictured(page, "plans-beside");
+    await page.unroute(newest);
     const small = await opened({ width: 390, height: 844 }, { locale: "de-DE", colorScheme: "dark" });
     await go(small, `#/case/${caseId}/plans?a=${a.id}&b=${b.id}`);
     await small.getByRole("heading", { name: "Zahlen beider Pläne" }).waitFor();

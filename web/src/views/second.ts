@@ -1,6 +1,6 @@
 // The second order of a response: built in the background once the linear one stands, and taken in its place when it is ready.
 import { JobFailed, type Job } from "../api.js";
-import { announce, ProgressLine, refusal, type App } from "../app.js";
+import { announce, detailOf, refusal, type App } from "../app.js";
 import { PER_SEGMENT, type Columns } from "../columns.js";
 import { button, make } from "../dom.js";
 import { buildResponse, loadedResponse, type LoadedResponse } from "../loading.js";
@@ -71,7 +71,10 @@ export class SecondOrder {
     } catch (error) {
       if (isLeft()) return;
       if (error instanceof JobFailed && error.job.status === "dismissed") { this.show(linear); return; }
-      this.said.replaceChildren(refusal(error, words, () => { this.said.replaceChildren(); void this.build(linear, this.turn, asked); }));
+      const again = () => { this.said.replaceChildren(); void this.build(linear, this.turn, true); };
+      // What nobody asked for is no fault of theirs, as where a key may only read.
+      this.said.replaceChildren(...(asked ? [refusal(error, words, again)]
+        : [make("p", { className: "fine" }, words.secondNot(detailOf(error, words))), button(words.tryAgain, again)]));
     }
   }
 

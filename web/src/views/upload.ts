@@ -23,7 +23,7 @@ export function uploadForm(app: App): HTMLElement {
   const { words } = app;
   const said = make("div", { role: "status" });
   const next = make("div");
-  const files = make("input", { type: "file", multiple: true, className: "hidden", aria: { label: words.chooseFiles }, data: { files: "" } });
+  const files = make("input", { type: "file", multiple: true, hidden: true, data: { files: "" } });
   const take = (list: FileList | null | undefined) => {
     if (list === null || list === undefined || list.length === 0) return;
     said.replaceChildren();

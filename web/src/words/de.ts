@@ -44,6 +44,7 @@ export const de: Words = {
   secondBuilding: "Zweite Ordnung, im Hintergrund", secondReady: "Die zweite Ordnung ist fertig: die Haut hat sie jetzt.",
   secondThere: "Was mit dem Quadrat einer Bewegung wächst, ist in der Haut. Farben zeigen, wo das ist, und wo etwa so viel fehlt, wie oben steht: über die Haut verteilt wie die zweite Ordnung.",
   secondLarge: (mb) => `Die zweite Ordnung dieses Falls ist ${mb} MB groß und wird nur auf Wunsch gebaut.`,
+  secondNot: (why) => `Die zweite Ordnung wurde nicht gebaut: ${why}`,
   secondOther: "Diese Antwort wurde anders gebaut, als der Fall sagt: die zweite Ordnung des Falls gehörte nicht zu ihr.",
   leftOut: (mm) => `im Mittel etwa ${mm} mm`,
   secondAdds: (mm) => `die zweite Ordnung fügt im Mittel ${mm} mm hinzu`,

@@ -42,6 +42,7 @@ export const en = {
   secondBuilding: "Second order, in the background", secondReady: "The second order is ready: the skin has it now.",
   secondThere: "What grows with the square of a movement is in the skin. Colours show where that is, and where about as much is left out as the strip says: shared out over the skin as the second order is.",
   secondLarge: (mb: string) => `The second order of this case is ${mb} MB to fetch, and is built only when asked for.`,
+  secondNot: (why: string) => `The second order was not built: ${why}`,
   secondOther: "This response was built in another way than the case says: the second order of the case would not belong to it.",
   leftOut: (mm: string) => `mean about ${mm} mm`,
   secondAdds: (mm: string) => `the second order adds ${mm} mm on average`,
