@@ -486,18 +486,16 @@ await check("sets are named and chosen in the view, and another role is another 
 });
 
 await check("a case without a response gets one when it is planned on", async () => {
-  await page.getByRole("link", { name: "Plan a movement" }).click();
-  await planned(page);
   // What nobody asked for is not refused in red, as where a key may only read.
   excused.push(/status of 403 .*\/v1\/jobs/);
-  const forbidden = ({ pathname }) => pathname === "/v1/jobs";
-  await page.route(forbidden, (route) => (route.request().method() === "POST"
-    ? route.fulfill({ status: 403, contentType: "application/problem+json", body: JSON.stringify({ type: "/errors#forbidden", title: "", status: 403, detail: "this key may only read" }) }) : route.fallback()));
-  await page.reload();
+  const posted = ({ pathname }) => pathname === "/v1/jobs";
+  await page.route(posted, (route) => (route.request().method() === "POST" && route.request().postDataJSON().order === 2
+    ? route.fulfill({ status: 403, contentType: "application/problem+json", body: JSON.stringify({ type: "/errors#forbidden", title: "", code: "forbidden", status: 403, detail: "this key may only read" }) }) : route.fallback()));
+  await page.getByRole("link", { name: "Plan a movement" }).click();
   await planned(page);
   await page.getByText("The second order was not built: this key may only read").waitFor();
   assert.equal(await page.getByRole("alert").count(), 0);
-  await page.unroute(forbidden);
+  await page.unroute(posted);
   await page.getByRole("button", { name: "Try again" }).click();
   // It is stopped, and stays so in this tab.
   await page.locator(".order").getByRole("button", { name: "Cancel" }).click();
@@ -530,9 +528,9 @@ await check("a view is as tall as its window, and what is refused stands in the 
     await page.locator(".loading").waitFor({ state: "detached" });
     assert.deepEqual(await page.evaluate(() => document.scrollingElement.scrollHeight - innerHeight), 0, path);
   }
-  excused.push(/status of 503 .*response/);
+  excused.push(/status of 500 .*response/);
   const there = ({ pathname }) => pathname === `/v1/cases/${caseId}/response`;
-  await page.route(there, (route) => route.fulfill({ status: 503, contentType: "application/problem+json", body: JSON.stringify({ type: "/errors#storage", title: "", status: 503, detail: "no such place" }) }));
+  await page.route(there, (route) => route.fulfill({ status: 500, contentType: "application/problem+json", body: JSON.stringify({ type: "/errors#internal", title: "", code: "internal", status: 500, detail: "no such place" }) }));
   await go(page, "#/cases");
   for (const view of [plan, `#/case/${caseId}/inverse`, `#/case/${caseId}/plans`]) {
     await go(page, view);
