@@ -523,7 +523,7 @@ await check("what a case was warned of is told beside each of its plans", async 
 });
 
 await check("a view is as tall as its window, and what is refused stands in the place of what was waited for", async () => {
-  for (const path of [plan, `#/case/${caseId}`, `#/case/${caseId}/inverse`]) {
+  for (const path of [`#/case/${caseId}`, plan, `#/case/${caseId}/inverse`]) {
     await go(page, path);
     await page.locator(".loading").waitFor({ state: "detached" });
     assert.deepEqual(await page.evaluate(() => document.scrollingElement.scrollHeight - innerHeight), 0, path);
