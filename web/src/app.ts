@@ -20,17 +20,22 @@ export function announce(text: string): void {
   find("#said").textContent = text;
 }
 
-/** What went wrong, in words and with its code. */
+/** What went wrong, in a sentence. */
+export function detailOf(error: unknown, words: Words): string {
+  if (error instanceof Refused) return error.problem.detail;
+  if (error instanceof JobFailed) return error.job.error?.detail ?? error.job.message;
+  return error instanceof TypeError ? words.unreachable : String(error instanceof Error ? error.message : error);
+}
+
+/** The same with its code, and a way to try again. */
 export function refusal(error: unknown, words: Words, again?: () => void): HTMLElement {
   const known = error instanceof FaciesError;
   const lost = error instanceof TypeError;
-  const detail = error instanceof Refused ? error.problem.detail
-    : error instanceof JobFailed ? error.job.error?.detail ?? error.job.message
-    : lost ? words.unreachable : String(error instanceof Error ? error.message : error);
+  const detail = detailOf(error, words);
   const places = error instanceof Refused ? error.problem.errors ?? [] : [];
   announce(detail);
   return make("div", { className: "refusal", role: "alert" },
-    make("strong", {}, error instanceof JobFailed ? words.jobFailed : lost ? words.lost : words.refused), " ", detail,
+    make("strong", {}, error instanceof JobFailed ? words.jobFailed : lost ? words.lost : error instanceof Refused && error.problem.status === 404 ? words.notThere : words.refused), " ", detail,
     places.length > 1 && make("ul", {}, ...places.map((place) => make("li", {}, make("code", {}, place.pointer), ` ${place.detail}`))),
     known && make("a", { href: `/errors#${error.code}`, className: "code" }, error.code),
     again !== undefined && button(words.tryAgain, again));

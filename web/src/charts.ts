@@ -104,7 +104,7 @@ interface Across {
 
 /** Rows over one scale that has 0 in it. */
 export function rowChart(label: string, unit: string, rows: Row[], narrow = isNarrow()): SVGElement {
-  const [wide, names, letters] = narrow ? [340, 112, 18] : [520, 150, 24];
+  const [wide, names, letters] = narrow ? [340, 124, 18] : [520, 160, 24];
   const all = rows.flatMap(({ box = [], dots = [], value = 0, error = 0 }) => [...box, ...dots.map((dot) => dot.value), value - error, value + error]);
   const scale = steps(Math.min(0, ...all), Math.max(0, ...all, 1e-6), narrow ? 4 : 6);
   const [low, high] = [scale[0]!, scale.at(-1)!];

@@ -1,5 +1,5 @@
 // The documents, bones and response of a case, as the page shows them.
-import { Refused, type Case, type CaseDocument, type Documents, type Service, readGlb } from "./api.js";
+import { JobFailed, Refused, type Case, type CaseDocument, type Documents, type Job, type Service, readGlb } from "./api.js";
 import { ProgressLine, type App } from "./app.js";
 import { readColumns, type Columns } from "./columns.js";
 import { tail } from "./views/called.js";
@@ -72,8 +72,11 @@ export async function showBoundary(service: Service, { document, frame }: Opened
 /** The skin of a case with a response, which is built where there is none; `into` shows how far that is, and `waiting` is told that it
  * takes a while. */
 export async function restingSkin(app: App, id: string, into: HTMLElement, waiting: () => void = () => {}): Promise<RestingSkin> {
+  return atRest(app, id, await described(app, id, into, waiting));
+}
+
+async function atRest(app: App, id: string, description: Description): Promise<RestingSkin> {
   const path = `/v1/cases/${id}/response`;
-  const description = await described(app, id, into, waiting);
   const glb = await app.service.ask("GET", `${path}?job=${description.job}`, undefined, { Accept: "model/gltf-binary" });
   const { points_mm, triangles } = readGlb(await glb.arrayBuffer());
   return { description, rest: { points_mm, triangles } };
@@ -93,7 +96,16 @@ async function described(app: App, id: string, into: HTMLElement, waiting: () =>
 }
 
 export async function responseOf(app: App, id: string, into: HTMLElement, waiting?: () => void): Promise<LoadedResponse> {
-  const { description, rest } = await restingSkin(app, id, into, waiting);
+  return withColumns(app, id, await restingSkin(app, id, into, waiting));
+}
+
+/** The response that a job has built. */
+export async function loadedResponse(app: App, id: string, job: string): Promise<LoadedResponse> {
+  const description = await app.service.get<Description>(`/v1/cases/${id}/response?job=${job}`);
+  return withColumns(app, id, await atRest(app, id, description));
+}
+
+async function withColumns(app: App, id: string, { description, rest }: RestingSkin): Promise<LoadedResponse> {
   const path = `/v1/cases/${id}/response?job=${description.job}`;
   const bytes = async (query: string) => (await app.service.ask("GET", path + query, undefined, OCTETS)).arrayBuffer();
   const [linear, second] = await Promise.all([bytes(""), description.second_order === undefined ? undefined : bytes("&order=2")]);
@@ -101,13 +113,35 @@ export async function responseOf(app: App, id: string, into: HTMLElement, waitin
   return { description, rest, columns };
 }
 
-/** `more` is what the response has beside its linear columns. */
-export async function buildResponse(app: App, id: string, more: { order?: 2; growth?: string[] }, into: HTMLElement): Promise<void> {
-  const line = new ProgressLine(app.words, app.words.building);
+/** How a response is waited for that somebody may do without. */
+interface Waiting {
+  label: string;
+  /** Nobody waits for it any more. */
+  isLeft: () => boolean;
+  stop: (job: string) => Promise<unknown>;
+}
+
+/** Builds a response and tells its job, or nothing where it was left; `more` is what it has beside its linear columns. */
+export async function buildResponse(
+  app: App, id: string, more: { order?: 2; growth?: string[] }, into: HTMLElement, waiting?: Waiting,
+): Promise<string | undefined> {
+  const { service, words } = app;
+  const { id: job } = await service.post<Job>("/v1/jobs", { kind: "response", case: id, ...more });
+  const line = new ProgressLine(words, waiting?.label ?? words.building, waiting && { text: words.cancel, clicked: () => waiting.stop(job) });
+  if (waiting?.isLeft() === true) return undefined;
   into.append(line.element);
-  const job = { kind: "response" as const, case: id, ...more };
   try {
-    await app.service.run(job as Documents["JobDocument"], (event) => line.tell(event));
+    for await (const event of service.events(job)) {
+      if (waiting?.isLeft() === true) return undefined;
+      line.tell(event);
+    }
+    let ended: Job;
+    do {
+      ended = await (await service.ask("GET", `/v1/jobs/${job}`, undefined, { Accept: "application/json", Prefer: "wait=30" })).json() as Job;
+      if (waiting?.isLeft() === true) return undefined;
+    } while (ended.status === "accepted" || ended.status === "running");
+    if (ended.status !== "successful") throw new JobFailed(ended);
+    return job;
   } finally {
     line.element.remove();
   }

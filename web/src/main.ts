@@ -1,7 +1,7 @@
 // The page: its head and foot, and the view that its address names.
 import "./style.css";
 import { asCurl, Refused, Service } from "./api.js";
-import { refusal, type App, type Leave, type View } from "./app.js";
+import { announce, refusal, type App, type Leave, type View } from "./app.js";
 import { button, find, make, select } from "./dom.js";
 import { read } from "./route.js";
 import { cases } from "./views/cases.js";
@@ -33,23 +33,35 @@ function viewOf(path: string[]): View {
   return VIEWS[third === undefined ? first : `${first} ${third}`] ?? cases;
 }
 
-async function open(): Promise<void> {
+async function open(isFollowed = false): Promise<void> {
   const turn = (opened += 1);
   leave();
   leave = () => {};
   const words = LANGUAGES[language()] ?? en;
   const stage = make("main", { id: "stage", tabIndex: -1 });
   find("#stage").replaceWith(stage);
+  // Who followed a link by keys goes on in the view that it leads to.
+  if (isFollowed) stage.focus({ preventScroll: true });
   const app: App = { service, words, stage, route: read(location.hash) };
   shell(app);
   stage.append(make("p", { className: "loading" }, words.loading));
   try {
     const left = await viewOf(app.route.path)(app);
     // Another one was opened meanwhile.
-    if (turn !== opened) left(); else leave = left;
+    if (turn !== opened) { left(); return; }
+    leave = left;
+    const named = called(stage);
+    document.title = [...named, "facies"].join(" · ");
+    if (isFollowed) announce(named.join(", "));
   } catch (error) {
     if (turn === opened) failed(app, error);
   }
+}
+
+/** What a view is of, and which it is, for the tab and for those who do not see it. */
+function called(stage: HTMLElement): string[] {
+  const texts = ["h1", ".crumbs [aria-current]"].map((one) => stage.querySelector(one)?.textContent ?? "");
+  return texts.filter((text) => text !== "");
 }
 
 function failed(app: App, error: unknown): void {
@@ -61,6 +73,7 @@ function failed(app: App, error: unknown): void {
     void open();
   };
   app.stage.replaceChildren(wantsKey ? keyForm(app.words, asked) : refusal(error, app.words, () => void open()));
+  if (error instanceof Refused && error.problem.status === 404) app.stage.append(make("a", { className: "button", href: "#/cases" }, app.words.toCases));
 }
 
 function shell(app: App): void {
@@ -122,5 +135,5 @@ function calls({ service: { calls: list }, service: asked, words }: App): void {
   draw();
 }
 
-addEventListener("hashchange", () => void open());
+addEventListener("hashchange", () => void open(true));
 void open();

@@ -96,6 +96,20 @@ export class SkinSum {
     this.total();
   }
 
+  /** What the second order leaves out, estimated at each node in mm: the mean that samples of the third order tell of the skin that moves
+   * (docs/estimates.md), shared out as the second order is. Zero of a response of order 1, which says nothing of its nodes. */
+  leftOut_mm(samples: number[][]): Float32Array {
+    const { displacement_mm, second_mm, columns: { nodes } } = this;
+    if (second_mm === undefined) return new Float32Array(nodes);
+    const found = lengths(second_mm);
+    const first = lengths(displacement_mm.map((value, at) => value - second_mm[at]!));
+    const least = MOVING * first.reduce((most, one) => Math.max(most, one), 0);
+    let [sum, moving] = [0, 0];
+    first.forEach((one, node) => { if (one >= least) { sum += found[node]!; moving += 1; } });
+    const share = sum > 0 ? (thirdOrder(samples, this.factors) * moving) / sum : 0;
+    return found.map((one) => share * one);
+  }
+
   /** The columns of a segment. */
   private of(segment: number): number[] {
     return Array.from({ length: PER_SEGMENT }, (_, at) => PER_SEGMENT * segment + at);
@@ -148,6 +162,29 @@ export class SkinSum {
     const inner = columns.inner.length === 0 ? [] : [inside];
     add(displacement_mm, [...linear, ...inner, ...(second_mm === undefined ? [] : [second_mm])]);
   }
+}
+
+/** Skin moves that moves more than this share of what moves farthest. */
+const MOVING = 0.1;
+
+/** The mean length over the skin that moves of the third order, in mm, from its samples for 1 mm along x, y, z and 1 rad about them: a cubic
+ * term that is put together as if it were the same in every direction. */
+export function thirdOrder(samples: number[][], factors: number[]): number {
+  const parts = samples.map((own, segment) => {
+    const numbers = rigidNumbers(factors.slice(PER_SEGMENT * segment, PER_SEGMENT * (segment + 1)));
+    return numbers.reduce((sum, number, at) => sum + number * number * Math.cbrt(own[at] ?? 0) ** 2, 0);
+  });
+  return parts.reduce((sum, part) => sum + part, 0) ** 1.5;
+}
+
+/** The translation of the centre in mm and the rotation vector in radians, of the twelve numbers of a segment. */
+function rigidNumbers(twelve: number[]): number[] {
+  const at = (row: number, column: number) => twelve[4 * row + column]!;
+  const twice = [at(2, 1) - at(1, 2), at(0, 2) - at(2, 0), at(1, 0) - at(0, 1)];
+  const sine = Math.hypot(...twice) / 2;
+  const angle = Math.atan2(sine, (at(0, 0) + at(1, 1) + at(2, 2)) / 2 + 1);
+  const turned = sine > 1e-9 ? twice.map((one) => (one * angle) / (2 * sine)) : new Array<number>(3).fill(angle / Math.sqrt(3));
+  return [at(0, 3), at(1, 3), at(2, 3), ...turned];
 }
 
 /** The place of a pair k <= l of n in the order (0,0), (0,1), ..., (0,n-1), (1,1), ... */

@@ -1,5 +1,5 @@
 // A head beside its controls: standard views, looks, colours with their legend, pictures.
-import type { App } from "./app.js";
+import { refusal, type App } from "./app.js";
 import { bandOf, bands, BANDS, css, ticks, type Rgb, type Scheme } from "./colours.js";
 import { button, choice, make, save, select } from "./dom.js";
 import { figure } from "./figures.js";
@@ -24,7 +24,7 @@ export interface SkinMap {
   values: () => ArrayLike<number> | undefined;
 }
 
-const RANGES = [0.5, 1, 2, 5, 10, 20];
+const RANGES = [0.1, 0.2, 0.5, 1, 2, 5, 10, 20];
 const SHOWN = "map";
 /** A camera that was turned by hand, in the address beside the standard view that it was turned from. */
 const CAMERA = "camera";
@@ -42,6 +42,7 @@ export class Workbench {
   readonly caption = make("p", { className: "caption" });
   private readonly legend = make("figure", { className: "legend", hidden: true });
   private readonly colours = make("div", { className: "row" });
+  private readonly views = make("div", { className: "row views", role: "group" });
   private readonly sides = make("div", { className: "halves", hidden: true });
   /** Where what is seen comes from, for saved pictures. */
   provenance = "";
@@ -73,19 +74,28 @@ export class Workbench {
   /** A part of the panel under a heading. */
   section(title: string, ...children: (Node | string | undefined | false)[]): HTMLElement {
     const section = make("section", {}, make("h2", {}, title), ...children);
+    // A table that is called as its section is needs no second heading.
+    for (const caption of section.querySelectorAll("caption")) caption.classList.toggle("hidden", caption.textContent === title);
     this.panel.append(section);
     return section;
+  }
+
+  /** What went wrong, in the place of what was waited for. */
+  refuse(error: unknown): void {
+    for (const wait of this.panel.querySelectorAll(".wait")) wait.remove();
+    this.panel.append(refusal(error, this.app.words));
   }
 
   /** What the left and the right half show, or that there is one. */
   halves(names: [string, string] | undefined): void {
     this.sides.hidden = names === undefined;
-    this.sides.replaceChildren(...(names ?? []).map((name) => make("span", {}, name)));
+    this.sides.replaceChildren(...(names ?? []).map((name) => make("span", {}, make("b", { title: name }, name))));
   }
 
   /** Turns to the view of the address as it is now. */
   start(): void {
     const { state } = read(location.hash);
+    this.viewed(state.get("view") ?? "4");
     this.scene.view(state.get("view") ?? "4");
     const turned = (state.get(CAMERA) ?? "").split(",").map(Number);
     if (turned.length === 6 && turned.every(Number.isFinite) && turned[2]! > 0) this.scene.turnTo(turned as Turned);
@@ -124,7 +134,10 @@ export class Workbench {
   }
 
   private choose(name: string): void {
+    const before = this.map?.name;
     this.map = this.maps.find((map) => map.name === name);
+    // The same map of other values keeps the range that was chosen for it.
+    if (before !== undefined && before === name) { this.setRange(this.range_mm); return; }
     const stated = Number(new URLSearchParams(location.hash.split("?")[1] ?? "").get("range"));
     this.setRange(this.map?.name === this.app.route.state.get(SHOWN) && RANGES.includes(stated) ? stated : this.map?.range_mm ?? 10);
     note({ [SHOWN]: name });
@@ -163,18 +176,26 @@ export class Workbench {
   private tools(): HTMLElement {
     const { words } = this.app;
     const views = Object.keys(VIEWS).map((key) =>
-      button(key, () => this.setView(key), { title: words.view[key]!, aria: { label: `${key}: ${words.view[key]}`, keyshortcuts: key } }));
+      button(key, () => this.setView(key), { title: words.view[key]!, data: { view: key }, aria: { label: `${key}: ${words.view[key]}`, keyshortcuts: key } }));
     const look = choice(words.look, [["solid", words.solid], ["through", words.through], ["hidden", words.hidden]] as const,
       (this.app.route.state.get("look") ?? "solid") as SkinLook, (value) => this.setLook(value));
+    this.views.replaceChildren(...views);
+    this.views.setAttribute("aria-label", words.views);
     return make("div", { className: "tools" },
-      make("div", { className: "row views", role: "group", aria: { label: words.views } }, ...views), look, this.colours,
+      this.views, look, this.colours,
       button(words.picture, () => void this.picture()), button(words.glb, () => this.glb(), { title: words.glbHint }));
   }
 
   private setView(key: string): void {
     clearTimeout(this.turning);
+    this.viewed(key);
     this.scene.view(key);
     note({ view: key, [CAMERA]: undefined });
+  }
+
+  /** Says which standard view it is, or was before it was turned by hand. */
+  private viewed(key: string): void {
+    for (const one of this.views.children) one.setAttribute("aria-pressed", String((one as HTMLElement).dataset.view === key));
   }
 
   private setLook(look: SkinLook): void {

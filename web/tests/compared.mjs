@@ -46,7 +46,7 @@ export async function compared(page, job) {
     await page.waitForFunction(() => document.querySelector(".screen")?.scene.skinPositions_mm.length > 0);
     const predicted = await positions(page);
     const real = await moved(page, ([x, y, z]) => [x + 2, y - 3, z + 1]);
-    await page.getByLabel("Real skin").setInputFiles({ name: "real.ply", mimeType: "application/octet-stream", buffer: real });
+    await page.locator("input[data-actual]").setInputFiles({ name: "real.ply", mimeType: "application/octet-stream", buffer: real });
     await page.getByRole("button", { name: "Compare" }).click();
     const row = page.locator("table", { hasText: "< 1 mm" }).locator("tr", { hasText: "whole skin" }).locator("td");
     await row.first().waitFor();

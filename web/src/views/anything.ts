@@ -44,7 +44,7 @@ export function anything(words: Words, name: string, members: Members, without: 
     if (Array.isArray(value)) return rows(words, member, value.filter(isMembers));
     return isMembers(value) && depth < MOST_DEPTH ? anything(words, member, value, without, depth + 1) : undefined;
   });
-  return make("section", { className: "said" }, depth === 0 ? make("h2", {}, name) : make("h3", {}, called(name)),
+  return make("section", { className: depth === 0 ? "card said" : "said" }, depth === 0 ? make("h2", {}, name) : make("h3", {}, called(name)),
     short.length > 0 && make("dl", { className: "facts" }, ...short.flatMap(([member, value]) => [make("dt", {}, called(member)), make("dd", {}, typeof value === "boolean" ? (value ? words.yes : words.no) : shown(value))])),
     ...parts);
 }

@@ -13,6 +13,9 @@ export const tail = (id: string): string => `…${id.slice(-6)}`;
 /** A stored plan by its name, or by the end of its id. */
 export const planName = ({ id, plan }: Documents["PlanView"]): string => plan.name ?? tail(id);
 
+/** A name where there is room for few letters: its beginning. */
+export const short = (name: string, letters = 26): string => (name.length > letters ? `${name.slice(0, letters - 1).trimEnd()}…` : name);
+
 /** A plan of the service in a line; segments alone where it moves them in a way that six numbers do not say. */
 export function planInWords(words: Words, plan: Documents["PlanDocument"], frame: FrameName): string {
   const shown = fromDocument(plan, pivotsOf(plan, frame), frame);

@@ -4,7 +4,7 @@ import { ProgressLine, refusal, warnings, type App, type Leave } from "../app.js
 import { button, make } from "../dom.js";
 import { addBones, openCase, showBoundary, type Opened } from "../loading.js";
 import { address } from "../route.js";
-import { figure } from "../figures.js";
+import { count, figure } from "../figures.js";
 import { Workbench } from "../workbench.js";
 import { crumbs } from "./crumbs.js";
 import { placesOf } from "./places.js";
@@ -43,12 +43,12 @@ function facts(list: Fact[]): HTMLElement {
 
 function checked({ words }: App, check: Documents["CheckDocument"]): Fact[] {
   const { classes, skin } = check;
-  const joined = Object.entries(classes.joined).map(([name, count]): Fact => [`${words.joined}: ${name}`, count.toLocaleString()]);
+  const joined = Object.entries(classes.joined).map(([name, nodes]): Fact => [`${words.joined}: ${name}`, count(nodes)]);
   return [
-    [words.nodes, check.nodes.toLocaleString()], [words.cells, check.cells.toLocaleString()], ...joined,
-    [words.fixed, classes.fixed.toLocaleString()], [words.sliding, classes.sliding.toLocaleString()], [words.free, classes.free.toLocaleString()],
-    [`${words.skin}, ${words.triangles}`, skin.triangles.toLocaleString()], [`${words.skin}, ${words.area}`, `${figure(skin.area_mm2 / 100, 0)} cm²`],
-    [words.unknowns, check.unknowns?.toLocaleString() ?? "–"], [words.memory, check.memory_mb === undefined ? "–" : `${figure(check.memory_mb!, 0)} MB`],
+    [words.nodes, count(check.nodes)], [words.cells, count(check.cells)], ...joined,
+    [words.fixed, count(classes.fixed)], [words.sliding, count(classes.sliding)], [words.free, count(classes.free)],
+    [`${words.skin}, ${words.triangles}`, count(skin.triangles)], [`${words.skin}, ${words.area}`, `${figure(skin.area_mm2 / 100, 0)} cm²`],
+    [words.unknowns, check.unknowns === undefined ? "–" : count(check.unknowns!)], [words.memory, check.memory_mb === undefined ? "–" : `${figure(check.memory_mb!, 0)} MB`],
     [words.time, check.time_s === undefined || check.time_s === null ? "–" : `${figure(check.time_s.low, 1)} … ${figure(check.time_s.high, 1)} ${words.seconds}`],
   ];
 }
@@ -56,7 +56,7 @@ function checked({ words }: App, check: Documents["CheckDocument"]): Fact[] {
 function meshFacts({ words }: App, { report, format, units, frame }: Documents["MeshDocument"]): Fact[] {
   const quality: Fact[] = report.min_quality === undefined || report.min_quality === null ? [] : [[words.quality, figure(report.min_quality, 3)]];
   const sets: Fact[] = Object.entries(report.node_sets ?? {}).map(([name, count]) => [name, String(count)]);
-  return [[`${report.kind} · ${format}`, `${units} · ${frame}`], [words.nodes, report.nodes.toLocaleString()], ...quality, ...sets];
+  return [[`${report.kind} · ${format}`, `${units} · ${frame}`], [words.nodes, count(report.nodes)], ...quality, ...sets];
 }
 
 /** The picture that the service draws of what holds the boundary. */

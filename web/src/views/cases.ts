@@ -2,7 +2,7 @@
 import type { Case, CaseDocument } from "../api.js";
 import type { App, Leave } from "../app.js";
 import { make } from "../dom.js";
-import { when } from "../figures.js";
+import { count, when } from "../figures.js";
 import { address } from "../route.js";
 import { tail } from "./called.js";
 import { uploadForm } from "./upload.js";
@@ -17,7 +17,7 @@ export async function cases(app: App): Promise<Leave> {
     return make("li", { className: "card" },
       make("h2", {}, make("a", { href: address(["case", one.id]) }, name)),
       make("p", { className: "fine" }, `${words.states[one.state] ?? one.state} · ${when(one.created)} · ${tail(one.id)}`),
-      check !== undefined && make("p", {}, words.size(check.nodes.toLocaleString(), check.cells.toLocaleString())
+      check !== undefined && make("p", {}, words.size(count(check.nodes), count(check.cells))
         + ` · ${(document.segments ?? []).map((segment) => segment.name).join(", ")}`),
       (check?.warnings.length ?? 0) > 0 && make("p", { className: "warned" }, `${words.warnings}: ${check!.warnings.length}`),
       make("a", { className: "button", href: address(["case", one.id, "plan"]) }, words.planIt));

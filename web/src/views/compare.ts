@@ -56,7 +56,10 @@ class Comparing {
 
   private form(chosen: Job): HTMLElement {
     const { words } = this.app;
-    const file = make("input", { type: "file", accept: ".vtp,.stl,.ply", aria: { label: words.actual } });
+    const file = make("input", { type: "file", accept: ".vtp,.stl,.ply", hidden: true, data: { actual: "" } });
+    // The browser's own button speaks the language of the browser.
+    const name = make("span", { className: "fine" });
+    file.addEventListener("change", () => { name.textContent = file.files?.[0]?.name ?? ""; });
     const compare = button(words.compareNow, () => {
       const [surface] = file.files ?? [];
       if (surface === undefined) { file.click(); return; }
@@ -64,7 +67,7 @@ class Comparing {
     }, { className: "primary" });
     return make("div", { className: "stack" },
       select(words.chooseJob, this.predictions.map((one) => [one.id, jobInWords(words, one)] as const), chosen.id, (id) => this.choose(id)),
-      make("label", { className: "field" }, make("span", {}, words.actual), file),
+      make("div", { className: "field" }, make("span", {}, words.actual), make("div", { className: "row" }, button(words.chooseFile, () => file.click(), { aria: { label: `${words.chooseFile}: ${words.actual}` } }), name, file)),
       choice(words.align, [["icp", words.alignIcp], ["none", words.alignNone]] as const, "icp", (value) => { this.align = value; }), compare);
   }
 

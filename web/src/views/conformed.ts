@@ -2,7 +2,7 @@
 import type { Documents } from "../api.js";
 import { rowChart } from "../charts.js";
 import { card, make, table } from "../dom.js";
-import { figure, mm } from "../figures.js";
+import { count, figure, mm } from "../figures.js";
 import type { Words } from "../words/en.js";
 
 type Conformation = Documents["ConformationDocument"];
@@ -29,8 +29,8 @@ function surfaces(words: Words, { skin, bone, share_with_partner: share }: Confo
 }
 
 function repair(words: Words, { before_repair: before, after_repair: after, repair: done }: Conformation): HTMLElement {
-  const row = (name: string, one: Documents["CellsDocument"]) => [name, one.cells.toLocaleString(), one.inverted, one.undecided, figure(one.smallest_scaled_jacobian, 3)];
+  const row = (name: string, one: Documents["CellsDocument"]) => [name, count(one.cells), one.inverted, one.undecided, figure(one.smallest_scaled_jacobian, 3)];
   return make("div", {}, table(words.repair, ["", words.cells, words.inverted, words.undecided, words.quality], [row(words.before, before), row(words.after, after)]),
-    make("p", {}, words.nodesMoved(done.nodes_moved.toLocaleString(), mm(done.mean_move_mm), mm(done.largest_move_mm))),
+    make("p", {}, words.nodesMoved(count(done.nodes_moved), mm(done.mean_move_mm), mm(done.largest_move_mm))),
     done.unproven.length > 0 && make("p", { className: "warned" }, words.unproven(done.unproven.length)));
 }

@@ -2,11 +2,11 @@
 import type { Documents } from "../api.js";
 import type { App } from "../app.js";
 import { make, svg, table } from "../dom.js";
-import { mm } from "../figures.js";
+import { fixed, mm } from "../figures.js";
 import { INK, SERIES } from "../palette.js";
 import type { Words } from "../words/en.js";
 
-const percent = (share: number) => `${(100 * share).toFixed(1)} %`;
+const percent = (share: number) => `${fixed(100 * share, 1)} %`;
 
 export function comparisonFacts({ words }: App, comparison: Documents["ComparisonDocument"]): HTMLElement {
   const row = (name: string, one: Documents["DistanceDocument"]) => [name, mm(one.mean), mm(one.p95), mm(one.max),
@@ -14,7 +14,7 @@ export function comparisonFacts({ words }: App, comparison: Documents["Compariso
   const regions = Object.entries(comparison.regions ?? {}).map(([name, region]) => row(name, region.both));
   const { method, rotation_deg, displacement_mm, rms_mm } = comparison.alignment;
   const registered = method === "none" ? words.alignNone
-    : `${method}, ${words.turned} ${rotation_deg.toFixed(2)}°, ${words.shifted} ${mm(Math.hypot(...displacement_mm))} mm`
+    : `${method}, ${words.turned} ${mm(rotation_deg)}°, ${words.shifted} ${mm(Math.hypot(...displacement_mm))} mm`
       + (rms_mm === undefined || rms_mm === null ? "" : `, ${words.residual} ${mm(rms_mm)} mm`);
   return make("div", {},
     table(`${words.histogram}, mm`, ["", words.mean, words.p95, words.max, "< 1 mm", "< 2 mm", "< 3 mm"],
@@ -38,7 +38,7 @@ export function histogram(words: Words, distances: Float32Array): SVGElement {
     const height = (70 * count) / most;
     const bar = svg("rect", { x: String(at * 10 + 1), y: String(76 - height), width: "8", height: String(height), fill: SERIES[0]! });
     const from = -REACH_MM + (2 * REACH_MM * at) / BARS;
-    bar.append(svg("title", {}, `${from.toFixed(2)} … ${(from + (2 * REACH_MM) / BARS).toFixed(2)} mm: ${count}`));
+    bar.append(svg("title", {}, `${mm(from)} … ${mm(from + (2 * REACH_MM) / BARS)} mm: ${count}`));
     drawing.append(bar);
   });
   for (const value of [-3, -2, -1, 0, 1, 2, 3]) {

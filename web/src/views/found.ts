@@ -48,7 +48,7 @@ const stoppedOf = ({ at_bound }: Found) => at_bound.filter(({ value }) => value 
 /** How near the plan comes to its targets; to be heeded where one is missed or a movement is stopped by its bound. */
 export function foundLine(words: Words, found: Found, named: NamedTarget[], frame: FrameName): TrustLine {
   const missed = found.targets.flatMap(({ residual_mm }, at) => (residual_mm > MISSED * named[at]!.sigma_mm ? [words.missedBy(named[at]!.label, mm(residual_mm))] : []));
-  const stopped = stoppedOf(found).map((one) => { const { label, value } = inSliders(words, frame, one); return words.stoppedAt(label, value.toFixed(2)); });
+  const stopped = stoppedOf(found).map((one) => { const { label, value } = inSliders(words, frame, one); return words.stoppedAt(label, mm(value)); });
   const most = Math.max(0, ...found.targets.map(({ residual_mm }) => residual_mm));
   const why = [words.missedRule(MISSED), ...missed, ...stopped].join(" ");
   return { name: words.targets, value: words.leftAtMost(mm(most)), trusted: missed.length + stopped.length > 0 ? "heed" : "good", why };
@@ -58,13 +58,13 @@ export function foundFacts({ words, route }: App, job: Job, opened: Opened, foun
   const frame = job.results?.provenance?.frame ?? opened.frame;
   const free = found.parameters.map((one, at) => ({ ...inSliders(words, frame, one), error: found.standard_error[at]! }));
   const stopped = stoppedOf(found).map((one) => inSliders(words, frame, one));
-  const numbers = [...free.map(({ label, value, error }) => [label, value.toFixed(2), error.toFixed(2)]), ...stopped.map(({ label, value }) => [label, value.toFixed(2), words.atBound])];
+  const numbers = [...free.map(({ label, value, error }) => [label, mm(value), mm(error)]), ...stopped.map(({ label, value }) => [label, mm(value), words.atBound])];
   const named = targetsOf(words, job.tags, found.targets.length);
   const targets = found.targets.map(({ residual_mm, largest_mm, points }, at) =>
     [points > 1 ? `${named[at]!.label}, ${words.pointsOf(points)}` : named[at]!.label, mm(residual_mm), mm(largest_mm)]);
   const loose = found.undetermined.map((parts) => make("li", {}, parts.map(({ segment, name, part }) => {
     const { label, value } = inSliders(words, frame, { segment, name, value: part });
-    return `${value.toFixed(2)} × ${label}`;
+    return `${mm(value)} × ${label}`;
   }).join(" + ")));
   const bars = [...free, ...stopped].map(({ label, ...one }): Row => ({ name: label, ...one }));
   return make("div", {},

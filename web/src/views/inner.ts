@@ -57,7 +57,7 @@ function lines(words: Words, kind: InnerKind, names: string[], together: () => b
     const aria = { label: `${label}, ${unit}` };
     const slider = make("input", { type: "range", min: String(low), max: String(high), step: String(step), value: "0", aria, data: { inner: name } });
     const field = make("input", { type: "number", min: String(least), max: String(most), step: String(step), value: "0", aria, data: { inner: name } });
-    const show = (value: number) => { values.set(name, value); slider.value = String(value * factor); field.value = figure(value * factor, 4); };
+    const show = (value: number) => { values.set(name, value); slider.value = String(value * factor); field.value = String(Number((value * factor).toFixed(4))); };
     const set = (value: number) => {
       const within = Math.min(Math.max(value, least), most) / factor;
       const other = together() ? partner(name, names) : undefined;

@@ -36,7 +36,7 @@ export async function inversePage(app: App): Promise<Leave> {
     new Inverse(app, opened, bench, loaded).start();
     await addBones(app.service, opened, bench.scene);
   } catch (error) {
-    bench.panel.append(refusal(error, app.words));
+    bench.refuse(error);
   }
   return () => bench.leave();
 }

@@ -79,7 +79,7 @@ export async function studies(app: App): Promise<Leave> {
   };
   const row = (job: Job) => make("li", { className: "card" },
     make("h2", {}, when(job.created)), about(job),
-    make("p", {}, `${statusOf(words, job.status)}${job.results?.study === undefined ? "" : ` · ${words.verdict}: ${job.results.study.verdict.outcome}`}`),
+    make("p", {}, `${statusOf(words, job.status)}${job.results?.study === undefined ? "" : ` · ${words.verdict}: ${words.outcomes[job.results.study.verdict.outcome] ?? job.results.study.verdict.outcome}`}`),
     job.status === "successful" && button(words.chart, () => open(job)), " ", make("a", { className: "button", href: address(["job", job.id]) }, words.result));
   const stated = list.find(({ id, status }) => id === app.route.state.get("study") && status === "successful");
   if (stated !== undefined) open(stated);

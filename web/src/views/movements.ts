@@ -1,5 +1,6 @@
 // Sliders and number fields for the six movements of a segment.
 import { make } from "../dom.js";
+import { figure } from "../figures.js";
 import { ROTATIONS, TRANSLATIONS, type FrameName, type Motion, type MotionName } from "../frame.js";
 import type { Plan } from "../plan.js";
 import { toldInner } from "./inner.js";
@@ -53,7 +54,7 @@ const unitOf = (word: MotionName) => ((TRANSLATIONS as readonly string[]).includ
 export function told(plan: Plan, words: Words, frame: FrameName): string {
   const parts = Object.entries(plan.segments).map(([name, motion]) => {
     const moved = Object.entries(motion).filter(([, value]) => value !== 0);
-    const text = moved.map(([word, value]) => `${wordFor(words, word as MotionName, frame)} ${Number(value.toFixed(2))}${unitOf(word as MotionName)}`).join(", ");
+    const text = moved.map(([word, value]) => `${wordFor(words, word as MotionName, frame)} ${figure(value)}${unitOf(word as MotionName)}`).join(", ");
     return text === "" ? "" : `${name} ${text}`;
   });
   return [...parts.filter((part) => part !== ""), ...toldInner(plan.inner, words)].join("; ") || words.atRest;

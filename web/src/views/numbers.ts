@@ -1,7 +1,7 @@
 // The numbers of a result: parts of the skin and landmarks with what is estimated of their errors, measures of the head, provenance.
 import type { Documents, Triple, Warning } from "../api.js";
 import { button, make, table, type Cell } from "../dom.js";
-import { mm, signed } from "../figures.js";
+import { fixed, mm, signed } from "../figures.js";
 import { inWords, type FrameName } from "../frame.js";
 import type { Words } from "../words/en.js";
 import { names } from "./places.js";
@@ -47,7 +47,7 @@ export function landmarks(shown: Shown, { statistics, numerical_error_mm: errors
 
 /** Measures of the head before, as planned of bone, and as predicted of skin. */
 export function cephalometry(words: Words, measures: Documents["MeasureDocument"][]): HTMLElement {
-  const number = (value: number | null | undefined) => (value === undefined || value === null ? "–" : value.toFixed(1));
+  const number = (value: number | null | undefined) => (value === undefined || value === null ? "–" : fixed(value, 1));
   const unit = (name: string) => ({ deg: "°", mm: "mm" })[name] ?? "";
   // A reproduction has what was performed, a prediction what is predicted.
   const columns = ([["planned", words.planned], ["performed", words.performed], ["predicted", words.predicted]] as const)
@@ -59,7 +59,7 @@ export function cephalometry(words: Words, measures: Documents["MeasureDocument"
 export function provenance(words: Words, stated: Documents["ProvenanceDocument"] | undefined): HTMLElement {
   const facts: [string, string][] = stated === undefined ? [] : [
     [words.solvedBy, stated.method ?? ""], ["", stated.why ?? ""],
-    [words.took, `${stated.timing?.total_s?.toFixed(1) ?? "–"} ${words.seconds}`],
+    [words.took, `${stated.timing?.total_s === undefined ? "–" : fixed(stated.timing.total_s, 1)} ${words.seconds}`],
     [words.nodes, String(stated.mesh?.nodes ?? "")], ["facies", stated.engine.version], [words.hash, stated.spec_hash.slice(0, 16)],
     ["", stated.statement ?? words.notice],
   ];

@@ -1,7 +1,7 @@
 // A set that is painted: a brush over the faces of the boundary, with undo, that the case document selects as nodes on a surface.
 import { announce, refusal, type App } from "../app.js";
 import { button, choice, make, select } from "../dom.js";
-import { figure } from "../figures.js";
+import { count, figure } from "../figures.js";
 import type { Opened } from "../loading.js";
 import { Canvas, plyOf } from "../painting.js";
 import { hex, POINTED } from "../palette.js";
@@ -155,7 +155,7 @@ export class Painter {
   private draw(): void {
     const { app: { words }, faces, canvas, bench } = this;
     bench.scene.cover(faces.size === 0 ? undefined : canvas.part(faces), COLOUR);
-    this.told.textContent = words.painted(faces.size.toLocaleString(), figure(canvas.area(faces) / 100, 1));
+    this.told.textContent = words.painted(count(faces.size), figure(canvas.area(faces) / 100, 1));
     this.undoButton.disabled = !this.history.canUndo;
     this.redoButton.disabled = !this.history.canRedo;
     this.add.disabled = faces.size === 0;

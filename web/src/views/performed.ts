@@ -4,7 +4,7 @@ import { rowChart } from "../charts.js";
 import type { App } from "../app.js";
 import { tail } from "./called.js";
 import { card, make, select, table } from "../dom.js";
-import { mm, signed } from "../figures.js";
+import { fixed, mm, signed } from "../figures.js";
 import { angles, inWords, motion, type FrameName } from "../frame.js";
 import { noInner, written, type Pivots, type Plan } from "../plan.js";
 import { address } from "../route.js";
@@ -17,11 +17,11 @@ export async function performedFacts(app: App, { base, segments }: Reproduction,
   const moved = (vector: number[]) => inWords(vector as Triple, frame);
   const bars = segments.flatMap(({ name, displacement_mm, rotation_deg }) => [
     ...moved(displacement_mm).map((value, at) => ({ name: `${name}: ${axes[at]!}`, value })), { name: `${name}: ${words.turnedBy}, °`, value: rotation_deg }]);
-  const rows = segments.map(({ name, displacement_mm, rotation_deg }) => [name, ...moved(displacement_mm).map(signed), `${rotation_deg.toFixed(2)}°`]);
+  const rows = segments.map(({ name, displacement_mm, rotation_deg }) => [name, ...moved(displacement_mm).map(signed), `${mm(rotation_deg)}°`]);
   const beyond = segments.filter(({ from_planned }) => from_planned !== undefined && from_planned !== null)
-    .map(({ name, from_planned }) => [name, ...moved(from_planned!.displacement_mm).map(signed), `${from_planned!.rotation_deg.toFixed(2)}°`]);
+    .map(({ name, from_planned }) => [name, ...moved(from_planned!.displacement_mm).map(signed), `${mm(from_planned!.rotation_deg)}°`]);
   const fits = [{ name: words.unmovedBone, fit: base.fit }, ...segments].map(({ name, fit }) =>
-    [name, mm(fit.rms_mm), `${(100 * fit.share_above_1_mm).toFixed(1)} %`, `${fit.pairs} / ${fit.points}`]);
+    [name, mm(fit.rms_mm), `${fixed(100 * fit.share_above_1_mm, 1)} %`, `${fit.pairs} / ${fit.points}`]);
   const head = ["", ...axes, words.turnedBy];
   return [
     card(words.performed, rowChart(words.performed, "mm, °", bars), table(`${words.performed}, mm`, head, rows), beyond.length > 0 && table(`${words.beyondPlan}, mm`, head, beyond), await asPlan(app, segments, frame)),

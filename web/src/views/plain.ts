@@ -1,5 +1,5 @@
 // The result of a job that has no skin to show: what it found in numbers, where it leads, its report and files.
-import type { CaseDocument, Job } from "../api.js";
+import type { CaseDocument, Documents, Job } from "../api.js";
 import { refusal, warnings, type App } from "../app.js";
 import { button, card, make } from "../dom.js";
 import { when } from "../figures.js";
@@ -14,6 +14,7 @@ import { learnedFacts, learnedInShort } from "./learned.js";
 import { cephalometry, provenance } from "./numbers.js";
 import { performedFacts } from "./performed.js";
 import { reportLinks } from "./reports.js";
+import type { Words } from "../words/en.js";
 
 /** Members of a result that are told elsewhere, or are not for reading. */
 const ELSEWHERE = ["files", "pictures", "warnings", "job", "kept", "case", "comparison", "provenance", "optimisation", "numerical_error_mm", "nonlinearity_mm"];
@@ -21,13 +22,23 @@ const ELSEWHERE = ["files", "pictures", "warnings", "job", "kept", "case", "comp
 /** Charts and tables of what a kind finds, by the members of its result. */
 async function told(app: App, job: Job): Promise<Record<string, HTMLElement[]>> {
   const { words } = app;
-  const { learning, cohort, conformation, reproduction, provenance: stated } = job.results ?? {};
+  const { learning, cohort, conformation, reproduction, study, provenance: stated } = job.results ?? {};
   return {
     ...(learning ? { learning: [learnedInShort(words, learning), ...learnedFacts(words, learning)] } : {}),
+    ...(study ? { study: [verdictFacts(words, study)] } : {}),
     ...(cohort ? { cohort: groupFacts(words, cohort) } : {}),
     ...(conformation ? { conformation: conformedFacts(words, conformation) } : {}),
     ...(reproduction ? { reproduction: await performedFacts(app, reproduction, stated?.frame ?? "unspecified") } : {}),
   };
+}
+
+/** What a study comes to: its verdict, how many of its rows were solved, and the ways of modelling that none beats. */
+function verdictFacts(words: Words, { verdict, on_front }: Documents["StudySummaryDocument"]): HTMLElement {
+  const others = Object.entries(words.rowStates).map(([state, name]) => [name, Number((verdict as unknown as Record<string, unknown>)[state] ?? 0)] as const).filter(([, rows]) => rows > 0);
+  return card(words.verdict, make("p", {}, make("strong", {}, words.outcomes[verdict.outcome] ?? verdict.outcome),
+    ` · ${words.rowsOf(verdict.solved, verdict.rows)}${others.map(([name, rows]) => `, ${rows} ${name}`).join("")}`),
+  ...(verdict.reasons ?? []).map((reason) => make("p", { className: "warned" }, reason)),
+  on_front.length > 0 && make("p", { className: "fine" }, `${words.onFront}: ${on_front.map((label) => label.replaceAll("_", " ")).join(", ")}`));
 }
 
 export async function plainResult(app: App, job: Job): Promise<HTMLElement[]> {
@@ -39,10 +50,10 @@ export async function plainResult(app: App, job: Job): Promise<HTMLElement[]> {
   const report = results === undefined ? undefined : reportLinks(app, job);
   return [
     make("h1", {}, `${kindOf(words, job.kind)} · ${statusOf(words, job.status)}`),
-    make("p", { className: "fine" }, `${when(job.created)} · ${job.message}`),
+    make("p", { className: "fine" }, [when(job.created), job.status === "successful" ? "" : job.message].filter((part) => part !== "").join(" · ")),
     make("div", { className: "row" }, ...onwards(app, job)),
-    make("section", {}, make("h2", {}, words.warnings), warnings(job.warnings, words)),
-    ...(report === undefined ? [] : [make("section", {}, make("h2", {}, words.report), report)]),
+    card(words.warnings, warnings(job.warnings, words)),
+    ...(report === undefined ? [] : [card(words.report, report)]),
     ...(results?.comparison === undefined ? [] : [comparisonFacts(app, results.comparison)]),
     ...Object.values(facts).flat(),
     ...(measures.length === 0 ? [] : [card(words.cephalometry, cephalometry(words, measures))]),

@@ -17,6 +17,7 @@ import { innerSliders, type InnerSliders } from "./inner.js";
 import { movements, told, type Movements } from "./movements.js";
 import { SavedPlans, type Readable } from "./plans.js";
 import { placesOf } from "./places.js";
+import { SecondOrder } from "./second.js";
 import { drawTrust } from "./trust.js";
 import { appliedLines } from "./trusted.js";
 
@@ -32,13 +33,14 @@ export async function planPage(app: App): Promise<Leave> {
   const opened = await openCase(app.service, app.route.path[1]!);
   const bench = new Workbench(app, crumbs(app.words, opened.id, opened.name, "plan"));
   bench.scene.orient(opened.frame);
+  const planning = new Planning(app, opened, bench);
   try {
-    await new Planning(app, opened, bench).start();
+    await planning.start();
   } catch (error) {
-    bench.panel.append(refusal(error, app.words));
-    if (isKeyAsked(error)) { bench.leave(); throw error; }
+    bench.refuse(error);
+    if (isKeyAsked(error)) { planning.leave(); bench.leave(); throw error; }
   }
-  return () => bench.leave();
+  return () => { planning.leave(); bench.leave(); };
 }
 
 const isKeyAsked = (error: unknown) => (error as { problem?: { status?: number } }).problem?.status === 401;
@@ -56,7 +58,7 @@ class Planning {
   private readonly redoButton = button("", () => this.step("redo"), { className: "icon" });
   private readonly told = make("div", { className: "told", role: "status" });
   private readonly warned = make("div");
-  private readonly order = make("div", { className: "row" });
+  private readonly order: SecondOrder;
   private readonly segments = make("div", {});
   private inner: InnerSliders | undefined;
   private asking: ReturnType<typeof setTimeout> | undefined;
@@ -64,7 +66,14 @@ class Planning {
   private model = "auto";
   private steps = 0;
 
-  constructor(private readonly app: App, private readonly opened: Opened, private readonly bench: Workbench) {}
+  constructor(private readonly app: App, private readonly opened: Opened, private readonly bench: Workbench) {
+    this.order = new SecondOrder(app, opened.id, { ready: (loaded) => this.adopt(loaded), grow: (into) => void this.grow(into) });
+  }
+
+  leave(): void {
+    clearTimeout(this.asking);
+    this.order.leave();
+  }
 
   async start(): Promise<void> {
     const { app, opened, bench } = this;
@@ -78,7 +87,7 @@ class Planning {
     bench.section(words.plan,
       opened.frame === "unspecified" && make("p", { className: "warned" }, words.unspecifiedFrame),
       make("div", { className: "row" }, this.undoButton, this.redoButton, button(words.reset, () => this.set(atRest(this.names)))),
-      this.told, this.warned, this.segments, this.order);
+      this.told, this.warned, this.segments, this.order.element);
     this.drawSegments();
     bench.section(words.predict, this.prediction());
     const saved = new SavedPlans(app, opened, {
@@ -111,32 +120,33 @@ class Planning {
     isWaiting = false;
     await Promise.all(shown);
     wait.remove();
-    this.sum = new SkinSum(this.loaded.columns);
-    this.moved_mm = new Float32Array(this.loaded.columns.nodes);
     const centres = this.loaded.description.segments.map(({ name, centre_mm }) => [name, centre_mm as Triple] as const);
     this.pivots = { ...Object.fromEntries(centres), ...readPivots(planState(app.route.state)) };
     bench.scene.showSkin(this.loaded.rest);
-    bench.provenance = `case ${opened.id} · response ${this.loaded.description.job}`;
     bench.start();
-    const { words } = app;
+    this.summed();
+  }
+
+  /** Begins the sum of columns anew, at rest. */
+  private summed(): void {
+    const { app: { words }, bench, loaded, opened } = this;
+    this.sum = new SkinSum(loaded.columns);
+    this.moved_mm = new Float32Array(loaded.columns.nodes);
+    bench.provenance = `case ${opened.id} · response ${loaded.description.job}`;
     bench.offer([
       { name: "displacement", label: words.displacement, scheme: "length", range_mm: 10, values: () => this.moved_mm },
       ...(this.sum.second_mm === undefined ? [] : [
-        { name: "second", label: words.secondOrder, scheme: "length" as const, range_mm: 1, values: () => lengths(this.sum.second_mm!) }]),
+        { name: "second", label: words.secondOrder, scheme: "length" as const, range_mm: 1, values: () => lengths(this.sum.second_mm!) },
+        { name: "left", label: words.leftOutMap, scheme: "length" as const, range_mm: 1, values: () => this.sum.leftOut_mm(loaded.description.second_order!.third_order_mm) }]),
     ]);
-    this.drawOrder();
+    this.order.show(loaded);
   }
 
-  private drawOrder(): void {
-    const { words } = this.app;
-    const second = this.loaded.columns.second !== undefined;
-    const inside = this.loaded.columns.inner.length > 0;
-    this.order.replaceChildren(make("span", { className: "badge" }, second ? words.order2 : words.order1),
-      inside ? make("span", { className: "fine" }, words.secondNotInside)
-        : second ? "" : button(words.second, () => void this.rebuild({ order: 2 }), { title: words.secondWhy }),
-      second ? "" : make("p", { className: "fine" }, words.leftOutNowhere),
-      second || this.loaded.columns.inner.some(({ kind }) => kind === "growth") ? ""
-        : button(words.addGrowth, () => void this.rebuild({ growth: this.regions() }), { title: words.addGrowthWhy }));
+  /** Goes on with the same movements on a response of the same skin: nobody who moves a slider loses it. */
+  private adopt(loaded: LoadedResponse): void {
+    this.loaded = loaded;
+    this.summed();
+    this.moveAll();
   }
 
   /** All tissue, and each region that the case tells apart by name. */
@@ -145,17 +155,17 @@ class Planning {
     return [...new Set(["*", ...Object.values(regions?.names ?? {}), ...Object.keys(materials ?? {})])];
   }
 
-  /** The response anew with what it lacks. */
-  private async rebuild(more: { order?: 2; growth?: string[] }): Promise<void> {
+  /** The response anew with columns of growth. */
+  private async grow(into: HTMLElement): Promise<void> {
     try {
-      await buildResponse(this.app, this.opened.id, more, this.order);
+      await buildResponse(this.app, this.opened.id, { growth: this.regions() }, into);
       const pivots = this.pivots;
       await this.load();
       this.pivots = pivots;
       this.drawSegments();
       this.moveAll();
     } catch (error) {
-      this.order.append(refusal(error, this.app.words));
+      into.append(refusal(error, this.app.words));
     }
   }
 

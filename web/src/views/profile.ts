@@ -31,7 +31,7 @@ export function profile(words: Words, frame: FrameName, before: Shape, after: Sh
   const [left, top] = [0, 1].map((axis) => all.reduce((least, point) => Math.min(least, point[axis]!), Infinity)) as [number, number];
   const [right, bottom] = [0, 1].map((axis) => all.reduce((most, point) => Math.max(most, point[axis]!), -Infinity)) as [number, number];
   const drawing = svg("svg", {
-    viewBox: `${left - 5} ${top - 5} ${right - left + 10} ${bottom - top + 18}`, role: "img", "aria-label": words.profileHint, class: "drawing",
+    viewBox: `${left - 5} ${top - 5} ${right - left + 10} ${bottom - top + 18}`, role: "img", "aria-label": words.profileHint, class: "drawing profile",
   });
   const path = (lines: (typeof pieces)[number]) => lines.map(([a, b]) => `M${a[0].toFixed(2)} ${a[1].toFixed(2)}L${b[0].toFixed(2)} ${b[1].toFixed(2)}`).join("");
   // Pieces are short: dashes would begin anew in each, so that what was before is thin and light instead.

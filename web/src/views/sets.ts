@@ -2,6 +2,7 @@
 import type { CaseDocument } from "../api.js";
 import { announce, refusal, type App } from "../app.js";
 import { button, make, select } from "../dom.js";
+import { count as inGroups } from "../figures.js";
 import { setsOf, type Opened } from "../loading.js";
 import { ACCENT, FIXED, FREE, hex, SEGMENTS, SLIDING } from "../palette.js";
 import { heldBy, isHeldBySets, rolesOf, withPainted, withRoles, type PaintedSet, type Role, type SetRoles } from "../roles.js";
@@ -24,7 +25,7 @@ export async function setsSection(app: App, opened: Opened, bench: Workbench, se
   const sizes = (view.meshes ?? []).find(({ report }) => report.kind === "volume")?.report.node_sets ?? {};
   const count = view.check?.nodes ?? 0;
   if (Object.keys(sizes).length === 0) { section.remove(); return; }
-  if (nodes === undefined || count > MOST_NODES) { section.append(make("p", { className: "fine" }, words.setsTooLarge(count.toLocaleString()))); return; }
+  if (nodes === undefined || count > MOST_NODES) { section.append(make("p", { className: "fine" }, words.setsTooLarge(inGroups(count)))); return; }
   const inside = await setsOf(service, document.volume!, nodes);
   new Sets(app, opened, bench, section, { sizes, inside }).start();
 }
@@ -90,7 +91,7 @@ class Sets {
     const name = button(set, () => this.choose(set), { className: "link", aria: { pressed: "false" } });
     const role = select(set, ROLES.map((one) => [one, words.role[one]] as const), this.roles[set]!, (one) => { this.roles[set] = one as Role; this.write(); });
     role.querySelector("span")!.className = "hidden";
-    const row = make("li", { data: { set } }, name, make("span", { className: "fine" }, `${count.toLocaleString()} ${words.nodes.toLowerCase()}`), role);
+    const row = make("li", { data: { set } }, name, make("span", { className: "fine" }, `${words.nodeCount(inGroups(count))}`), role);
     this.rows.set(set, row);
     return row;
   }

@@ -11,7 +11,7 @@ import { lengthsOver, nodeAreas, type Lengths } from "../regions.js";
 import { lengths } from "../response.js";
 import { address, note } from "../route.js";
 import { Workbench } from "../workbench.js";
-import { planInWords, planName } from "./called.js";
+import { planInWords, planName, short } from "./called.js";
 import { crumbs } from "./crumbs.js";
 import { wordFor } from "./movements.js";
 import { OPEN, storedPlans, type Readable, type Stored } from "./plans.js";
@@ -47,7 +47,7 @@ export async function plansPage(app: App): Promise<Leave> {
     bench.start();
     await new PlansCompared(app, opened, bench, { skin, parts, plans }).start();
   } catch (error) {
-    bench.panel.append(refusal(error, words));
+    bench.refuse(error);
   }
   return () => bench.leave();
 }
@@ -134,7 +134,7 @@ class PlansCompared {
   private offer([a, b]: Sides<Applied>): void {
     const { app: { words }, bench } = this;
     const moved = (name: string, { stored, displacement_mm }: Applied) =>
-      ({ name, label: `${words.displacement}: ${planName(stored)}`, scheme: "length" as const, range_mm: 10, values: () => lengths(displacement_mm) });
+      ({ name, label: `${words.displacement}: ${short(planName(stored))}`, scheme: "length" as const, range_mm: 10, values: () => lengths(displacement_mm) });
     bench.offer([{ name: "apart", label: words.plansApart, scheme: "length", range_mm: 5, values: () => this.apart }, moved("first", a), moved("second", b)], "apart");
   }
 
@@ -151,9 +151,9 @@ class PlansCompared {
     bench.scene.moveSkin(b.displacement_mm);
     bench.scene.overlay(how === "overlay" ? first : undefined);
     bench.scene.beside(how === "sides" ? first : undefined, bonesOfA);
-    bench.halves(how === "sides" ? applied.map(({ stored }) => planName(stored)) as Sides<string> : undefined);
+    bench.halves(how === "sides" ? applied.map(({ stored }) => short(planName(stored))) as Sides<string> : undefined);
     bench.repaint();
-    bench.caption.textContent = `${this.opened.name} · ${applied.map(({ stored }) => planName(stored)).join(" | ")}`;
+    bench.caption.textContent = `${this.opened.name} · ${applied.map(({ stored }) => short(planName(stored))).join(" | ")}`;
   }
 
   private bones({ readable }: Applied): Record<string, number[]> {
@@ -164,7 +164,7 @@ class PlansCompared {
 
   private tell(applied: Sides<Applied>): void {
     const { app: { words }, bench } = this;
-    const names = applied.map(({ stored }) => planName(stored)) as Sides<string>;
+    const names = applied.map(({ stored }) => short(planName(stored))) as Sides<string>;
     drawTrust(bench.strip, words, applied.map(({ answer }, at): TrustLine => {
       const line = leftOutLine(words, answer);
       return { ...line, name: `${line.name}: ${names[at]}` };
@@ -186,7 +186,7 @@ class PlansCompared {
       const apart = lengthsOver(this.apart, areas, inside);
       return [name, ...moved.map((one) => length(lengthsOver(one, areas, inside), "mean")), length(apart, "mean"), length(apart, "p95"), length(apart, "max")];
     };
-    return table(words.plansApartBy, [words.region, ...names.map((name) => `${name}, ${words.mean}`), `${words.apart}, ${words.mean}`, words.p95, words.max],
+    return table(words.plansApartBy, [words.region, ...names.map((name) => `${short(name, 15)}, ${words.mean}`), `${words.apart}, ${words.mean}`, words.p95, words.max],
       [row(words.whole), ...Object.entries(this.known.parts).map(([name, inside]) => row(name, inside))]);
   }
 
@@ -207,12 +207,12 @@ class PlansCompared {
       const [one, other] = [a, b].map(({ plan }) => (kind === "growth" ? 100 : 1) * (plan.inner[kind][name] ?? 0)) as Sides<number>;
       return row(`${name}, ${kind === "growth" ? "%" : "kPa"}`, one, other, 1);
     }));
-    return table(words.bothPlans, [words.movement, ...names, words.apart], [...segments, ...inner]);
+    return table(words.bothPlans, [words.movement, ...names.map((name) => short(name, 15)), words.apart], [...segments, ...inner]);
   }
 
   private links(applied: Sides<Applied>): HTMLElement {
     const { app: { words }, opened } = this;
     return make("div", { className: "row" }, ...applied.map(({ stored }) =>
-      make("a", { className: "button", href: address(["case", opened.id, "plan"], { [OPEN]: stored.id }) }, `${words.load} ${planName(stored)}`)));
+      make("a", { className: "button", href: address(["case", opened.id, "plan"], { [OPEN]: stored.id }), title: planName(stored) }, `${words.load} ${short(planName(stored))}`)));
   }
 }

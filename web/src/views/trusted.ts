@@ -1,6 +1,6 @@
 // What is known of how far answers may be trusted: of a plan on a response, and of a result.
 import type { Documents, Warning } from "../api.js";
-import { mm } from "../figures.js";
+import { figure, fixed, mm } from "../figures.js";
 import type { Words } from "../words/en.js";
 import type { TrustLine } from "./trust.js";
 
@@ -43,7 +43,7 @@ export function appliedLines(words: Words, answer: Documents["AppliedDocument"],
     heeded(words, model, "model", answer.warnings),
     leftOutLine(words, answer),
     { name: words.numericalError, value: words.notKnown, trusted: "unknown", why: words.errorWithPredict },
-    { name: words.sameAsService, value: (apart <= most ? words.agrees : words.disagrees)(apart.toExponential(0)), trusted: apart <= most ? "good" : "heed" },
+    { name: words.sameAsService, value: apart <= most ? words.agrees(figure(most, 4)) : words.disagrees(fixed(apart, 4)), trusted: apart <= most ? "good" : "heed" },
     warned(words, answer.warnings.length),
   ];
 }
@@ -65,7 +65,8 @@ export function resultLines(words: Words, results: Documents["ResultDocument"], 
   if (finite && (nonlinearity_mm ?? undefined) === undefined) lines.push(heeded(words, { name: words.leftOutName, value: words.nothingOfThat, trusted: "good", why: words.finiteStrain }, "leftOut", warnings));
   else lines.push(heeded(words, measured(words, words.leftOutName, nonlinearity_mm?.skin, nonlinearity_unknown), "leftOut", warnings, nonlinearity_mm?.skin.mean));
   const error = measured(words, words.numericalError, numerical_error_mm, numerical_error_unknown);
-  lines.push(numerical_error_mm?.corrected === true ? { ...error, why: words.correctedHere } : heeded(words, error, "mesh", warnings, numerical_error_mm?.mean));
+  const added = numerical_error_mm?.corrected === true ? { why: words.correctedHere } : {};
+  lines.push(heeded(words, { ...error, ...added }, "mesh", warnings, numerical_error_mm?.mean));
   if (adequacy !== undefined && adequacy !== null) {
     lines.push(heeded(words, { name: words.accepted, value: `${mm(adequacy.accepted_mm)} mm: ${adequacy.met ? words.met : words.notMet}`, trusted: adequacy.met ? "good" : "heed" }, "accepted", warnings));
   }

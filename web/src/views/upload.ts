@@ -2,9 +2,11 @@
 import { Refused, type Documents } from "../api.js";
 import { ProgressLine, refusal, type App } from "../app.js";
 import { button, make, select } from "../dom.js";
+import { count as inGroups } from "../figures.js";
 import { address } from "../route.js";
 import { guess, documentOf, type Role, type SetRoles } from "../roles.js";
 import { scanEditor, surfacesEditor } from "./meshed.js";
+import type { Words } from "../words/en.js";
 
 /** The name stands before the choice already: it is for those who do not see that. */
 function named(choice: HTMLLabelElement): HTMLLabelElement {
@@ -21,7 +23,7 @@ export function uploadForm(app: App): HTMLElement {
   const { words } = app;
   const said = make("div", { role: "status" });
   const next = make("div");
-  const files = make("input", { type: "file", multiple: true, className: "hidden", aria: { label: words.chooseFiles }, data: { files: "" } });
+  const files = make("input", { type: "file", multiple: true, hidden: true, data: { files: "" } });
   const take = (list: FileList | null | undefined) => {
     if (list === null || list === undefined || list.length === 0) return;
     said.replaceChildren();
@@ -45,11 +47,20 @@ export function uploadForm(app: App): HTMLElement {
 interface Stated { case?: unknown; volume?: unknown; meshing?: unknown }
 const isCase = (stated: Stated) => stated.case !== undefined || stated.volume !== undefined || stated.meshing !== undefined;
 
+/** What is no JSON is refused by the name of its file. */
+function parsed(words: Words, name: string, text: string): Stated {
+  try {
+    return JSON.parse(text) as Stated;
+  } catch (error) {
+    throw new Error(words.noJson(name, String(error instanceof Error ? error.message : error)));
+  }
+}
+
 /** Files with a document are sent as they are; a mesh alone is looked at first. */
 async function taken(app: App, files: File[], said: HTMLElement, next: HTMLElement): Promise<void> {
   const { words } = app;
   const documents = await Promise.all(files.filter(({ name }) => name.endsWith(".json"))
-    .map(async (file) => JSON.parse(await file.text()) as Stated));
+    .map(async (file) => parsed(words, file.name, await file.text())));
   const meshes = files.filter(({ name }) => !name.endsWith(".json"));
   // A folder may hold what else to ask of its meshes, as the one of `facies face` does.
   const stated = documents.find(isCase) ?? documents[0];
@@ -101,7 +112,7 @@ function editor(app: App, mesh: Documents["MeshDocument"], name: string, bones: 
   const text = make("textarea", { spellcheck: false, aria: { label: words.document } });
   const found = make("div", { role: "status" });
   const write = () => { text.value = JSON.stringify(documentOf(settings, roles, bones.map((file) => stem(file.name))), null, 2); };
-  const rows = sets.map(([set, count]) => make("li", {}, make("span", { className: "name" }, `${set} · ${count} ${words.nodes}`),
+  const rows = sets.map(([set, count]) => make("li", {}, make("span", { className: "name" }, `${set} · ${words.nodeCount(inGroups(count))}`),
     named(select(set, ROLES.map((role) => [role, words.role[role]] as const), roles[set]!, (role) => { roles[set] = role as Role; write(); })),
     count === 0 && make("span", { className: "warned" }, words.emptySet)));
   /** What is wrong stands beside the set that it is wrong of, too. */

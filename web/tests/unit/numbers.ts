@@ -7,7 +7,7 @@ import { inAxes, inWords, motion, movement, rotation, still } from "../../src/fr
 import { section } from "../../src/outline.js";
 import { atRest, document, fromDocument, History, pivotsOf, planState, read, readPivots, written } from "../../src/plan.js";
 import { readPly } from "../../src/ply.js";
-import { coefficients, SkinSum } from "../../src/response.js";
+import { coefficients, lengths, SkinSum, thirdOrder } from "../../src/response.js";
 
 const NODES = 7;
 const CENTRES: Triple[] = [[1, 2, 3], [-4, 5, -6]];
@@ -54,6 +54,25 @@ for (const order of [1, 2] as const) {
     assert(apart(sum.displacement_mm, bySlowSum(order, { mandible: plan.mandible })) < 2e-5);
   });
 }
+
+test("what the second order leaves out grows with the cube, and is shared out as the second order is", () => {
+  const still = new Array<number>(12).fill(0);
+  const samples = [[1e-3, 2e-3, 3e-3, 0.4, 0.5, 0.6], [1e-3, 1e-3, 1e-3, 1, 1, 1]];
+  const along = coefficients({ translation_mm: [0, 2, 0], rotation_deg: [0, 0, 0], pivot_mm: [0, 0, 0], centre_mm: [1, 2, 3] });
+  assert(Math.abs(thirdOrder(samples, [...along, ...still]) - 8 * 2e-3) < 1e-12);
+  const about = coefficients({ translation_mm: [0, 0, 0], rotation_deg: [0, 0, 30], pivot_mm: [1, 2, 3], centre_mm: [1, 2, 3] });
+  assert(Math.abs(thirdOrder(samples, [...about, ...still]) - 0.6 * (Math.PI / 6) ** 3) < 1e-12);
+  const sum = new SkinSum({ nodes: NODES, segments: 2, inner: [], linear, second });
+  sum.move(0, twelve("maxilla", 0));
+  sum.move(1, twelve("mandible", 1));
+  const [left, added, first] = [sum.leftOut_mm(samples), lengths(sum.second_mm!), lengths(bySlowSum(1, plan))];
+  const moving = [...first.keys()].filter((node) => first[node]! >= 0.1 * Math.max(...first));
+  const mean = moving.reduce((all, node) => all + left[node]!, 0) / moving.length;
+  const told = thirdOrder(samples, [...twelve("maxilla", 0), ...twelve("mandible", 1)]);
+  assert(told > 0 && Math.abs(mean / told - 1) < 1e-5, `${mean} of ${told}`);
+  assert(left.every((one, node) => Math.abs(one / added[node]! - left[0]! / added[0]!) < 1e-5));
+  assert.deepEqual([...new SkinSum({ nodes: NODES, segments: 2, inner: [], linear }).leftOut_mm(samples)], new Array(NODES).fill(0));
+});
 
 test("forward is to the front, up is up and left is left in either frame", () => {
   const words = { ...still(), forward: 6, up: 2, left: 1 };
