@@ -3,8 +3,8 @@
 //! The gap of a place is its distance to the closest triangle that it opposes, below 0 in the bone, along the normal of that triangle
 //! or, at an edge between triangles, along the line to the edge. Whether it lies in the bone is asked of the closest triangle of
 //! all: beside a wall the line to the edge below it leads out of the bone, not into it. Tissue outside a bone or hardly in it faces
-//! walls across its normal too, so that what has slid around an edge does not slide back through the wall. A bone goes on a straight way to where its segment takes it, as
-//! held nodes do: x + s ((R - I) x + t), s the share of the movement.
+//! walls across its normal too, so that what has slid around an edge does not slide back through the wall. A bone goes on a straight
+//! way to where its segment takes it, as held nodes do: x + s ((R - I) x + t), s the share of the movement.
 
 use std::sync::Arc;
 

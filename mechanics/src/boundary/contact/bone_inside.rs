@@ -25,7 +25,7 @@ pub struct BoneInside {
 }
 
 /// The bones that lie more than so many mm deeper in tissue after all movement than at rest, of the boundary of the tissue then
-/// and at rest. Their corners are looked at, and points between them where edges of bone are longer than those of tissue.
+/// and at rest; of points that lie in tissue at rest those that have moved as much themselves. Their corners are looked at, and points between them where edges of bone are longer than those of tissue.
 pub fn bones_inside(
     [rest, moved]: [&TriangleSurface; 2],
     bones: &[BoneSurface],
@@ -40,9 +40,16 @@ pub fn bones_inside(
     };
     let of_bone = |(number, bone): (usize, &BoneSurface)| {
         let deeper = |x: &Vector| {
-            let at = x + bone.movement.displacement(x);
+            let by = bone.movement.displacement(x);
+            let at = x + by;
             let deep = if is_within(&at) { depth(after, &at) } else { 0.0 };
-            (deep > deeper_mm && deep > depth(at_rest, x) + deeper_mm).then_some((deep, at))
+            if deep <= deeper_mm {
+                return None;
+            }
+            let before = depth(at_rest, x);
+            // Where bone lies in tissue that bulges, it has not gone in.
+            let has_gone = before <= deeper_mm || by.norm() >= deep - before;
+            (has_gone && deep > before + deeper_mm).then_some((deep, at))
         };
         let points = points_of(&bone.surface, spacing);
         let inside: Vec<(f64, Vector)> = points.par_iter().filter_map(deeper).collect();
