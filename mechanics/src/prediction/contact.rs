@@ -7,7 +7,7 @@ use super::numerical_error::{Known, at_last_tangent, estimate_in_contact};
 use super::scene::Scene;
 use super::skin_overlap::{Deepest, deepest_overlap};
 use crate::boundary::NodeClass;
-use crate::boundary::contact::FacingSurfaces;
+use crate::boundary::contact::{BoneInside, FacingSurfaces, bones_inside};
 use crate::mesh::{Vector, Warning};
 use crate::model::fem::contact::{Contact, ContactProblem, Effort, Pressed};
 use crate::model::fem::finite_strain;
@@ -30,6 +30,8 @@ pub struct Touch {
     pub pairs: Vec<ContactPair>,
     /// Where the boundary lies in itself, as at the corners of a mouth, whose edges no node is held against.
     pub overlap: Option<Deepest>,
+    /// The surfaces of bone that lie in tissue nevertheless, as those narrower than its cells may.
+    pub bones_inside: Vec<BoneInside>,
 }
 
 /// Two parts of the boundary that press on each other.
@@ -128,14 +130,15 @@ fn pressed(
         Pressing { equilibrium: free.clone(), contact, numerical_error: None }
     });
     let at_rest = deepest_overlap(surfaces.rest()).map_or(0.0, |at| at.depth);
-    let overlap = deepest_overlap(&surfaces.after(&equilibrium.displacement))
-        .filter(|deepest| deepest.depth > at_rest + DEEP_MM);
+    let moved = surfaces.after(&equilibrium.displacement);
+    let overlap = deepest_overlap(&moved).filter(|deepest| deepest.depth > at_rest + DEEP_MM);
     // Bone narrower than the cells of tissue may pass between their nodes.
-    if nothing_presses && overlap.is_none() {
+    let bones_inside = bones_inside([surfaces.rest(), &moved], &scene.bones, DEEP_MM);
+    if nothing_presses && overlap.is_none() && bones_inside.is_empty() {
         return Ok(None);
     }
     let touch = Touch::new(scene, &surfaces.areas(&contact.forces), contact);
-    let touch = Touch { overlap, ..touch };
+    let touch = Touch { overlap, bones_inside, ..touch };
     Ok(Some(InTouch { equilibrium, touch, numerical_error }))
 }
 
@@ -146,13 +149,15 @@ impl Touch {
             pressure[*node as usize] = contact.forces[*node as usize].norm() / area;
         }
         let pairs = pairs(scene, areas, &contact, &pressure);
-        Touch { contact, pressure, pairs, overlap: None }
+        Touch { contact, pressure, pairs, overlap: None, bones_inside: Vec::new() }
     }
 
-    /// The largest gap below 0, or how deep parts lie in each other, in mm and positive.
+    /// The largest gap below 0, or how deep parts or bones lie in each other, in mm and positive.
     pub fn largest_penetration(&self) -> f64 {
         let overlap = self.overlap.as_ref().map_or(0.0, |deepest| deepest.depth);
-        self.contact.gaps.values().fold(overlap, |most, gap| most.max(-gap))
+        let depths = self.bones_inside.iter().map(|inside| inside.depth);
+        let gaps = self.contact.gaps.values().map(|gap| -gap);
+        depths.chain(gaps).fold(overlap, f64::max)
     }
 
     pub fn largest_pressure(&self) -> f64 {
@@ -189,6 +194,7 @@ impl Touch {
             let warning = Warning::new("contact-overlap", detail).with("depth_mm", *depth);
             warnings.push(warning.with("x_mm", at.x).with("y_mm", at.y).with("z_mm", at.z));
         }
+        warnings.extend(self.bones_inside.iter().map(|inside| bone_inside(scene, inside)));
         if *last_moved_mm > MOVED_MM {
             let detail = format!(
                 "closest points of contact still move the answer by {last_moved_mm:.1e} mm when they are looked for the {rounds}th time"
@@ -198,6 +204,17 @@ impl Touch {
         }
         warnings
     }
+}
+
+/// What a reader must know of a bone that lies in tissue.
+fn bone_inside(scene: &Scene, BoneInside { bone, depth, at, points }: &BoneInside) -> Warning {
+    let detail = format!(
+        "contact leaves bone {:?} in tissue, {depth:.2} mm deep, with {points} of the points of its corners and edges: nodes of tissue are held against bone, and bone that is narrower than their distance goes in between them",
+        scene.bones[*bone].name
+    );
+    let warning = Warning::new("contact-overlap", detail).with("depth_mm", *depth);
+    let warning = warning.with("points", *points as f64);
+    warning.with("x_mm", at.x).with("y_mm", at.y).with("z_mm", at.z)
 }
 
 /// The parts of the boundary by name that press on each other.

@@ -1,19 +1,28 @@
 //! Surfaces of bone that tissue may not pass: rigid triangles that go where a segment takes them, or stay.
 //!
-//! The gap of a place is its distance to the closest triangle that it opposes, below 0 behind it, along the normal of that triangle
-//! or, at an edge between triangles, along the line to the edge. A bone goes on a straight way to where its segment takes it, as
-//! held nodes do: x + s ((R - I) x + t), s the share of the movement.
+//! The gap of a place is its distance to the closest triangle that it opposes, below 0 in the bone, along the normal of that triangle
+//! or, at an edge between triangles, along the line to the edge. Whether it lies in the bone is asked of the closest triangle of
+//! all: beside a wall the line to the edge below it leads out of the bone, not into it. Tissue outside a bone or hardly in it faces
+//! walls across its normal too, so that what has slid around an edge does not slide back through the wall. A bone goes on a straight
+//! way to where its segment takes it, as held nodes do: x + s ((R - I) x + t), s the share of the movement.
 
 use std::sync::Arc;
 
 use nalgebra::Matrix3;
 
+use super::moved_boundary::OPPOSED;
 use crate::mesh::closest_point::Feature;
 use crate::mesh::{ClosestPoint, SurfaceSearch, TriangleSurface, Vector};
 use crate::plan::RigidMovement;
 
 /// Nearer to an edge than this, in mm, its normal is the mean of those of its triangles.
 const AT_EDGE_MM: f64 = 1e-3;
+
+/// The cosine between a normal of tissue and that of a wall of bone across it is below this
+const ACROSS: f64 = 0.3;
+
+/// and tissue no deeper in bone than this part of its edges faces walls.
+const SHALLOW: f64 = 0.05;
 
 /// A closest triangle that is nearer than another by less than this part of the distance is as near.
 const AS_NEAR: f64 = 1e-9;
@@ -99,29 +108,33 @@ impl RigidBone {
 }
 
 impl MovedBone<'_> {
-    /// The nearest place, no farther than `reach`, whose normal `opposes`.
-    pub fn faced(
-        &self,
-        at: &Vector,
-        reach: f64,
-        opposes: impl Fn(&Vector) -> bool,
-    ) -> Option<FacedBone> {
+    /// The nearest place, no farther than `reach`, whose normal opposes the own one of a point.
+    pub fn faced(&self, at: &Vector, reach: f64, own: &Vector) -> Option<FacedBone> {
         let search = &self.bone.search;
         let query = self.back * (at - self.shift);
+        let nearest = search.nearer_than(&query, reach)?;
+        let is_outside = search.signed_distance(&query, &nearest) >= 0.0;
+        let is_shallow = is_outside || nearest.distance <= SHALLOW * reach;
+        let most = if is_shallow { ACROSS } else { OPPOSED };
+        let opposes = |normal: &Vector| own.dot(normal) < most;
         let counts = |triangle: usize| opposes(&self.moved_normal(&self.bone.flats[triangle]));
         let closest = search.nearer_where(&query, reach, counts)?;
-        let (normal, gap) = self.normal_and_gap(at, &query, &closest);
-        let nearer = search.nearer_than(&query, closest.distance * (1.0 - AS_NEAR));
+        let (normal, gap) = self.normal_and_gap(at, &closest, is_outside);
         opposes(&normal).then_some(FacedBone {
             triangle: closest.triangle,
             place: closest.point,
             normal,
             gap,
-            is_closest: nearer.is_none(),
+            is_closest: nearest.distance >= closest.distance * (1.0 - AS_NEAR),
         })
     }
 
-    fn normal_and_gap(&self, at: &Vector, query: &Vector, closest: &ClosestPoint) -> (Vector, f64) {
+    fn normal_and_gap(
+        &self,
+        at: &Vector,
+        closest: &ClosestPoint,
+        is_outside: bool,
+    ) -> (Vector, f64) {
         let search = &self.bone.search;
         let apart = at - (self.forward * closest.point + self.shift);
         let flat = self.moved_normal(&self.bone.flats[closest.triangle]);
@@ -129,11 +142,10 @@ impl MovedBone<'_> {
             return (flat, flat.dot(&apart));
         }
         let mean = self.moved_normal(&search.pseudo_normal(closest));
-        let is_behind = search.signed_distance(query, closest) < 0.0;
         match apart.norm() {
             distance if distance < AT_EDGE_MM => (mean, mean.dot(&apart)),
-            distance if is_behind => (apart / -distance, -distance),
-            distance => (apart / distance, distance),
+            distance if is_outside => (apart / distance, distance),
+            distance => (apart / -distance, -distance),
         }
     }
 

@@ -224,8 +224,7 @@ impl<'a> FacingSurfaces<'a> {
             return None;
         }
         let reach = self.reach[at];
-        let opposes = |normal: &Vector| Boundary::opposes(moved, point, normal);
-        let found = moved_bone.faced(&moved.surface.points[at], reach, opposes)?;
+        let found = moved_bone.faced(&moved.surface.points[at], reach, &moved.normals[at])?;
         let (rest, own) = (self.boundary.rest.points[at], self.rest_normals[at]);
         let is_behind = || {
             bone.is_in_front(found.triangle, &rest, &own)

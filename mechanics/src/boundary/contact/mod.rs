@@ -1,6 +1,7 @@
 //! Contact of the boundary with itself and with bone: which points of it face each other, and how far apart they are.
 
 mod bone;
+mod bone_inside;
 mod facing;
 mod fold;
 mod line;
@@ -8,5 +9,6 @@ mod moved_boundary;
 mod row;
 
 pub use bone::BoneSurface;
+pub use bone_inside::{BoneInside, bones_inside};
 pub use facing::{CLOSED_MM, FacingSurfaces};
 pub use row::{ContactRow, OnBone, with_pressing};

@@ -4,7 +4,7 @@
 use crate::mesh::{SurfaceSearch, TriangleSurface, Vector};
 
 /// The cosine of normals that oppose each other is below this.
-const OPPOSED: f64 = -0.3;
+pub(super) const OPPOSED: f64 = -0.3;
 
 /// The cosine of normals that have about one direction is above this.
 const ALIKE: f64 = 0.5;
@@ -60,7 +60,7 @@ impl Boundary {
     }
 
     /// Whether a point has a normal that opposes another one.
-    pub fn opposes(moved: &MovedBoundary, point: u32, other: &Vector) -> bool {
+    fn opposes(moved: &MovedBoundary, point: u32, other: &Vector) -> bool {
         moved.normals[point as usize].dot(other) < OPPOSED
     }
 

@@ -21,7 +21,7 @@ fn both() -> [Settings; 2] {
 }
 
 /// A closed box between two corners.
-fn solid(low: [f64; 3], high: [f64; 3]) -> TriangleSurface {
+pub(super) fn solid(low: [f64; 3], high: [f64; 3]) -> TriangleSurface {
     let corner =
         |bits: usize| Vector::from_fn(|k, _| if bits >> k & 1 == 1 { high[k] } else { low[k] });
     let quads =

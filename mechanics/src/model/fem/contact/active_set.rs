@@ -47,6 +47,8 @@ pub(in crate::model::fem) struct Task<'a> {
     /// The largest movement, in mm.
     pub movement: f64,
     pub relative_residual: f64,
+    /// That of the first passes, until the set repeats.
+    pub first_residual: f64,
     /// For each row the force in mN with which it pressed when the answer without contact was found; nothing where none did.
     pub before: &'a [f64],
     pub progress: &'a dyn Progress,
@@ -59,15 +61,21 @@ impl ActiveSet {
         ActiveSet { presses, flips: vec![0; gaps.len()] }
     }
 
-    /// Passes until the set repeats. What presses is added to an answer whose gaps are given.
+    /// Passes until the set repeats. What presses is added to an answer whose gaps are given. The start may have a multiplier for
+    /// each row; without, rows begin as they pressed before.
     pub(in crate::model::fem) fn settle(
         &mut self,
         equations: &mut Equations,
         task: &Task,
         start: Point,
     ) -> Result<Settled, SolverError> {
+        let mut multiplier_of = match start.multipliers.is_empty() {
+            true => task.before.to_vec(),
+            false => start.multipliers,
+        };
+        multiplier_of.resize(self.presses.len(), 0.0);
         let mut settled = Settled {
-            point: start,
+            point: Point { x: start.x, multipliers: Vec::new() },
             rows: Vec::new(),
             passes: 0,
             changes: 0,
@@ -76,10 +84,8 @@ impl ActiveSet {
             relative_residual: 0.0,
             repeats: false,
         };
-        let mut multiplier_of = task.before.to_vec();
-        multiplier_of.resize(self.presses.len(), 0.0);
         let taken_away = equations.forces(task.before);
-        let mut wanted = ON_THE_WAY.max(task.relative_residual);
+        let mut wanted = task.first_residual.max(task.relative_residual);
         while settled.passes < MOST_PASSES {
             settled.passes += 1;
             let rows: Vec<usize> =
@@ -103,8 +109,13 @@ impl ActiveSet {
             settled.rows = rows;
             if changed > 0 {
                 settled.changes += 1;
-            } else if wanted > task.relative_residual {
-                wanted = task.relative_residual;
+            } else if settled.relative_residual > task.relative_residual {
+                let is_loose = wanted > ON_THE_WAY;
+                if is_loose {
+                    // What forces that were hardly known let go or pressed is not held against a row.
+                    self.flips.fill(0);
+                }
+                wanted = task.relative_residual.max(if is_loose { ON_THE_WAY } else { 0.0 });
             } else {
                 settled.kept = self.flips.iter().filter(|flips| **flips >= MOST_FLIPS).count();
                 settled.repeats = true;

@@ -1,6 +1,8 @@
 //! An answer of linear elasticity in which nothing passes through what it faces: closest points and the set that presses, along
 //! the movement in steps, and at its end until closest points stay.
 
+use std::collections::BTreeMap;
+
 use super::active_set::{ActiveSet, Settled, Task};
 use super::equations::FreeUnknowns;
 use super::kept_rows::{KeptRows, Round};
@@ -23,7 +25,8 @@ const MOST_ROUNDS: usize = 15;
 const STEPS: [f64; 2] = [0.5, 0.125];
 
 /// Relative residual on the way, and where closest points may still change.
-const ON_THE_WAY: f64 = 1e-3;
+const ON_THE_WAY: f64 = 0.01;
+const NEARLY: f64 = 1e-3;
 
 /// A linear system, its answer without contact, and what may touch.
 pub struct ContactProblem<'a> {
@@ -71,7 +74,8 @@ impl<'a> ContactProblem<'a> {
             rounds.share = step as f64 / steps as f64;
             rounds.look();
             if rounds.touches() {
-                rounds.settle(ON_THE_WAY, progress)?;
+                let at_end = rounds.share >= 1.0;
+                rounds.settle(if at_end { NEARLY } else { ON_THE_WAY }, progress)?;
             } else {
                 rounds.displacement = self.free_part(rounds.share);
                 rounds.reached = rounds.share;
@@ -82,13 +86,13 @@ impl<'a> ContactProblem<'a> {
             if !rounds.touches() {
                 return Ok(None);
             }
-            rounds.settle(ON_THE_WAY, progress)?;
+            rounds.settle(NEARLY, progress)?;
         }
         let mut last_moved_mm = 0.0;
         for _ in 0..MOST_ROUNDS {
             last_moved_mm = match rounds.look() {
                 0 => 0.0,
-                _ => rounds.settle(ON_THE_WAY, progress)?,
+                _ => rounds.settle(NEARLY, progress)?,
             };
             if last_moved_mm == 0.0 {
                 break;
@@ -143,6 +147,8 @@ struct Rounds<'a, 'b> {
     /// What contact adds to the answer without it, and the multipliers of the rows that press.
     added: Point,
     active: Vec<usize>,
+    /// The same by node, whatever rows are found next.
+    pressed: BTreeMap<u32, f64>,
     effort: Effort,
     relative_residual: f64,
 }
@@ -160,6 +166,7 @@ impl<'a, 'b> Rounds<'a, 'b> {
             reached: 0.0,
             added: Point::default(),
             active: Vec::new(),
+            pressed: BTreeMap::new(),
             effort: Effort::default(),
             relative_residual: 0.0,
         })
@@ -206,8 +213,17 @@ impl<'a, 'b> Rounds<'a, 'b> {
                 .map(|row| self.kept_rows.pressing.contains(&row.node))
                 .collect();
         }
-        let task = Task { gaps: &gaps, movement, relative_residual, before: &[], progress };
-        let start = Point { x: std::mem::take(&mut self.added.x), multipliers: Vec::new() };
+        let task = Task {
+            gaps: &gaps,
+            movement,
+            relative_residual,
+            first_residual: ON_THE_WAY,
+            before: &[],
+            progress,
+        };
+        let rows = self.kept_rows.rows.iter();
+        let pressed = rows.map(|row| self.pressed.get(&row.node).copied().unwrap_or_default());
+        let start = Point { x: std::mem::take(&mut self.added.x), multipliers: pressed.collect() };
         let settled = set.settle(&mut self.equations, &task, start)?;
         self.effort.count(&settled);
         self.relative_residual = settled.relative_residual;
@@ -217,8 +233,9 @@ impl<'a, 'b> Rounds<'a, 'b> {
         }
         let Settled { point, rows: active, .. } = settled;
         (self.added, self.active) = (point, active);
-        self.kept_rows.pressing =
-            self.active.iter().map(|&row| self.kept_rows.rows[row].node).collect();
+        let forces = self.pressing().map(|(row, force)| (self.kept_rows.rows[row].node, force));
+        self.pressed = forces.collect();
+        self.kept_rows.pressing = self.pressed.keys().copied().collect();
         let displacement = self.moved();
         let pairs = self.displacement.iter().zip(&displacement);
         let moved_mm = pairs.map(|(one, other)| (one - other).norm()).fold(0.0, f64::max);

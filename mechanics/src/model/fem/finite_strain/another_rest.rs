@@ -36,10 +36,10 @@ pub(super) fn another_rest(
     if pressed <= BUCKLES && !is_unstable {
         return None;
     }
-    let state = if is_unstable {
-        "the state that was found is not stable"
-    } else {
-        "one of them was found, which is stable"
+    let state = match newton.is_stable {
+        Some(false) => "the state that was found is not stable",
+        Some(true) => "one of them was found, which is stable",
+        None => "one of them was found, and whether it is stable is not known",
     };
     let detail = format!(
         "along {} of {} steps the tissue was not stable, and {:.0} % of its energy is in cells that are pressed: where tissue buckles \

@@ -19,9 +19,10 @@ use crate::solver::{Solver, SolverError, System, Unknowns};
 const MOST_INNER: usize = 200;
 const MOST_INNER_MIXED: usize = 60;
 
-/// The relative residual at which a tangent is known to be positive definite, and the iterations in which it is to be met
-/// with pressures: their bulk modulus makes what is left of the tangent stiff.
-const SURE: f64 = 1e-6;
+/// A load of no pattern has in the mean one part in the root of the unknowns along any one direction, and no iteration makes that
+/// smaller where the tangent has no positive curvature along it, unless it meets that. A tangent is known to be positive definite
+/// at this part of it; with pressures, whose bulk modulus makes what is left of the tangent stiff, in so many iterations.
+const SURE: f64 = 0.01;
 const MOST_STIFF: usize = 400;
 
 /// A hierarchy serves this many steps, unless it has grown this much worse.
@@ -195,18 +196,18 @@ impl Directions {
         let hierarchy = self.hierarchy.take().unwrap_or_else(|| self.new_hierarchy());
         let inner = Inner(progress);
         let coupling = self.pressures.as_mut();
-        let is_stable = match coupling.map(|own| own.coupling_at(&|cell| deformed.gradients(cell)))
-        {
-            None => {
-                let enough = Enough { relative_residual: SURE, most_iterations: MOST_INNER };
-                let multigrid = hierarchy.solver.hierarchy(&system, progress)?;
-                Some(
-                    conjugate_gradient::direction(&system, multigrid, &load, enough, &inner)?
-                        .is_convex,
-                )
-            }
+        let coupling = coupling.map(|own| own.coupling_at(&|cell| deformed.gradients(cell)));
+        let relative_residual = SURE / (load.as_flattened().len().max(1) as f64).sqrt();
+        let enough = Enough { relative_residual, most_iterations: MOST_INNER };
+        let multigrid = hierarchy.solver.hierarchy(&system, progress)?;
+        let alone = conjugate_gradient::direction(&system, multigrid, &load, enough, &inner)?;
+        // Pressures can only make it stiffer, by B^T C^-1 B.
+        let is_known = alone.is_convex && alone.iterations < MOST_INNER;
+        let is_stable = match coupling {
+            _ if is_known => Some(true),
+            None => (!alone.is_convex).then_some(false),
             Some(coupling) => {
-                let enough = Enough { relative_residual: SURE, most_iterations: MOST_STIFF };
+                let enough = Enough { relative_residual, most_iterations: MOST_STIFF };
                 let mixed = MixedSystem { stiffness: &system, coupling, solver: &hierarchy.solver };
                 pressed_curvature::is_positive_definite(&mixed, &load, enough, &inner)?
             }

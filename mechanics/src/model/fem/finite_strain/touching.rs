@@ -156,7 +156,9 @@ impl<'a> Touching<'a> {
         let equations = rows.iter().map(|row| self.unknowns.equation(row)).collect();
         let mut equations = Equations::new(matrix, equations);
         let (before, progress) = (&*self.multipliers, ahead.progress);
-        let task = Task { gaps: &gaps, movement, relative_residual, before, progress };
+        let first_residual = LOOSELY;
+        let task =
+            Task { gaps: &gaps, movement, relative_residual, first_residual, before, progress };
         let settled = set.settle(&mut equations, &task, Point::default())?;
         self.effort.count(&settled);
         self.repeats = settled.repeats;
