@@ -109,6 +109,7 @@ fn solve(mesh: &VolumeMesh, plan: &Plan) -> (Result<Equilibrium, ModelError>, f6
     let one = vec![0; mesh.cells.len()];
     let problem = FiniteStrain {
         mesh,
+        nodes: &mesh.nodes,
         laws: &[Law::NeoHookean(NeoHookean { lambda, mu })],
         law_of_cell: &one,
         pressure_of_cell: &one,

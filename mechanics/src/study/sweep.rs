@@ -61,6 +61,22 @@ pub enum SweepError {
     Material { region: String, source: MaterialError },
 }
 
+impl SweepError {
+    /// The region that it speaks of.
+    pub fn region(&self) -> Option<&str> {
+        match self {
+            SweepError::TooMany { .. } => None,
+            SweepError::UnknownRegion { region }
+            | SweepError::TwoThings { region }
+            | SweepError::Fibres { region }
+            | SweepError::Law { region }
+            | SweepError::TissueGrows { region }
+            | SweepError::VolumeChange { region, .. }
+            | SweepError::Material { region, .. } => Some(region),
+        }
+    }
+}
+
 /// Every combination of the values, over the materials of a case and of the tissues that its image shows. The last constant of the last region varies
 /// fastest; names tell what varies: `muscle E 300 kPa nu 0.44, soft nu 0.46`.
 pub fn combinations(

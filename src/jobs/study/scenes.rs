@@ -372,22 +372,18 @@ impl Documents<'_> {
         match sweep::combinations(&scene.case.materials, tissues, &swept) {
             Ok(materials) => scene.materials = materials,
             Err(error) => {
-                let (place, code) = match &error {
-                    SweepError::TooMany { .. } => (at, ErrorCode::TooMany),
-                    SweepError::UnknownRegion { region } => {
-                        (at.key(region), ErrorCode::UnknownRegion)
-                    }
-                    SweepError::TwoThings { region } => (at.key(region), ErrorCode::DuplicateName),
-                    SweepError::Fibres { region }
-                    | SweepError::Law { region }
-                    | SweepError::TissueGrows { region } => {
-                        (at.key(region), ErrorCode::MethodNotAvailable)
-                    }
-                    SweepError::Material { region, .. }
-                    | SweepError::VolumeChange { region, .. } => {
-                        (at.key(region), ErrorCode::OutOfRange)
+                let code = match &error {
+                    SweepError::TooMany { .. } => ErrorCode::TooMany,
+                    SweepError::UnknownRegion { .. } => ErrorCode::UnknownRegion,
+                    SweepError::TwoThings { .. } => ErrorCode::DuplicateName,
+                    SweepError::Fibres { .. }
+                    | SweepError::Law { .. }
+                    | SweepError::TissueGrows { .. } => ErrorCode::MethodNotAvailable,
+                    SweepError::Material { .. } | SweepError::VolumeChange { .. } => {
+                        ErrorCode::OutOfRange
                     }
                 };
+                let place = error.region().map_or_else(|| at.clone(), |region| at.key(region));
                 faults.add(&place, code, error.to_string());
             }
         }

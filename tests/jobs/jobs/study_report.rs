@@ -400,10 +400,8 @@ fn an_outcome_names_its_failing_rows_with_what_they_exceed() {
     let rules = json!({"tolerances": {}, "expected_failures": [], "thresholds": {"mean_mm": 0.1, "p95_mm": 0.5}});
     let rows = [row, solved("quiet", 0, [1.0, 0.1]), failed("msm", "failed", "solver-diverged")];
     let judged = judged(&rows, rules, &Baseline::Report(&before));
-    let found: Vec<(&str, Option<&str>, Option<f64>, Option<f64>)> = judged
-        .verdict
-        .failing
-        .iter()
+    let failing = judged.verdict.failing.iter();
+    let found: Vec<_> = failing
         .map(|row| (row.label.as_str(), row.measure.as_deref(), row.value, row.limit))
         .collect();
     let expected = [

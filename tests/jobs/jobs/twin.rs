@@ -296,25 +296,26 @@ fn what_a_sweep_of_growth_cannot_mean_is_told_with_its_place() {
     assert!(why.contains("-0.7 is outside -0.5 to 1") && why.contains("sweep/outer"), "{why}");
 }
 
+/// Landmarks at points of the skin and above it, since all of the skin at rest lies in one plane.
+fn marks_of(skin: &TriangleSurface) -> Value {
+    let points = skin.points.len();
+    let marks =
+        [(0, 0.0), (points / 5, 8.0), (points / 3, 0.0), (points / 2, 8.0), (points - 9, 0.0)];
+    let mark = |(number, (point, up)): (usize, (usize, f64))| {
+        let at = skin.points[point] + Vector::z() * up;
+        (format!("mark {number}"), json!([at.x, at.y, at.z]))
+    };
+    Value::Object(marks.into_iter().enumerate().map(mark).collect())
+}
+
 #[test]
 fn constants_come_back_by_points_and_by_landmarks_too() {
     let (_, done, mut sources, _) = twin();
     let plan = json!({"segments": [{"name": "jaw", "matrix4x4": done.matrix4()}]});
     let [rest, planted] = [json!({}), plan.clone()]
         .map(|plan| (*predicted(&sources, PLANTED, &plan).surface().unwrap()).clone());
-    // Landmarks at points of the skin and above it, since all of the skin at rest lies in one plane.
-    let points = rest.points.len();
-    let marks =
-        [(0, 0.0), (points / 5, 8.0), (points / 3, 0.0), (points / 2, 8.0), (points - 9, 0.0)];
-    let of = |skin: &TriangleSurface| -> Value {
-        let mark = |(number, (point, up)): (usize, (usize, f64))| {
-            let at = skin.points[point] + Vector::z() * up;
-            (format!("mark {number}"), json!([at.x, at.y, at.z]))
-        };
-        Value::Object(marks.into_iter().enumerate().map(mark).collect())
-    };
     let mut case = case((30.0, 0.4));
-    case["landmarks"] = of(&rest);
+    case["landmarks"] = marks_of(&rest);
     sources.0.insert("same points".to_owned(), surface(planted.clone()));
     sources.0.insert("other points".to_owned(), surface(scanned(&planted)));
     let least = |truth: Value| -> f64 {
@@ -327,7 +328,7 @@ fn constants_come_back_by_points_and_by_landmarks_too() {
     };
     assert!(least(json!({"mesh": "same points", "metric": "node_wise"})) < 1e-6);
     let by_landmarks =
-        json!({"mesh": "other points", "metric": "tps_cp", "landmarks_mm": of(&planted)});
+        json!({"mesh": "other points", "metric": "tps_cp", "landmarks_mm": marks_of(&planted)});
     assert!(least(by_landmarks.clone()) < 1e-6);
 
     // The skin before the operation under the landmarks of that after it.

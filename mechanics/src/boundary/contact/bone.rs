@@ -18,10 +18,10 @@ use crate::plan::RigidMovement;
 /// Nearer to an edge than this, in mm, its normal is the mean of those of its triangles.
 const AT_EDGE_MM: f64 = 1e-3;
 
-/// The cosine between a normal of tissue and that of a wall of bone across it is below this
+/// The cosine between a normal of tissue and that of a wall of bone across it is below this.
 const ACROSS: f64 = 0.3;
 
-/// and tissue no deeper in bone than this part of its edges faces walls.
+/// Tissue no deeper in bone than this part of its edges faces walls.
 const SHALLOW: f64 = 0.05;
 
 /// A closest triangle that is nearer than another by less than this part of the distance is as near.

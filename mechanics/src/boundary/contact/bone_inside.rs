@@ -25,7 +25,8 @@ pub struct BoneInside {
 }
 
 /// The bones that lie more than so many mm deeper in tissue after all movement than at rest, of the boundary of the tissue then
-/// and at rest; of points that lie in tissue at rest those that have moved as much themselves. Their corners are looked at, and points between them where edges of bone are longer than those of tissue.
+/// and at rest; of points that lie in tissue at rest those that have moved as much themselves. Corners are looked at, and
+/// points between them where edges of bone are longer than those of tissue.
 pub fn bones_inside(
     [rest, moved]: [&TriangleSurface; 2],
     bones: &[BoneSurface],
