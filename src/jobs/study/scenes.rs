@@ -364,8 +364,7 @@ impl Documents<'_> {
         let swept: BTreeMap<String, sweep::Values> = swept.collect();
         let at = spec_at().key("sweep");
         for region in swept.keys().filter(|region| !sweep::has_region(&scene.case, region)) {
-            let detail =
-                format!("scene {} has no region and no tissue called {region:?}", scene.name);
+            let detail = format!("scene {} has no region or tissue {region:?}", scene.name);
             faults.add(&at.key(region), ErrorCode::UnknownRegion, detail);
         }
         let tissues = scene.case.hounsfield.as_ref().map_or(&[][..], |image| &image.tissues);

@@ -164,7 +164,7 @@ async fn what_needs_the_mesh_of_a_case_without_one_is_refused_with_the_job_that_
         (json!({"plan": {"loads": [pressure]}}), "/plan/loads/0/pressure_kpa"),
         (json!({"materials": {"*": {"poisson_ratio": 0.7}}}), "/materials/*/poisson_ratio"),
         (json!({"method": "msm", "element": "quadratic"}), "/element"),
-        (json!({"method": "fem_nonlinear", "element": "quadratic"}), "/element"),
+        (json!({"method": "mtm_nonlinear", "element": "quadratic"}), "/element"),
     ] {
         let mut wrong = plan_on(&case);
         wrong.as_object_mut().unwrap().extend(change.as_object().unwrap().clone());
