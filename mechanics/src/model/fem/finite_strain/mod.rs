@@ -51,7 +51,7 @@ use elements::Kept;
 pub use fibres::FibreField;
 pub use mesh_error::{Finer, MeshError, NoMeshError};
 pub use newton::MOST_STEPS;
-use newton::Newton;
+use newton::{Newton, ROOMY};
 use newton_state::{Ending, Question, Rest, Start, Until};
 pub use problem::FiniteStrain;
 use states::cell_states;
@@ -74,9 +74,6 @@ pub struct InContact {
 
 /// What moves goes by at most this part of its longest edges in a step where things touch.
 const STEP: f64 = 0.5;
-
-/// The share of its volume that a cell has to have near rest for all of its bulk modulus to be shared.
-const ROOMY: f64 = 0.2;
 
 impl<'a> FiniteStrain<'a> {
     /// Solves a load case for rest.

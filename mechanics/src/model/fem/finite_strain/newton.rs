@@ -41,8 +41,10 @@ const LEAST_AHEAD: f64 = 1e-3;
 const ENOUGH: f64 = 1e-4;
 const MOST_HALVINGS: usize = 30;
 
-/// The relative residual at which tissue is near rest.
+/// The relative residual at which tissue is near rest, and the share of its volume that a cell has to have there for all of its bulk
+/// modulus to be shared.
 const NEAR: f64 = 0.01;
+pub(super) const ROOMY: f64 = 0.2;
 
 pub(super) struct Newton<'a, 'b> {
     tissue: &'b Tissue<'a>,
@@ -119,7 +121,9 @@ impl<'a, 'b> Newton<'a, 'b> {
                 return Ok(Ending::Rest(Box::new(rest)));
             }
             let is_near = self.made >= 1.0 && residual <= NEAR;
-            if until.near && is_near {
+            // Another beginning may take contact on another way: with it only where all cells may share their volume.
+            let goes_on = self.touching.is_some() && deformed.least_volume() < ROOMY;
+            if until.near && is_near && !goes_on {
                 return Ok(Ending::Near(self.reached()));
             }
             if self.history.len() > MOST_STEPS {
