@@ -18,6 +18,7 @@ mod held;
 mod hounsfield;
 mod imaged_tissue;
 mod listed;
+mod locking;
 mod method;
 mod muscle;
 mod muscle_field;
