@@ -282,6 +282,28 @@ fn no_module_is_a_drawer_for_what_has_no_home() {
     }
 }
 
+/// The description of the API knows documents by their names alone: of two with one name it has one.
+#[test]
+fn no_two_documents_have_one_name() {
+    let mut places: BTreeMap<String, Vec<String>> = BTreeMap::new();
+    for file in sources() {
+        let mut is_described = false;
+        for line in fs::read_to_string(&file).unwrap().lines() {
+            let item = ["pub struct ", "pub enum "].iter().find_map(|item| line.strip_prefix(item));
+            if let (Some(item), true) = (item, is_described) {
+                let name = item.split(|c: char| !c.is_alphanumeric()).next().unwrap_or_default();
+                places.entry(name.to_owned()).or_default().push(file.display().to_string());
+            }
+            let goes_on =
+                line.starts_with("#[") || line.starts_with("///") || line.contains("ToSchema");
+            is_described = line.contains("ToSchema") || (is_described && goes_on);
+        }
+    }
+    assert!(places.len() > 300, "{}", places.len());
+    let twice: Vec<_> = places.iter().filter(|(_, files)| files.len() > 1).collect();
+    assert!(twice.is_empty(), "{twice:?}");
+}
+
 #[test]
 fn files_stay_below_400_lines() {
     for file in sources() {

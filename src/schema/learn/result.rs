@@ -37,7 +37,7 @@ pub struct LearningDocument {
     /// The cases, in the order of `cases` of the table.
     #[serde(default)]
     #[schema(required)]
-    pub patients: Vec<PatientDocument>,
+    pub patients: Vec<LearnedPatientDocument>,
     /// One for each method; what is learned is nested unless its name says that it was tuned on all cases.
     pub table: Vec<LearnedColumnDocument>,
     /// Wilcoxon's signed rank test of each learned method, nested, against the mechanical prediction.
@@ -59,7 +59,7 @@ fn usual_mechanical() -> String {
 
 /// An operated case, or a virtual patient.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct PatientDocument {
+pub struct LearnedPatientDocument {
     pub name: String,
     /// Of surgery.
     pub class: String,
@@ -331,9 +331,9 @@ impl From<ModeCount> for ModesDocument {
     }
 }
 
-impl From<&LearningCase> for PatientDocument {
+impl From<&LearningCase> for LearnedPatientDocument {
     fn from(own: &LearningCase) -> Self {
-        PatientDocument {
+        LearnedPatientDocument {
             name: own.name.clone(),
             class: own.class.clone(),
             largest_bone_movement_mm: own.largest_bone_movement(),
