@@ -6,8 +6,7 @@ use std::collections::BTreeMap;
 use super::report::{Outcome, Report, Row};
 use super::variant::Materials;
 use crate::material::{LinearElastic, MaterialError};
-use crate::prediction::VOLUME_CHANGE;
-use crate::prediction::{Case, Growth, TissueWindow};
+use crate::prediction::{Case, Growth, TissueWindow, VOLUME_CHANGE};
 
 /// More combinations are refused.
 pub const MOST_COMBINATIONS: usize = 1000;
@@ -164,13 +163,13 @@ fn choices(
     let mut choices = Vec::new();
     for e in varied(&values.young_modulus) {
         for nu in varied(&values.poisson_ratio) {
-            let material = LinearElastic::new(
-                e.unwrap_or(start.young_modulus()),
-                nu.unwrap_or(start.poisson_ratio()),
-                start.density(),
-            )
-            .map_err(|source| SweepError::Material { region: region.to_owned(), source })?;
-            let material = values.vary_material().then_some(material);
+            let of = |source| SweepError::Material { region: region.to_owned(), source };
+            let varied_material = || {
+                let (e, nu) =
+                    (e.unwrap_or(start.young_modulus()), nu.unwrap_or(start.poisson_ratio()));
+                LinearElastic::new(e, nu, start.density()).map_err(of)
+            };
+            let material = values.vary_material().then(varied_material).transpose()?;
             for volume_change in varied(&values.volume_change) {
                 let words = [
                     e.map(|e| format!(" E {e} kPa")),

@@ -131,6 +131,10 @@ impl Asked<'_> {
     fn closed_form(&self, formula: &ClosedForm) -> Truths {
         let nodes = &self.scene.case.volume.nodes;
         let skins = self.each(|plan, materials, skin| {
+            if !plan.growth.is_empty() {
+                let detail = "the closed form knows no tissue that grows".to_owned();
+                return Err(Refusal::new("truth-failed", detail));
+            }
             let at = |&node: &u32| (formula.displacement)(&nodes[node as usize], plan, materials);
             Ok(skin.nodes().iter().map(at).collect())
         });
@@ -155,13 +159,16 @@ impl Asked<'_> {
         Truths { skins, words: "a scan".to_owned(), error_mm: None }
     }
 
-    /// What holds for each plan and each material.
+    /// What holds for each plan, as it is of the materials, and each material.
     fn each(&self, found: impl Fn(&Plan, &Materials, &Skin) -> Found) -> Vec<Vec<Found>> {
         let plans = self.scene.plans.iter().zip(self.skins);
         plans
             .map(|((_, plan), skin)| {
                 let materials = self.scene.materials.iter();
-                let of = |materials| found(plan, materials, skin.as_ref().map_err(Refusal::clone)?);
+                let of = |materials: &Materials| {
+                    let skin = skin.as_ref().map_err(Refusal::clone)?;
+                    found(&materials.plan(plan), materials, skin)
+                };
                 materials.map(of).collect()
             })
             .collect()
@@ -227,8 +234,9 @@ impl Asked<'_> {
             }
         };
         let finer = Finer { case, settings, progress: self.progress };
+        let plans = self.scene.plans_of(materials);
         let columns = match strain {
-            Strain::Small if !contact.is_unilateral() => finer.columns(&self.scene.plans)?,
+            Strain::Small if !contact.is_unilateral() => finer.columns(&plans)?,
             Strain::Small | Strain::Finite => None,
         };
         let mut words = columns.as_ref().map_or_else(String::new, |columns| {
@@ -236,7 +244,7 @@ impl Asked<'_> {
             described(&elements, columns.solver.unknowns, ", plans summed from unit movements")
         });
         let mut skins = Vec::new();
-        for ((_, plan), skin) in self.scene.plans.iter().zip(self.skins) {
+        for ((_, plan), skin) in plans.iter().zip(self.skins) {
             let nodes = match skin {
                 Ok(skin) => skin.nodes(),
                 Err(refusal) => {

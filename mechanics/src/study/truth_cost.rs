@@ -40,9 +40,13 @@ pub fn truth_cost<'a>(
     let volume = &scene.case.volume;
     let (touching, others): (Vec<&Variant>, Vec<&Variant>) =
         variants.into_iter().partition(|variant| is_in_contact(scene, variant));
-    let with = if touching.is_empty() { 0 } else { scene.plans.len() };
-    let without = if others.is_empty() { 0 } else { solves(scene, strain) };
-    let solves = (with + without) * scene.materials.len();
+    let with = if touching.is_empty() { 0 } else { scene.plans.len() * scene.materials.len() };
+    let each = scene.materials.iter().map(|materials| scene.plans_of(materials));
+    let without = match others.is_empty() {
+        true => 0,
+        false => each.map(|plans| solves(scene, &plans, strain)).sum(),
+    };
+    let solves = with + without;
     let element = if others.is_empty() { in_contact(element) } else { element };
     let is_quadratic = element == ElementChoice::Quadratic
         && volume.cells.iter().any(|(shape, _)| shape == CellShape::Tet4);
@@ -56,13 +60,12 @@ pub fn truth_cost<'a>(
     Some(TruthCost { meshes: (coarsest(times)..=times).map(mesh).collect(), truths, strain })
 }
 
-/// Solves on one mesh with one material.
-fn solves(scene: &StudyScene, strain: Strain) -> usize {
+/// Solves of plans on one mesh with one material.
+fn solves(scene: &StudyScene, plans: &[(String, Plan)], strain: Strain) -> usize {
     if strain == Strain::Finite {
-        return scene.plans.len();
+        return plans.len();
     }
-    let plans: Vec<&Plan> = scene.plans.iter().map(|(_, plan)| plan).collect();
-    let sums = plans.iter().filter(|plan| is_of_segments(plan, &scene.case)).count();
-    let columns = PLANS_A_SEGMENT * moved_segments(&scene.plans, &scene.case).len();
+    let sums = plans.iter().filter(|(_, plan)| is_of_segments(plan, &scene.case)).count();
+    let columns = PLANS_A_SEGMENT * moved_segments(plans, &scene.case).len();
     if columns == 0 { plans.len() } else { plans.len() - sums + sums.min(columns) }
 }

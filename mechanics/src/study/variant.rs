@@ -60,6 +60,13 @@ pub struct Materials {
     pub growth: Vec<Growth>,
 }
 
+impl StudyScene {
+    /// Its plans as they are of some materials.
+    pub(super) fn plans_of(&self, materials: &Materials) -> Vec<(String, Plan)> {
+        self.plans.iter().map(|(name, plan)| (name.clone(), materials.plan(plan))).collect()
+    }
+}
+
 impl Materials {
     /// A plan with the changes of volume of these.
     pub(super) fn plan(&self, plan: &Plan) -> Plan {

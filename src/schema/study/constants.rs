@@ -111,7 +111,8 @@ fn warnings(map: &ConstantMap) -> Vec<Warning> {
     let mut found = Vec::new();
     if map.leaves_growth_out() {
         let detail = format!(
-            "{}: Poisson's ratio is looked for as if no tissue gained volume or lost it, and 5 % of volume may shift it by .3: sweep              `volume_change` with it",
+            "{}: Poisson's ratio is looked for as if no tissue gained volume or lost it, and 5 % of volume may shift it by .3: sweep \
+             `volume_change` with it",
             map.label
         );
         found.push(Warning::new("growth-left-out", detail));
