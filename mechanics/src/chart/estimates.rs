@@ -92,10 +92,7 @@ impl EstimatesPicture<'_> {
         for (place, series) in self.series.iter().enumerate().filter(|(place, _)| is_drawn(*place))
         {
             y += LEGEND_LINE;
-            document.open_with("legend", &series.name, series.data());
-            Symbol::of(place).draw(document, [x + 9.0, y - 4.0], 6.8, 1.0);
-            document.text([x + 26.0, y], room - 26.0, words, &series.name);
-            document.close();
+            series.write_entry(document, place, [x, y], room);
         }
         for (dashes, name) in
             [("", "estimate and error are equal"), ("6 4", "a factor of two apart")]

@@ -35,10 +35,7 @@ impl Legend<'_> {
         for (place, series) in self.shown.iter().filter_map(|&at| Some((at, self.series.get(at)?)))
         {
             y += LINE;
-            document.open_with("legend", &series.name, series.data());
-            Symbol::of(place).draw(document, [x + 9.0, y - 4.0], 6.8, 1.0);
-            document.text([x + 26.0, y], ROOM - 26.0, words, &series.name);
-            document.close();
+            series.write_entry(document, place, [x, y], ROOM);
         }
         y += LINE * 1.6;
         if self.levels.len() > 1 {

@@ -1,5 +1,8 @@
 //! The ways of modelling of a study as series of its charts: one symbol each, whichever of them a chart shows.
 
+use super::drawing::{Document, Style};
+use super::symbol::Symbol;
+
 /// A way of modelling.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct MethodSeries {
@@ -12,8 +15,22 @@ pub struct MethodSeries {
 }
 
 impl MethodSeries {
+    /// Its line in a legend, `place` its own among the series.
+    pub(super) fn write_entry(
+        &self,
+        document: &mut Document,
+        place: usize,
+        [x, y]: [f64; 2],
+        room: f64,
+    ) {
+        document.open_with("legend", &self.name, self.data());
+        Symbol::of(place).draw(document, [x + 9.0, y - 4.0], 6.8, 1.0);
+        document.text([x + 26.0, y], room - 26.0, Style::of(12.5), &self.name);
+        document.close();
+    }
+
     /// For programs.
-    pub(super) fn data(&self) -> Vec<(&'static str, String)> {
+    fn data(&self) -> Vec<(&'static str, String)> {
         vec![("label", self.label.clone()), ("method", self.method.clone())]
     }
 }

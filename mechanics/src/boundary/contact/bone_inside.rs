@@ -4,12 +4,13 @@
 use rayon::prelude::*;
 
 use super::bone::BoneSurface;
+use crate::mesh::surface_edges::edges;
 use crate::mesh::{SurfaceSearch, TriangleSurface, Vector};
 
-/// Points on an edge of bone are at most this part of an edge of tissue apart
+/// Points on an edge of bone are at most this part of an edge of tissue apart.
 const SPACING: f64 = 0.5;
 
-/// and at most so many.
+/// The most points on an edge.
 const MOST_ON_EDGE: f64 = 200.0;
 
 /// A bone of which points lie in tissue, deeper than at rest.
@@ -81,16 +82,13 @@ fn points_of(surface: &TriangleSurface, spacing: f64) -> Vec<Vector> {
     let mut corners = surface.triangles.as_flattened().to_vec();
     corners.sort_unstable();
     corners.dedup();
-    let sides = surface.triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
-    let mut edges: Vec<[u32; 2]> = sides.map(|[a, b]| [a.min(b), a.max(b)]).collect();
-    edges.sort_unstable();
-    edges.dedup();
+    let sides = surface.sorted_sides();
     let at = |point: u32| surface.points[point as usize];
-    let between = |&[a, b]: &[u32; 2]| {
+    let between = |[a, b]: [u32; 2]| {
         let along = at(b) - at(a);
         let parts = (along.norm() / spacing).ceil().min(MOST_ON_EDGE);
         (1..parts as u32).map(move |part| at(a) + along * (f64::from(part) / parts))
     };
     let corners = corners.iter().map(|&corner| at(corner));
-    corners.chain(edges.iter().flat_map(between)).collect()
+    corners.chain(edges(&sides).flat_map(|edge| between(edge[0].points))).collect()
 }

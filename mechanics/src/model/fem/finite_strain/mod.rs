@@ -51,7 +51,7 @@ use elements::Kept;
 pub use fibres::FibreField;
 pub use mesh_error::{Finer, MeshError, NoMeshError};
 pub use newton::MOST_STEPS;
-use newton::{Newton, ROOMY};
+use newton::Newton;
 use newton_state::{Ending, Question, Rest, Start, Until};
 pub use problem::FiniteStrain;
 use states::cell_states;
@@ -218,7 +218,6 @@ impl<'a> FiniteStrain<'a> {
         let start = Start {
             x: question.constrained.numbering.by_row(self.nodes),
             log_volumes: Vec::new(),
-            least_volumes: Vec::new(),
             made: 0.0,
             history: Vec::new(),
             path: Vec::new(),
@@ -240,21 +239,21 @@ impl<'a> FiniteStrain<'a> {
         question: Question<'a>,
         start: Start<'a>,
     ) -> Result<(Tissue<'a>, Rest<'a>), ModelError> {
-        let (share, near) = match self.with_bulk_in_cells(question, start, true)? {
+        let (share, near, pressed) = match self.with_bulk_in_cells(question, start, true)? {
             (tissue, Ending::Rest(rest)) => return Ok((tissue, *rest)),
-            (tissue, Ending::Near(near) | Ending::Jam(near)) => (tissue.bulk_in_cells, near),
+            (tissue, Ending::Near(near, pressed)) => (tissue.bulk_in_cells, near, pressed),
+            (_, Ending::Jam(_)) => unreachable!("with more bulk modulus nothing is a jam"),
         };
-        let pressed = near.least_volumes.iter().map(|&least| least < ROOMY).collect();
         let until = Until { jammed: true, near: false };
         match self.newton(&Kept::in_pressed(share, pressed), question, near.clone(), until) {
             Ok((tissue, Ending::Rest(rest))) => return Ok((tissue, *rest)),
-            Ok((_, Ending::Jam(_) | Ending::Near(_))) | Err(ModelError::Standstill { .. }) => {}
+            Ok((_, Ending::Jam(_) | Ending::Near(..))) | Err(ModelError::Standstill { .. }) => {}
             Err(ModelError::Solver(SolverError::NotConverged { .. })) => {}
             Err(error) => return Err(error),
         }
         match self.with_bulk_in_cells(question, near, false)? {
             (tissue, Ending::Rest(rest)) => Ok((tissue, *rest)),
-            (_, Ending::Jam(_) | Ending::Near(_)) => unreachable!("only rest ends it"),
+            (_, Ending::Jam(_) | Ending::Near(..)) => unreachable!("only rest ends it"),
         }
     }
 

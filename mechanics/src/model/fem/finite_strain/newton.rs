@@ -44,7 +44,7 @@ const MOST_HALVINGS: usize = 30;
 /// The relative residual at which tissue is near rest, and the share of its volume that a cell has to have there for all of its bulk
 /// modulus to be shared.
 const NEAR: f64 = 0.01;
-pub(super) const ROOMY: f64 = 0.2;
+const ROOMY: f64 = 0.2;
 
 pub(super) struct Newton<'a, 'b> {
     tissue: &'b Tissue<'a>,
@@ -121,10 +121,12 @@ impl<'a, 'b> Newton<'a, 'b> {
                 return Ok(Ending::Rest(Box::new(rest)));
             }
             let is_near = self.made >= 1.0 && residual <= NEAR;
-            // Another beginning may take contact on another way: with it only where all cells may share their volume.
-            let goes_on = self.touching.is_some() && deformed.least_volume() < ROOMY;
-            if until.near && is_near && !goes_on {
-                return Ok(Ending::Near(self.reached()));
+            if until.near && is_near {
+                let pressed = deformed.pressed(ROOMY);
+                // Another beginning may take contact on another way: with it only where no cell is pressed.
+                if self.touching.is_none() || !pressed.contains(&true) {
+                    return Ok(Ending::Near(self.reached(), pressed));
+                }
             }
             if self.history.len() > MOST_STEPS {
                 return Err(self.not_converged().into());
@@ -143,9 +145,8 @@ impl<'a, 'b> Newton<'a, 'b> {
         let pressures = self.directions.pressures.as_ref();
         let log_volumes = pressures.map_or_else(Vec::new, |own| own.log_volumes(&self.p));
         let tally = self.directions.tally;
-        let least_volumes = self.tissue.at(&self.x, &self.p, pressures).least_volumes();
         let Newton { x, made, history, path, touching, .. } = self;
-        Start { x, log_volumes, least_volumes, made, history, path, tally, touching }
+        Start { x, log_volumes, made, history, path, tally, touching }
     }
 
     /// One step: a direction, how far, and the same of the movement of the bones.

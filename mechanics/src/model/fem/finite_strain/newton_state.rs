@@ -24,8 +24,6 @@ pub(super) struct Start<'a> {
     pub x: Vec<Vector>,
     /// For each pressure the mean of ln J that it answers to.
     pub log_volumes: Vec<f64>,
-    /// For each cell of the mesh the least det F of its points there; empty at the beginning.
-    pub least_volumes: Vec<f64>,
     /// The share of movement and load that is made.
     pub made: f64,
     /// Relative residuals so far.
@@ -50,8 +48,8 @@ pub(super) enum Ending<'a> {
     Rest(Box<Rest<'a>>),
     /// More of the bulk modulus has to stay in the cells.
     Jam(Start<'a>),
-    /// All of it may be shared, but in pressed cells.
-    Near(Start<'a>),
+    /// All of it may be shared, but in the cells of the mesh that are pressed.
+    Near(Start<'a>, Vec<bool>),
 }
 
 /// Tissue at rest.
@@ -80,7 +78,6 @@ impl<'a> Rest<'a> {
         Start {
             x: self.positions,
             log_volumes,
-            least_volumes: Vec::new(),
             made: 1.0,
             history,
             path,

@@ -193,12 +193,12 @@ impl Deformed<'_> {
         self.simplices.least_volume().min(self.bricks.least_volume())
     }
 
-    /// For each cell of the mesh the least det F of its points.
-    pub fn least_volumes(&self) -> Vec<f64> {
-        let of_cells = self.simplices.least_volumes().chain(self.bricks.least_volumes());
-        let mut least = vec![f64::INFINITY; self.tissue.numbering.layout.clique_order.len()];
-        of_cells.for_each(|(cell, volume)| least[cell] = volume);
-        least
+    /// For each cell of the mesh whether det F of one of its points is below a limit.
+    pub fn pressed(&self, limit: f64) -> Vec<bool> {
+        let least = self.simplices.least_volumes().chain(self.bricks.least_volumes());
+        let mut pressed = vec![false; self.tissue.numbering.layout.clique_order.len()];
+        least.for_each(|(cell, volume)| pressed[cell] = volume < limit);
+        pressed
     }
 
     /// In mN mm, at these pressures.
