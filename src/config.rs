@@ -1,21 +1,21 @@
 //! Every setting of the service, read once at the start from flags, `FACIES_*` variables and a file.
 
 pub mod file;
-mod places;
 mod secret;
 mod settings;
-pub use places::{BlobsPlace, DatabasePlace, Places};
+mod storage_locations;
 pub use secret::{ConfigError, Secret};
 pub use settings::{SETTINGS, Setting};
 use std::net::SocketAddr;
 use std::path::PathBuf;
 use std::time::Duration;
+pub use storage_locations::{BlobLocation, DatabaseLocation, StorageLocations};
 
 /// The settings in force.
 #[derive(Clone, Debug)]
 pub struct Config {
     pub listen: SocketAddr,
-    pub places: Places,
+    pub places: StorageLocations,
     pub api_key: Option<Secret>,
     /// Whether a request without a key is refused.
     pub asks_for_keys: bool,
@@ -102,7 +102,7 @@ impl Config {
             response_cache_bytes: read.whole("response-cache-mib", 0..=MIB)? * MIB,
             free_space_floor_bytes: (read.whole("free-space-floor-mib", 0..=MIB)? * MIB) as u64,
             log: LogConfig { json: read.json_log()?, filter: (read.text)("log-level") },
-            traces: places::collector((read.text)("traces"))?,
+            traces: storage_locations::collector((read.text)("traces"))?,
         };
         config.checked()
     }
@@ -159,12 +159,12 @@ impl<Text: Fn(&str) -> String> Reader<Text> {
             .ok_or_else(|| out_of_range(name, value))
     }
 
-    fn places(&self) -> Result<Places, ConfigError> {
+    fn places(&self) -> Result<StorageLocations, ConfigError> {
         let connections = self.whole("database-connections", 2..=1000)? as u32;
-        Ok(Places {
+        Ok(StorageLocations {
             data: self.parsed("data", "a folder")?,
-            database: places::database((self.text)("database"), connections)?,
-            blobs: places::blobs(&(self.text)("blobs"))?,
+            database: storage_locations::database((self.text)("database"), connections)?,
+            blobs: storage_locations::blobs(&(self.text)("blobs"))?,
         })
     }
 

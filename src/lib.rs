@@ -6,6 +6,7 @@
 pub mod api;
 pub mod command;
 pub mod config;
+pub mod fair_semaphore;
 pub mod jobs;
 pub mod library;
 pub mod metrics;
@@ -13,5 +14,4 @@ pub mod schema;
 pub mod store;
 pub mod telemetry;
 pub mod traces;
-pub mod turns;
 pub mod worker;

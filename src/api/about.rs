@@ -84,7 +84,7 @@ async fn limits(service: Service) -> Response {
     json(StatusCode::OK, &*service.limits)
 }
 
-/// The ways of modelling that a spec may name.
+/// The models that a spec may name.
 #[utoipa::path(get, path = "/v1/methods", operation_id = "list_methods", tag = "about", responses((status = 200, description = "the methods", body = MethodList)))]
 async fn methods() -> Response {
     json(StatusCode::OK, &available_methods())

@@ -30,8 +30,8 @@ pub(super) async fn prepared<I: Send + 'static, T: Send + 'static>(
 ) -> ApiResult<(I, T)> {
     let sources = service.library.source(Handle::current(), BTreeMap::new());
     let limits: Limits = (*service.limits).clone();
-    let turn = service.check_turn().await?;
-    let (input, found) = turn
+    let permit = service.check_permit().await?;
+    let (input, found) = permit
         .compute(move || {
             let found = prepare(&input, &sources, &limits);
             (input, found)

@@ -41,7 +41,7 @@ pub struct Declared(BTreeMap<String, HashMap<Method, Access>>);
 
 /// What was found for a request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Found {
+pub struct RouteAccess {
     pub access: Access,
     /// False where there is no handler, so that the answer is 404 or 405.
     pub is_answered: bool,
@@ -66,19 +66,19 @@ impl Declared {
 
     /// What a request takes; `route` is the pattern that it matches, if any. A route of which nothing was declared is
     /// closed to all.
-    pub fn find(&self, route: Option<&str>, method: &Method) -> ApiResult<Found> {
+    pub fn find(&self, route: Option<&str>, method: &Method) -> ApiResult<RouteAccess> {
         let Some(route) = route else {
-            return Ok(Found { access: unanswered(method), is_answered: false });
+            return Ok(RouteAccess { access: unanswered(method), is_answered: false });
         };
         if let Some(access) = self.access(route, method) {
-            return Ok(Found { access, is_answered: true });
+            return Ok(RouteAccess { access, is_answered: true });
         }
         let methods = self.0.get(route).ok_or_else(|| {
             ApiError::internal(format!("nobody declared what {method} {route} takes"))
         })?;
         let is_open = methods.values().all(|access| *access == Access::Open);
         let access = if is_open { Access::Open } else { unanswered(method) };
-        Ok(Found { access, is_answered: false })
+        Ok(RouteAccess { access, is_answered: false })
     }
 }
 

@@ -9,7 +9,7 @@ use axum::routing::get;
 use tower::ServiceExt as _;
 
 use super::*;
-use crate::api::guard::{self, Door};
+use crate::api::guard::{self, GuardState};
 use crate::api::{Service, admin, document};
 use crate::config::Config;
 use crate::library::meshes::Library;
@@ -157,7 +157,7 @@ async fn answer(declared: Declared, method: Method, path: &str) -> (StatusCode, 
     let store = Store::open(folder.path()).await.unwrap();
     let config = Config::new(|_| None).unwrap();
     let service = Service::new(config, store.clone(), Library::new(store, 0));
-    let door = Door { service: service.clone(), declared: declared.into() };
+    let door = GuardState { service: service.clone(), declared: declared.into() };
     let router = Router::new()
         .route("/v1/new", get(async |_: Service| "looked").put(async |_: Service| "changed"))
         .route("/v1/newer", get(async || "looked"))

@@ -17,11 +17,11 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use tokio::net::TcpListener;
 
-use super::access::{Access, Audit, Declared, Found};
+use super::access::{Access, Audit, Declared, RouteAccess};
 use super::audit::{self, AuditParameters};
-use super::body::Coming;
+use super::audited::{audited_admin_action, carry_out, erased};
+use super::body::BodyState;
 use super::caller::{bearer, unauthorized};
-use super::deeds::{carry_out, deed_of_admin, erased};
 use super::error::{ApiError, ApiResult};
 use super::guard::named;
 use super::hosts::{Hosts, check_named_once};
@@ -35,14 +35,14 @@ use crate::schema::key::{
     KeyDocument, RETENTION_DAYS, RotationDocument, Scope, TENANT_NAMES, is_key_id, is_tenant,
 };
 use crate::schema::wire::strict;
-use crate::store::{Chain, Deed, LostRow, Store, TenantRow};
+use crate::store::{AuditedAction, Chain, LostRow, Store, TenantRow};
 use crate::worker::process::memory::usage;
 
 const PROMETHEUS: &str = "text/plain; version=0.0.4; charset=utf-8";
 
 /// What the listener needs to know.
 #[derive(Clone)]
-struct Office {
+struct AdminListener {
     store: Store,
     /// Who is let in to more than metrics.
     key: Option<Arc<Secret>>,
@@ -66,7 +66,7 @@ pub async fn listen(
     let hosts =
         (key.is_none() && is_loopback).then(|| Arc::new(Hosts::new(&config.allowed_hosts, &[])));
     let patience = config.body_idle;
-    let office = Office { store, key, is_loopback, hosts, patience };
+    let office = AdminListener { store, key, is_loopback, hosts, patience };
     // It answers for as long as the process lives.
     let never = std::future::pending();
     tokio::spawn(connections::serve(listener, router(office), patience, never));
@@ -74,15 +74,15 @@ pub async fn listen(
     Ok(address)
 }
 
-fn router(office: Office) -> Router {
-    let Desks { router, declared } = desks();
-    let door = Door { office: office.clone(), declared: declared.into() };
+fn router(office: AdminListener) -> Router {
+    let AdminRoutes { router, declared } = desks();
+    let door = AdminGuardState { office: office.clone(), declared: declared.into() };
     router.route_layer(from_fn_with_state(door, guard)).with_state(office)
 }
 
 /// Everything that is answered here.
-pub(super) fn desks() -> Desks {
-    Desks::default()
+pub(super) fn desks() -> AdminRoutes {
+    AdminRoutes::default()
         .open("/metrics", counted)
         .open("/healthz", async || "ok\n")
         .open("/errors", async || super::error_page::page())
@@ -100,19 +100,19 @@ pub(super) fn desks() -> Desks {
 
 /// Routes of the listener and what each of them takes.
 #[derive(Default)]
-pub(super) struct Desks {
-    router: Router<Office>,
+pub(super) struct AdminRoutes {
+    router: Router<AdminListener>,
     pub(super) declared: Declared,
 }
 
-impl Desks {
+impl AdminRoutes {
     /// Answers GET to all.
-    fn open<T: 'static>(self, path: &str, handler: impl Handler<T, Office>) -> Desks {
+    fn open<T: 'static>(self, path: &str, handler: impl Handler<T, AdminListener>) -> AdminRoutes {
         self.with(Method::GET, path, Access::Open, handler)
     }
 
     /// Answers GET and changes nothing.
-    fn looks<T: 'static>(self, path: &str, handler: impl Handler<T, Office>) -> Desks {
+    fn looks<T: 'static>(self, path: &str, handler: impl Handler<T, AdminListener>) -> AdminRoutes {
         self.with(Method::GET, path, Access::looks(Scope::Admin), handler)
     }
 
@@ -120,8 +120,8 @@ impl Desks {
         self,
         method: Method,
         path: &str,
-        handler: impl Handler<T, Office>,
-    ) -> Desks {
+        handler: impl Handler<T, AdminListener>,
+    ) -> AdminRoutes {
         self.with(method, path, Access::changes(Scope::Admin), handler)
     }
 
@@ -130,8 +130,8 @@ impl Desks {
         method: Method,
         path: &str,
         access: Access,
-        handler: impl Handler<T, Office>,
-    ) -> Desks {
+        handler: impl Handler<T, AdminListener>,
+    ) -> AdminRoutes {
         // A method that no router knows is answered by nobody.
         if let Ok(filter) = MethodFilter::try_from(method.clone()) {
             self.router = self.router.route(path, on(filter, handler));
@@ -143,21 +143,21 @@ impl Desks {
 
 /// What the layer around the routes needs to know.
 #[derive(Clone)]
-struct Door {
-    office: Office,
+struct AdminGuardState {
+    office: AdminListener,
     declared: Arc<Declared>,
 }
 
 /// Lets in who has the key, or who is on this machine where there is none; notes what was changed.
-async fn guard(State(door): State<Door>, request: Request, next: Next) -> Response {
+async fn guard(State(door): State<AdminGuardState>, request: Request, next: Next) -> Response {
     let id = uuid::Uuid::now_v7().to_string();
     if let Err(error) = door.office.is_meant(&request) {
         return named(error.into_response(), &id);
     }
     let route = request.extensions().get::<MatchedPath>().map(MatchedPath::as_str);
     let audit = match door.declared.find(route, request.method()) {
-        Ok(Found { access: Access::Open, .. }) => return named(next.run(request).await, &id),
-        Ok(Found { access: Access::Key { audit, .. }, .. }) => audit,
+        Ok(RouteAccess { access: Access::Open, .. }) => return named(next.run(request).await, &id),
+        Ok(RouteAccess { access: Access::Key { audit, .. }, .. }) => audit,
         Err(error) => return named(error.into_response(), &id),
     };
     let office = door.office;
@@ -167,19 +167,19 @@ async fn guard(State(door): State<Door>, request: Request, next: Next) -> Respon
         return named(error.into_response(), &id);
     }
     let request = request.map(|body| body::moving(body, office.patience));
-    let deed = (audit == Audit::Noted).then(|| deed_of_admin(&request, &id)).flatten();
-    let response = match deed {
-        Some(deed) => noted(&office.store, deed, request, next).await,
+    let audited = (audit == Audit::Noted).then(|| audited_admin_action(&request, &id)).flatten();
+    let response = match audited {
+        Some(audited) => noted(&office.store, audited, request, next).await,
         None => next.run(request).await,
     };
     named(response, &id)
 }
 
 /// The answer to what those who run the service do, which is noted at once.
-async fn noted(store: &Store, deed: Deed, request: Request, next: Next) -> Response {
+async fn noted(store: &Store, audited: AuditedAction, request: Request, next: Next) -> Response {
     let erases = request.method() == Method::DELETE;
-    let noting = store.noting(deed);
-    let begun = noting.clone();
+    let intent = store.audit_intent(audited);
+    let begun = intent.clone();
     let run = async move {
         match begun.begin().await {
             Ok(()) => next.run(request).await,
@@ -187,8 +187,8 @@ async fn noted(store: &Store, deed: Deed, request: Request, next: Next) -> Respo
         }
     };
     match erases {
-        true => carry_out(noting, Coming::default(), erased(store.clone(), run)).await,
-        false => carry_out(noting, Coming::default(), run).await,
+        true => carry_out(intent, BodyState::default(), erased(store.clone(), run)).await,
+        false => carry_out(intent, BodyState::default(), run).await,
     }
 }
 
@@ -199,7 +199,7 @@ fn document<T: DeserializeOwned>(headers: &HeaderMap, body: &Bytes) -> ApiResult
 }
 
 /// What was counted, with the queue as it is at this moment.
-async fn counted(State(office): State<Office>) -> Response {
+async fn counted(State(office): State<AdminListener>) -> Response {
     match office.store.queue().await {
         Ok(queue) => metrics::queue(queue.waiting, queue.running, queue.oldest_ms),
         Err(error) if !office.store.is_closing() => {
@@ -213,7 +213,7 @@ async fn counted(State(office): State<Office>) -> Response {
     ([(header::CONTENT_TYPE, PROMETHEUS)], metrics::render()).into_response()
 }
 
-impl Office {
+impl AdminListener {
     /// Refuses a request that is not for a host by whose name this one is called.
     fn is_meant(&self, request: &Request) -> ApiResult<()> {
         check_named_once(request)?;
@@ -227,7 +227,7 @@ impl Office {
         }
     }
 
-    /// The store in the hand of a tenant, which need not be there yet.
+    /// The store scoped to a tenant, which need not be there yet.
     fn of(&self, tenant: &str) -> ApiResult<Store> {
         match is_tenant(tenant) {
             true => Ok(self.store.of_tenant(tenant)),
@@ -247,7 +247,7 @@ struct TenantDocument {
 }
 
 async fn tenants(
-    State(office): State<Office>,
+    State(office): State<AdminListener>,
     Parameters(parameters): Parameters<PageParameters>,
 ) -> ApiResult {
     let page = parameters.page_by(is_tenant)?;
@@ -260,7 +260,7 @@ async fn tenants(
 }
 
 async fn set_tenant(
-    State(office): State<Office>,
+    State(office): State<AdminListener>,
     Path(tenant): Path<String>,
     headers: HeaderMap,
     body: Bytes,
@@ -275,7 +275,7 @@ async fn set_tenant(
 }
 
 async fn list_keys(
-    State(office): State<Office>,
+    State(office): State<AdminListener>,
     Path(tenant): Path<String>,
     Parameters(parameters): Parameters<PageParameters>,
 ) -> ApiResult {
@@ -283,7 +283,7 @@ async fn list_keys(
 }
 
 async fn create_key(
-    State(office): State<Office>,
+    State(office): State<AdminListener>,
     Path(tenant): Path<String>,
     headers: HeaderMap,
     body: Bytes,
@@ -294,14 +294,14 @@ async fn create_key(
 }
 
 async fn revoke_key(
-    State(office): State<Office>,
+    State(office): State<AdminListener>,
     Path((tenant, id)): Path<(String, String)>,
 ) -> ApiResult {
     keys::revoked(&office.of(&tenant)?, key_id(&id)?).await
 }
 
 async fn rotate_key(
-    State(office): State<Office>,
+    State(office): State<AdminListener>,
     Path((tenant, id)): Path<(String, String)>,
     headers: HeaderMap,
     body: Bytes,
@@ -315,14 +315,14 @@ fn key_id(text: &str) -> ApiResult<&str> {
 }
 
 async fn list_audit(
-    State(office): State<Office>,
+    State(office): State<AdminListener>,
     Parameters(parameters): Parameters<AuditParameters>,
 ) -> ApiResult {
     audit::page(&office.store, "", &parameters).await
 }
 
 /// Whether the log is whole, and the hash of its last row.
-async fn check_audit(State(office): State<Office>) -> ApiResult {
+async fn check_audit(State(office): State<AdminListener>) -> ApiResult {
     let found = match office.store.check_audit().await? {
         Chain::Whole { rows, hash } => {
             serde_json::json!({"status": "whole", "rows": rows, "hash": hash})
@@ -344,7 +344,7 @@ struct LostJob {
 
 /// Jobs that failed through no fault of their own, oldest first.
 async fn lost_jobs(
-    State(office): State<Office>,
+    State(office): State<AdminListener>,
     Parameters(parameters): Parameters<PageParameters>,
 ) -> ApiResult {
     let page = parameters.page()?;
@@ -364,7 +364,7 @@ async fn lost_jobs(
     Ok(page.linked(json(StatusCode::OK, &items), "/lost-jobs", next))
 }
 
-async fn requeue(State(office): State<Office>, Path(id): Path<String>) -> ApiResult {
+async fn requeue(State(office): State<AdminListener>, Path(id): Path<String>) -> ApiResult {
     match office.store.requeue(&id).await? {
         true => Ok(StatusCode::NO_CONTENT.into_response()),
         false => Err(ApiError::not_found("job that was lost")),

@@ -58,16 +58,16 @@ pub struct AuditParameters {
 
 impl AuditView {
     fn of(row: AuditRow) -> AuditView {
-        let AuditRow { number, at, deed, outcome, hash } = row;
+        let AuditRow { number, at, audited, outcome, hash } = row;
         AuditView {
             number,
             at: time::rfc3339(at),
-            tenant: deed.tenant,
-            actor: deed.actor,
-            action: deed.action,
-            object: deed.object,
+            tenant: audited.tenant,
+            actor: audited.actor,
+            action: audited.action,
+            object: audited.object,
             outcome,
-            request: deed.request,
+            request: audited.request,
             hash,
         }
     }

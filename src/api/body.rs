@@ -14,10 +14,10 @@ use bytes::Bytes;
 use futures::{Stream, StreamExt};
 
 use super::Service;
-use super::budget::Held;
+use super::budget::ByteReservation;
 use super::error::{ApiError, ApiResult};
 use super::pace::Pace;
-use super::spool::{IN_MEMORY, Received, Spool};
+use super::spool::{IN_MEMORY, Spool, SpooledBody};
 use crate::schema::ErrorCode;
 use crate::schema::wire::problem::Problem;
 
@@ -36,14 +36,14 @@ const DRAINED_FOR: Duration = Duration::from_secs(1);
 /// The part of a body that its handler has not read.
 pub struct Unread {
     frames: Arc<tokio::sync::Mutex<BodyDataStream>>,
-    coming: Coming,
+    coming: BodyState,
 }
 
 /// Whether a body comes still, or broke off.
 #[derive(Clone, Default)]
-pub struct Coming(Arc<AtomicBool>);
+pub struct BodyState(Arc<AtomicBool>);
 
-impl Coming {
+impl BodyState {
     /// Whether the connection ended before the body did.
     pub fn is_broken(&self) -> bool {
         self.0.load(Ordering::Relaxed)
@@ -53,7 +53,7 @@ impl Coming {
 /// A body, and a hold on what will be left of it.
 pub fn held(body: Body) -> (Body, Unread) {
     let frames = Arc::new(tokio::sync::Mutex::new(body.into_data_stream()));
-    let unread = Unread { frames: frames.clone(), coming: Coming::default() };
+    let unread = Unread { frames: frames.clone(), coming: BodyState::default() };
     let coming = unread.coming.clone();
     let frames = futures::stream::unfold((frames, coming), |(frames, coming)| async {
         let frame = frames.lock().await.next().await;
@@ -66,7 +66,7 @@ pub fn held(body: Body) -> (Body, Unread) {
 }
 
 impl Unread {
-    pub fn coming(&self) -> Coming {
+    pub fn coming(&self) -> BodyState {
         self.coming.clone()
     }
 
@@ -117,7 +117,7 @@ pub fn require_json(headers: &HeaderMap) -> ApiResult<()> {
 }
 
 /// The document in a part of a form, as long as that of a body may be.
-pub async fn document(service: &Service, part: Received) -> ApiResult<Bytes> {
+pub async fn document(service: &Service, part: SpooledBody) -> ApiResult<Bytes> {
     match usize::try_from(service.limits.json_bytes) {
         Ok(most) if part.bytes > most as u64 => Err(too_large(most)),
         _ => part.into_bytes().await,
@@ -125,7 +125,7 @@ pub async fn document(service: &Service, part: Received) -> ApiResult<Bytes> {
 }
 
 /// The whole body of an upload, equal to its Content-Digest if it has one.
-pub async fn upload(service: &Service, request: Request) -> ApiResult<Received> {
+pub async fn upload(service: &Service, request: Request) -> ApiResult<SpooledBody> {
     let digest = content_digest(request.headers())?;
     let received = whole(service, request, service.config.upload_bytes).await?;
     if digest.is_none_or(|digest| digest == received.sha256) {
@@ -136,7 +136,7 @@ pub async fn upload(service: &Service, request: Request) -> ApiResult<Received> 
     Err(Problem::new(ErrorCode::DigestMismatch, detail).with("digest", found).into())
 }
 
-async fn whole(service: &Service, request: Request, most: usize) -> ApiResult<Received> {
+async fn whole(service: &Service, request: Request, most: usize) -> ApiResult<SpooledBody> {
     let held = begun(service, request.headers(), most)?;
     let bounds = Bounds { bytes: most, idle: service.config.body_idle };
     let mut spool = Spool::new(service.ground(), held.clone());
@@ -149,7 +149,7 @@ async fn whole(service: &Service, request: Request, most: usize) -> ApiResult<Re
 
 /// Checks what a request says of its body. What is announced is counted as it comes: who announces much and sends nothing
 /// keeps nobody out.
-fn begun(service: &Service, headers: &HeaderMap, most: usize) -> ApiResult<Arc<Held>> {
+fn begun(service: &Service, headers: &HeaderMap, most: usize) -> ApiResult<Arc<ByteReservation>> {
     check_encoding(headers)?;
     let announced = announced(headers).unwrap_or(0);
     if announced > most as u64 {
@@ -164,7 +164,7 @@ fn begun(service: &Service, headers: &HeaderMap, most: usize) -> ApiResult<Arc<H
 }
 
 /// The parts of a multipart body by their names, all of them within the bounds of one upload.
-pub async fn parts(service: &Service, request: Request) -> ApiResult<Vec<(String, Received)>> {
+pub async fn parts(service: &Service, request: Request) -> ApiResult<Vec<(String, SpooledBody)>> {
     let most = service.config.upload_bytes;
     let held = begun(service, request.headers(), most)?;
     let bounds = Bounds { bytes: most, idle: service.config.body_idle };
@@ -189,14 +189,14 @@ pub async fn parts(service: &Service, request: Request) -> ApiResult<Vec<(String
 async fn read_parts(
     request: Request,
     service: &Service,
-    held: Arc<Held>,
-) -> ApiResult<Vec<(String, Received)>> {
+    held: Arc<ByteReservation>,
+) -> ApiResult<Vec<(String, SpooledBody)>> {
     let most = service.limits.multipart_parts as usize;
     let malformed = |detail: String| ApiError::new(ErrorCode::MalformedMultipart, detail);
     let mut multipart = Multipart::from_request(request, &())
         .await
         .map_err(|error| malformed(error.body_text()))?;
-    let mut parts: Vec<(String, Received)> = Vec::new();
+    let mut parts: Vec<(String, SpooledBody)> = Vec::new();
     let mut unread = 0;
     while let Some(mut part) =
         multipart.next_field().await.map_err(|error| malformed(error.body_text()))?
@@ -251,7 +251,11 @@ fn too_large(most: usize) -> ApiError {
 }
 
 /// The frames of a body until it is too large or too slow, or its client has too much under way.
-fn bounded(body: Body, bounds: Bounds, held: Arc<Held>) -> impl Stream<Item = ApiResult<Bytes>> {
+fn bounded(
+    body: Body,
+    bounds: Bounds,
+    held: Arc<ByteReservation>,
+) -> impl Stream<Item = ApiResult<Bytes>> {
     let incoming = Incoming {
         frames: body.into_data_stream(),
         bounds,
@@ -273,7 +277,7 @@ fn bounded(body: Body, bounds: Bounds, held: Arc<Held>) -> impl Stream<Item = Ap
 struct Incoming {
     frames: BodyDataStream,
     bounds: Bounds,
-    held: Arc<Held>,
+    held: Arc<ByteReservation>,
     pace: Pace,
     count: usize,
 }

@@ -14,15 +14,15 @@ use crate::schema::wire::problem::Problem;
 /// Counts the bytes of all clients.
 #[derive(Clone)]
 pub struct Budget {
-    most: Most,
-    used: Arc<Mutex<Used>>,
+    most: ByteLimits,
+    used: Arc<Mutex<BytesInUse>>,
 }
 
 /// How many bytes may be in flight at once. A tenant may have three quarters of what others leave of those of the process,
 /// however many keys it has: there is always something left for one more (dynamic thresholds of Choudhury and Hahne, 1998,
 /// with alpha = 3). One body alone may have all that is left, so that the largest always fits into an idle service.
 #[derive(Clone, Copy)]
-pub struct Most {
+pub struct ByteLimits {
     pub of_process: u64,
     pub of_client: u64,
 }
@@ -35,14 +35,14 @@ pub struct Owner {
 }
 
 #[derive(Default)]
-struct Used {
+struct BytesInUse {
     total: u64,
     tenants: HashMap<Arc<str>, u64>,
     clients: HashMap<Client, u64>,
 }
 
 /// Bytes of one request, counted until this is dropped.
-pub struct Held {
+pub struct ByteReservation {
     budget: Budget,
     owner: Owner,
     bytes: Mutex<u64>,
@@ -56,13 +56,13 @@ struct Bound {
 }
 
 impl Budget {
-    pub fn new(most: Most) -> Budget {
+    pub fn new(most: ByteLimits) -> Budget {
         Budget { most, used: Arc::default() }
     }
 
     /// The bytes of a request, none so far.
-    pub fn hold(&self, owner: Owner) -> Held {
-        Held { budget: self.clone(), owner, bytes: Mutex::new(0) }
+    pub fn hold(&self, owner: Owner) -> ByteReservation {
+        ByteReservation { budget: self.clone(), owner, bytes: Mutex::new(0) }
     }
 
     fn take(&self, owner: &Owner, held: u64, more: u64) -> ApiResult<()> {
@@ -76,8 +76,8 @@ impl Budget {
     }
 
     /// Whether a request that holds so many bytes may hold so many more.
-    fn check(&self, used: &Used, owner: &Owner, held: u64, more: u64) -> ApiResult<()> {
-        let Most { of_process, of_client } = self.most;
+    fn check(&self, used: &BytesInUse, owner: &Owner, held: u64, more: u64) -> ApiResult<()> {
+        let ByteLimits { of_process, of_client } = self.most;
         let of_tenant = used.tenants.get(&owner.tenant).copied().unwrap_or(0);
         let left = of_process.saturating_sub(used.total - of_tenant);
         let is_alone = of_tenant == held;
@@ -106,7 +106,7 @@ impl Budget {
         http::body_bytes(used.total);
     }
 
-    fn lock(&self) -> MutexGuard<'_, Used> {
+    fn lock(&self) -> MutexGuard<'_, BytesInUse> {
         self.used.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
@@ -118,7 +118,7 @@ fn lessen<K: Hash + Eq + Clone>(used: &mut HashMap<K, u64>, whose: &K, bytes: u6
     }
 }
 
-impl Held {
+impl ByteReservation {
     /// Holds at least so many bytes.
     pub fn at_least(&self, bytes: u64) -> ApiResult<()> {
         let mut held = self.lock();
@@ -141,7 +141,7 @@ impl Held {
     }
 }
 
-impl Drop for Held {
+impl Drop for ByteReservation {
     fn drop(&mut self) {
         let bytes = *self.bytes.get_mut().unwrap_or_else(PoisonError::into_inner);
         if bytes > 0 {
@@ -160,7 +160,7 @@ mod tests {
 
     #[test]
     fn a_client_and_all_together_hold_as_much_as_they_may_and_give_it_back() {
-        let budget = Budget::new(Most { of_process: 100, of_client: 60 });
+        let budget = Budget::new(ByteLimits { of_process: 100, of_client: 60 });
         let (one, two) = (budget.hold(owner("a", "a")), budget.hold(owner("a", "a")));
         assert!(one.at_least(40).is_ok() && one.at_least(20).is_ok() && two.at_least(20).is_ok());
         assert!(two.could_hold(20).is_ok() && two.could_hold(21).is_err());
@@ -177,8 +177,8 @@ mod tests {
 
     #[test]
     fn a_tenant_with_many_keys_leaves_a_share_to_others() {
-        let budget = Budget::new(Most { of_process: 1000, of_client: 1000 });
-        let fill = |tenant: &str| -> Vec<Held> {
+        let budget = Budget::new(ByteLimits { of_process: 1000, of_client: 1000 });
+        let fill = |tenant: &str| -> Vec<ByteReservation> {
             let keys = (0..1000).map(|key| budget.hold(owner(tenant, &format!("{tenant} {key}"))));
             keys.take_while(|held| held.at_least(10).is_ok()).collect()
         };

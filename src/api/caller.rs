@@ -13,12 +13,12 @@ use super::Service;
 use super::access::Access;
 use super::client::Client;
 use super::error::{ApiError, ApiResult};
-use super::foreseen::{self, Foreseen};
+use super::foreseen::{self, ResponseLookup};
 use crate::schema::ErrorCode;
 use crate::schema::key::{Key, Scope, scopes_of};
 use crate::schema::wire::canonical::sha256_hex;
 use crate::schema::wire::problem::Problem;
-use crate::store::{DEFAULT_TENANT, Noting};
+use crate::store::{AuditIntent, DEFAULT_TENANT};
 
 /// Who calls.
 #[derive(Clone, Debug)]
@@ -59,7 +59,7 @@ impl Caller {
     }
 }
 
-/// The service in the hand of the caller's tenant: what handlers work with. A request that came around the guard, or to a
+/// The service scoped to the caller's tenant: what handlers work with. A request that came around the guard, or to a
 /// route of which nothing was declared, is nobody's.
 impl FromRequestParts<Service> for Service {
     type Rejection = ApiError;
@@ -69,9 +69,9 @@ impl FromRequestParts<Service> for Service {
             return Ok(service.clone());
         }
         let caller = Caller::from_request_parts(parts, service).await?;
-        let noting = parts.extensions.get::<Noting>().cloned();
+        let intent = parts.extensions.get::<AuditIntent>().cloned();
         let client = caller.client(&parts.extensions);
-        Ok(service.in_hand_of(&caller.tenant, client, noting))
+        Ok(service.scoped_to(&caller.tenant, client, intent))
     }
 }
 
@@ -92,7 +92,7 @@ impl FromRequestParts<Service> for Caller {
 /// Who sends a request, and what was looked up with the key.
 pub struct Identified {
     pub caller: Caller,
-    pub foreseen: Option<Foreseen>,
+    pub foreseen: Option<ResponseLookup>,
 }
 
 impl Identified {
@@ -127,7 +127,7 @@ async fn known(service: &Service, given: &str, case: Option<String>) -> ApiResul
         Some(case) => {
             let found = service.store.key_and_responses(&key.id, &case).await?;
             let (row, responses) = found.ok_or_else(refused)?;
-            (row, Some(Foreseen::now(responses)))
+            (row, Some(ResponseLookup::now(responses)))
         }
         None => (service.store.key_in_force(&key.id).await?.ok_or_else(refused)?, None),
     };

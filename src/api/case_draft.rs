@@ -8,8 +8,8 @@ use super::accepted::{Accepted, LONGEST_QUEUE, queue_full};
 use super::error::{ApiError, ApiResult};
 use super::idempotency::NewId;
 use super::meshes::{TakenIn, take_in};
-use super::spool::Received;
-use super::turns::Turn;
+use super::permits::Permit;
+use super::spool::SpooledBody;
 use super::{Service, accepted};
 use crate::jobs::{
     CheckReport, JobError, JobInput, MeshSource, MeshingInput, PredictInput, SourceError,
@@ -27,10 +27,10 @@ use crate::store::{AddedCase, NewCase, NewJob};
 const CASE_PART: &str = "case";
 
 /// The parts of a form by their names.
-pub(super) type Parts = Vec<(String, Received)>;
+pub(super) type FormParts = Vec<(String, SpooledBody)>;
 
 /// The document and the meshes of a form.
-pub(super) fn split(mut parts: Parts) -> ApiResult<(Received, Parts)> {
+pub(super) fn split(mut parts: FormParts) -> ApiResult<(SpooledBody, FormParts)> {
     let at = parts.iter().position(|(name, _)| name == CASE_PART);
     let at = at.ok_or_else(|| {
         ApiError::new(ErrorCode::MalformedMultipart, "the form has no part `case`")
@@ -57,9 +57,9 @@ impl Draft {
     /// Reads the meshes, in the turn of their request, and puts their ids where the document names their parts.
     pub async fn read(
         service: &Service,
-        turn: &Turn,
+        permit: &Permit,
         mut document: CaseBody,
-        parts: Parts,
+        parts: FormParts,
         allow_any_scale: Option<bool>,
     ) -> ApiResult<Draft> {
         let (units, frame) = match &document {
@@ -75,7 +75,7 @@ impl Draft {
         let mut ids: BTreeMap<String, String> = BTreeMap::new();
         let mut uploads: Vec<Upload> = Vec::new();
         for (name, body) in parts {
-            let taken = take_in(service, turn, body, &statement, false).await;
+            let taken = take_in(service, permit, body, &statement, false).await;
             let id = match taken.map_err(|error| in_part(error, &name))? {
                 TakenIn::Known(row) => row.id,
                 TakenIn::New(upload) => {
@@ -146,8 +146,8 @@ impl Draft {
         let sources = service.library.source(Handle::current(), self.brought());
         let limits: Limits = (*service.limits).clone();
         let image = case.hounsfield.as_ref().map(|hounsfield| hounsfield.image.clone());
-        let turn = service.check_turn().await?;
-        let prepared = turn.compute(move || {
+        let permit = service.check_permit().await?;
+        let prepared = permit.compute(move || {
             image.iter().try_for_each(|image| require_image(&sources, image))?;
             input.prepare(&sources, &limits)
         });
@@ -272,7 +272,7 @@ pub(super) async fn checked(
 ) -> ApiResult<CheckReport> {
     let sources = service.library.source(Handle::current(), extra);
     let limits: Limits = (*service.limits).clone();
-    let turn = service.check_turn().await?;
-    let report = turn.compute(move || crate::jobs::check(&input, &sources, &limits)).await?;
+    let permit = service.check_permit().await?;
+    let report = permit.compute(move || crate::jobs::check(&input, &sources, &limits)).await?;
     report.map_err(accepted::refusal)
 }

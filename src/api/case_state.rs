@@ -99,11 +99,11 @@ fn error_of(meshing: &CaseMeshing) -> ApiResult<JobErrorDocument> {
 /// What a job on a case has of it.
 pub enum CaseOfJob {
     Whole(Box<CaseDocument>),
-    Waits(Awaited),
+    Waits(PendingCase),
 }
 
 /// A case whose mesh is being made.
-pub struct Awaited {
+pub struct PendingCase {
     /// The job that makes the mesh.
     pub meshing: String,
     /// As they were posted beside the scan.
@@ -122,7 +122,7 @@ pub fn case_of_job(row: &CaseRow) -> ApiResult<CaseOfJob> {
                 CaseBody::ToMesh(case) => case.materials,
                 CaseBody::Whole(case) => case.materials,
             };
-            Ok(CaseOfJob::Waits(Awaited { meshing, materials }))
+            Ok(CaseOfJob::Waits(PendingCase { meshing, materials }))
         }
         _ => Err(not_ready(row, state)),
     }

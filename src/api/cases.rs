@@ -15,7 +15,7 @@ use super::case_draft::{Draft, checked, split};
 use super::case_state::{CaseMeshingView, CaseState, meshing_view, tag_of};
 use super::error::{ApiError, ApiResult};
 use super::guard::check_accept;
-use super::idempotency::Asked;
+use super::idempotency::KeyedRequest;
 use super::meshes::document_of;
 use super::paging::Page;
 use super::parameters::{Id, Parameters};
@@ -162,21 +162,21 @@ async fn create(
         .flat_map(|(name, part)| [name.as_bytes(), &part.sha256])
         .chain([&text[..]])
         .collect();
-    let asked = Asked::at(&service, &headers, "/v1/cases", &content)?;
+    let asked = KeyedRequest::at(&service, &headers, "/v1/cases", &content)?;
     if let Some(known) = asked.known(&service).await?
         && service.store.case(&known.id).await?.is_some()
     {
         return created(&service, &known.id, wait).await;
     }
     // Its meshes are in memory until the case is stored.
-    let turn = service.parse_turn().await?;
-    let draft = Draft::read(&service, &turn, document, parts, parameters.allow_any_scale).await?;
+    let permit = service.parse_permit().await?;
+    let draft = Draft::read(&service, &permit, document, parts, parameters.allow_any_scale).await?;
     let checked = draft.check(&service).await?;
     // What comes before this changes nothing, so that it ends with its client.
     let new = asked.reserve(&service).await?;
     let place = place.map(|place| place.to_string());
     draft.store(&service, &new, &checked, place).await?;
-    drop(turn);
+    drop(permit);
     created(&service, &new.id, wait).await
 }
 
@@ -340,8 +340,8 @@ async fn check(service: Service, Id(id): Id, request: Request) -> ApiResult {
     if wants_counts {
         return Ok(json(StatusCode::OK, &report.document));
     }
-    let turn = service.check_turn().await?;
-    let drawn = turn.compute(move || report.picture()).await?.map_err(accepted::refusal)?;
+    let permit = service.check_permit().await?;
+    let drawn = permit.compute(move || report.picture()).await?.map_err(accepted::refusal)?;
     let svg = Bytes::from(drawn);
     if let Some(question) = question {
         service.pictures.keep(&id, question, svg.clone());

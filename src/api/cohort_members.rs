@@ -16,7 +16,7 @@ use crate::store::MemberRow;
 
 /// What members have in common, and what each has alone.
 #[derive(Default)]
-struct Seen {
+struct CommonProperties {
     frame: Option<FrameName>,
     cases: BTreeSet<String>,
     /// Of meshes after the operation.
@@ -28,7 +28,7 @@ pub async fn members_of(
     service: &Service,
     document: &StoredCohortDocument,
 ) -> ApiResult<Vec<MemberRow>> {
-    let mut seen = Seen::default();
+    let mut seen = CommonProperties::default();
     let mut rows = Vec::new();
     for (number, member) in (1..).zip(&document.members) {
         let at = format!("/members/{}", number - 1);
@@ -57,7 +57,7 @@ async fn checked(
     service: &Service,
     at: &str,
     member: &MemberDocument,
-    seen: &mut Seen,
+    seen: &mut CommonProperties,
 ) -> ApiResult<String> {
     let (prediction, actual) = (format!("{at}/prediction"), format!("{at}/actual"));
     let found = learned(service, &prediction, &member.prediction).await?;

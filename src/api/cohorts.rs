@@ -9,7 +9,7 @@ use utoipa_axum::routes;
 
 use super::cohort_members::members_of;
 use super::error::{ApiError, ApiResult};
-use super::idempotency::{Asked, NewId};
+use super::idempotency::{KeyedRequest, NewId};
 use super::paging::PageParameters;
 use super::parameters::{Id, Parameters};
 use super::resources::Resources;
@@ -190,7 +190,7 @@ async fn create(service: Service, request: Request) -> ApiResult {
     let mut faults = Faults::default();
     document.check(&service.limits, &mut faults);
     faults.into_result()?;
-    let asked = Asked::at(&service, &headers, "/v1/cohorts", &[&bytes])?;
+    let asked = KeyedRequest::at(&service, &headers, "/v1/cohorts", &[&bytes])?;
     if let Some(known) = asked.known(&service).await?
         && let Some(row) = service.store.cohort(&known.id).await?
     {

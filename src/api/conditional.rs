@@ -3,7 +3,7 @@
 use axum::http::{HeaderMap, HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 
-use super::download::Opened;
+use super::download::ServedFile;
 use super::error::{ApiError, ApiResult};
 use crate::schema::ErrorCode;
 use crate::schema::wire::problem::Problem;
@@ -86,7 +86,7 @@ pub async fn document(headers: &HeaderMap, response: Response) -> ApiResult {
 /// An immutable file with all that goes with it: tag, 304, one range.
 pub fn file(
     headers: &HeaderMap,
-    file: Opened,
+    file: ServedFile,
     (media_type, name): (&str, &str),
     tag: &str,
 ) -> ApiResult {

@@ -10,9 +10,9 @@ use tokio::io::AsyncReadExt as _;
 use tokio_util::io::ReaderStream;
 
 use super::Service;
-use super::budget::Held;
+use super::budget::ByteReservation;
 use super::error::{ApiError, ApiResult};
-use super::turns::Turn;
+use super::permits::Permit;
 use crate::schema::wire::problem::Problem;
 use crate::store::StoreError;
 
@@ -20,42 +20,42 @@ use crate::store::StoreError;
 const PIECE: usize = 64 << 10;
 
 /// A file that can be sent, whole or a part of it.
-pub struct Opened {
+pub struct ServedFile {
     file: File,
     pub bytes: u64,
     /// Counts a copy.
-    held: Arc<Held>,
+    held: Arc<ByteReservation>,
 }
 
-impl Opened {
+impl ServedFile {
     /// The file of a blob, compared with its hash.
-    pub async fn blob(service: &Service, sha256: &str) -> ApiResult<Opened> {
+    pub async fn blob(service: &Service, sha256: &str) -> ApiResult<ServedFile> {
         let found = service.store.find_blob(sha256).await?;
         let (bytes, held) = (found.bytes(), Arc::new(service.hold()));
         if found.is_far() {
             held.at_least(bytes)?;
             service.ground().require(bytes)?;
         }
-        Ok(Opened { file: service.store.file_of(found).await?, bytes, held })
+        Ok(ServedFile { file: service.store.file_of(found).await?, bytes, held })
     }
 
     /// A file of what `make` makes in its turn.
     pub async fn made(
         service: &Service,
-        turn: &Turn,
+        permit: &Permit,
         make: impl FnOnce() -> Result<Vec<u8>, Problem> + Send + 'static,
-    ) -> ApiResult<Opened> {
+    ) -> ApiResult<ServedFile> {
         let (held, ground) = (Arc::new(service.hold()), service.ground());
-        let work = move || -> ApiResult<Opened> {
+        let work = move || -> ApiResult<ServedFile> {
             let content = make()?;
             let bytes = content.len() as u64;
             held.at_least(bytes)?;
             ground.require(bytes)?;
             let mut file = ground.store.nameless_file()?;
             file.write_all(&content).map_err(StoreError::from)?;
-            Ok(Opened { file, bytes, held })
+            Ok(ServedFile { file, bytes, held })
         };
-        turn.compute(work).await?
+        permit.compute(work).await?
     }
 
     /// The bytes from `first` on, `count` of them.

@@ -20,12 +20,12 @@ use mechanics::mesh::ignored::listed;
 
 /// What is asked for: a picture or a report, and in which language its words are.
 #[derive(Clone, Copy)]
-struct Wanted {
+struct DrawingRequest {
     picture: PictureName,
     language: Language,
 }
 
-impl Wanted {
+impl DrawingRequest {
     /// Under which name it is kept; pictures have one language.
     fn kept_as(self) -> String {
         let name = self.picture.output().file_name();
@@ -53,7 +53,7 @@ pub async fn picture(
     guard::check_accept(headers, media_type.split(';').next().unwrap_or_default())?;
     let liked = headers.get(header::ACCEPT_LANGUAGE).and_then(|value| value.to_str().ok());
     let language = language.unwrap_or_else(|| Language::accepted(liked.unwrap_or_default()));
-    let wanted = Wanted { picture, language };
+    let wanted = DrawingRequest { picture, language };
     let bytes = match service.pictures.get(&job.id, &wanted.kept_as()) {
         Some(bytes) => bytes,
         None => drawn(service, job, wanted).await?,
@@ -70,8 +70,8 @@ pub async fn picture(
     conditional::document(headers, (told, bytes).into_response()).await
 }
 
-async fn drawn(service: &Service, job: &JobRow, wanted: Wanted) -> ApiResult<Bytes> {
-    let Wanted { picture, language } = wanted;
+async fn drawn(service: &Service, job: &JobRow, wanted: DrawingRequest) -> ApiResult<Bytes> {
+    let DrawingRequest { picture, language } = wanted;
     let name = picture.output().file_name();
     let finished = finished(service, job).await?.filter(|finished| finished.has(picture));
     let finished = finished.ok_or_else(|| no_such_output(job, name))?;
@@ -86,9 +86,9 @@ async fn drawn(service: &Service, job: &JobRow, wanted: Wanted) -> ApiResult<Byt
     }
     let sources = service.library.source(Handle::current(), BTreeMap::new());
     let limits: Limits = (*service.limits).clone();
-    let turn = service.check_turn().await?;
+    let permit = service.check_permit().await?;
     let draw = move || finished.draw(picture, language, &sources, &limits);
-    let bytes = Bytes::from(turn.compute(draw).await?.map_err(accepted::refusal)?);
+    let bytes = Bytes::from(permit.compute(draw).await?.map_err(accepted::refusal)?);
     let (case, kept_as) = (job.case_id.as_deref(), wanted.kept_as());
     service.pictures.keep_of_job(&job.id, case, &kept_as, bytes.clone());
     // Whoever erased it meanwhile found nothing to give up.

@@ -72,7 +72,7 @@ async fn follow(
         return Ok(StatusCode::NO_CONTENT.into_response());
     }
     let client = client.map_or_else(|| Client::named(""), |Extension(client)| client);
-    let mut told = Told {
+    let mut told = EventStream {
         place: service.streams.enter(client)?,
         changes: service.store.job_changes(),
         stopping: service.streams.stopping(),
@@ -99,7 +99,7 @@ fn last_id(headers: &HeaderMap) -> ApiResult<i64> {
 }
 
 /// What a stream has told and has yet to tell.
-struct Told {
+struct EventStream {
     place: StreamPlace,
     changes: Changes,
     stopping: watch::Receiver<bool>,
@@ -112,7 +112,7 @@ struct Told {
     looked: Instant,
 }
 
-impl Told {
+impl EventStream {
     fn stream(self) -> impl Stream<Item = Result<Event, Infallible>> {
         futures::stream::unfold(self, |mut told| async move {
             loop {

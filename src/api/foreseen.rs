@@ -14,15 +14,15 @@ const FRESH: Duration = Duration::from_secs(1);
 
 /// What was found when the request came.
 #[derive(Clone)]
-pub struct Foreseen {
+pub struct ResponseLookup {
     at: Instant,
     responses: Option<CaseResponses>,
 }
 
-impl Foreseen {
+impl ResponseLookup {
     /// What is found now; `None` where there is no such case.
-    pub fn now(responses: Option<CaseResponses>) -> Foreseen {
-        Foreseen { at: Instant::now(), responses }
+    pub fn now(responses: Option<CaseResponses>) -> ResponseLookup {
+        ResponseLookup { at: Instant::now(), responses }
     }
 
     /// The responses, unless too much may have changed since; the inner `None` where there was no such case.

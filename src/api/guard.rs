@@ -9,20 +9,20 @@ use axum::middleware::Next;
 use axum::response::{IntoResponse, Response};
 use tracing::Instrument;
 
-use super::access::{Access, Audit, Declared, Found};
-use super::body::Coming;
+use super::access::{Access, Audit, Declared, RouteAccess};
+use super::audited::{audited_action_of, carry_out, erased};
+use super::body::BodyState;
 use super::caller::{self, Caller, Identified};
-use super::deeds::{carry_out, deed_of, erased};
 use super::error::{ApiError, ApiResult, with_problem_body};
 use super::headers::guarded;
 use super::hosts::check_named_once;
-use super::rate::Left;
+use super::rate::RateAllowance;
 use super::{Service, body};
 use crate::metrics::http;
 use crate::schema::ErrorCode;
 use crate::schema::key::Scope;
 use crate::schema::wire::problem::Problem;
-use crate::store::Noting;
+use crate::store::AuditIntent;
 use crate::traces::{self, TraceParent};
 
 const REQUEST_ID: &str = "x-request-id";
@@ -32,13 +32,13 @@ const LARGEST_HEAD: usize = 16 << 10;
 
 /// What the outermost layer needs to know.
 #[derive(Clone)]
-pub struct Door {
+pub struct GuardState {
     pub service: Service,
     pub declared: Arc<Declared>,
 }
 
 /// The outermost layer: names the request, logs it, and writes the bodies of errors.
-pub async fn surround(State(door): State<Door>, request: Request, next: Next) -> Response {
+pub async fn surround(State(door): State<GuardState>, request: Request, next: Next) -> Response {
     let started = Instant::now();
     let id = request_id(request.headers());
     let method = request.method().clone();
@@ -56,9 +56,9 @@ pub async fn surround(State(door): State<Door>, request: Request, next: Next) ->
     request.extensions_mut().insert(trace.place());
     let answered = async {
         let response = match admit(&door, &mut request).await {
-            Ok(Admitted::ToAll) => next.run(request).await,
-            Ok(Admitted::Known(entry)) => {
-                entry.pass(&door.service, Entering { request, coming }, next, &id).await
+            Ok(Admission::ToAll) => next.run(request).await,
+            Ok(Admission::Known(entry)) => {
+                entry.pass(&door.service, IncomingRequest { request, coming }, next, &id).await
             }
             Err(error) => error.into_response(),
         };
@@ -109,7 +109,7 @@ fn trace_parent(headers: &HeaderMap) -> Option<TraceParent> {
 }
 
 /// A request that is let in.
-enum Admitted {
+enum Admission {
     /// To what is open to all.
     ToAll,
     Known(Entry),
@@ -118,25 +118,25 @@ enum Admitted {
 /// What is known of a request with a caller.
 struct Entry {
     caller: Caller,
-    left: Option<Left>,
+    left: Option<RateAllowance>,
     scope: Scope,
     audit: Audit,
 }
 
 /// Lets a request in whose head is sound, whose caller is known and has requests left; whose it is, and what was declared
 /// of its route, stands beside it.
-async fn admit(door: &Door, request: &mut Request) -> ApiResult<Admitted> {
+async fn admit(door: &GuardState, request: &mut Request) -> ApiResult<Admission> {
     check_head(request)?;
     check_named_once(request)?;
     if let Some(hosts) = &door.service.hosts {
         hosts.check(request)?;
     }
     let route = request.extensions().get::<MatchedPath>().map(MatchedPath::as_str);
-    let Found { access, is_answered } = door.declared.find(route, request.method())?;
+    let RouteAccess { access, is_answered } = door.declared.find(route, request.method())?;
     if is_answered {
         request.extensions_mut().insert(access);
     }
-    let Access::Key { scope, audit } = access else { return Ok(Admitted::ToAll) };
+    let Access::Key { scope, audit } = access else { return Ok(Admission::ToAll) };
     let identified = caller::identify(&door.service, request);
     let Identified { caller, foreseen } = identified.await?;
     if let Some(foreseen) = foreseen {
@@ -146,33 +146,39 @@ async fn admit(door: &Door, request: &mut Request) -> ApiResult<Admitted> {
     request.extensions_mut().insert(client.clone());
     request.extensions_mut().insert(caller.clone());
     let left = door.service.rates.take(client)?;
-    Ok(Admitted::Known(Entry { caller, left, scope, audit }))
+    Ok(Admission::Known(Entry { caller, left, scope, audit }))
 }
 
 /// A request and its body.
-struct Entering {
+struct IncomingRequest {
     request: Request,
-    coming: Coming,
+    coming: BodyState,
 }
 
 impl Entry {
     /// Hands the request on where its key allows it. What changes something is noted, and what is not allowed.
-    async fn pass(self, service: &Service, entering: Entering, next: Next, id: &str) -> Response {
-        let Entering { mut request, coming } = entering;
+    async fn pass(
+        self,
+        service: &Service,
+        entering: IncomingRequest,
+        next: Next,
+        id: &str,
+    ) -> Response {
+        let IncomingRequest { mut request, coming } = entering;
         let allowed = self.caller.require(self.scope);
         let is_noted = allowed.is_err() || self.audit == Audit::Noted;
-        let deed = is_noted.then(|| deed_of(&self.caller, &request, id)).flatten();
+        let audited = is_noted.then(|| audited_action_of(&self.caller, &request, id)).flatten();
         let erases = request.method() == Method::DELETE;
-        let noting = deed.map(|deed| service.store.noting(deed));
-        let mut response = match (allowed, noting) {
-            (Err(error), Some(noting)) => refused(error, &noting).await,
+        let intent = audited.map(|audited| service.store.audit_intent(audited));
+        let mut response = match (allowed, intent) {
+            (Err(error), Some(intent)) => refused(error, &intent).await,
             (Err(error), None) => error.into_response(),
-            (Ok(()), Some(noting)) => {
-                request.extensions_mut().insert(noting.clone());
+            (Ok(()), Some(intent)) => {
+                request.extensions_mut().insert(intent.clone());
                 let run = next.run(request);
                 match erases {
-                    true => carry_out(noting, coming, erased(service.store.clone(), run)).await,
-                    false => carry_out(noting, coming, run).await,
+                    true => carry_out(intent, coming, erased(service.store.clone(), run)).await,
+                    false => carry_out(intent, coming, run).await,
                 }
             }
             (Ok(()), None) => next.run(request).await,
@@ -185,9 +191,9 @@ impl Entry {
 }
 
 /// The answer to what a key does not allow, noted without waiting for anybody who writes.
-async fn refused(error: ApiError, noting: &Noting) -> Response {
+async fn refused(error: ApiError, intent: &AuditIntent) -> Response {
     let response = error.into_response();
-    match noting.end(noting.object(), response.status().as_str(), true).await {
+    match intent.end(intent.object(), response.status().as_str(), true).await {
         Ok(()) => response,
         Err(error) => ApiError::from(error).into_response(),
     }

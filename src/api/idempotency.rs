@@ -36,26 +36,26 @@ impl NewId {
 }
 
 /// A request that may have been sent before.
-pub struct Asked {
+pub struct KeyedRequest {
     id: String,
     /// The hashes of its key and of all that it says, where it has a key.
     key: Option<(String, String)>,
 }
 
-impl Asked {
+impl KeyedRequest {
     /// `content` is all that the request says, however it is packed.
     pub fn at(
         service: &Service,
         headers: &HeaderMap,
         address: &str,
         content: &[&[u8]],
-    ) -> ApiResult<Asked> {
+    ) -> ApiResult<KeyedRequest> {
         let id = uuid::Uuid::now_v7().to_string();
-        let Some(key) = key(headers)? else { return Ok(Asked { id, key: None }) };
+        let Some(key) = key(headers)? else { return Ok(KeyedRequest { id, key: None }) };
         let key = sha256_hex(format!("{}\n{address}\n{key}", service.store.tenant()).as_bytes());
         let hashes: Vec<String> = content.iter().map(|part| sha256_hex(part)).collect();
         let fingerprint = sha256_hex(hashes.concat().as_bytes());
-        Ok(Asked { id, key: Some((key, fingerprint)) })
+        Ok(KeyedRequest { id, key: Some((key, fingerprint)) })
     }
 
     /// The id of what the first request with its key makes, where that is known. Changes nothing.

@@ -10,7 +10,7 @@ use utoipa_axum::routes;
 use super::accepted::{LONGEST_QUEUE, queue_full};
 use super::caller::Caller;
 use super::error::{ApiError, ApiResult};
-use super::idempotency::Asked;
+use super::idempotency::KeyedRequest;
 use super::job_view::status_info;
 use super::paging::Page;
 use super::parameters::{Id, Parameters, id, no_such_job};
@@ -98,7 +98,7 @@ async fn create(service: Service, caller: Caller, request: Request) -> ApiResult
     if document.keeps_meshes() {
         caller.require(Scope::Write)?;
     }
-    let asked = Asked::at(&service, &headers, "/v1/jobs", &[&bytes])?;
+    let asked = KeyedRequest::at(&service, &headers, "/v1/jobs", &[&bytes])?;
     if let Some(known) = asked.known(&service).await?
         && service.store.job(&known.id).await?.is_some()
     {
@@ -253,10 +253,10 @@ async fn list(service: Service, Parameters(parameters): Parameters<ListParameter
         cursor: page.after.clone(),
         limit: page.rows(),
     };
-    let turn = service.list_turn().await?;
+    let permit = service.list_permit().await?;
     let mut rows = service.store.jobs(&filter).await?;
     let next = page.cut(&mut rows, |row| &row.id);
-    let written = turn.compute(move || {
+    let written = permit.compute(move || {
         let items = rows.iter().map(|row| status_info(row, false)).collect::<ApiResult<_>>()?;
         Ok(json(StatusCode::OK, &JobList { items, next }))
     });
@@ -309,7 +309,7 @@ mod tests {
         let store = Store::open(folder.path()).await.unwrap();
         let config = Config::new(|name| (name == "waiting-requests").then(|| "1".into())).unwrap();
         let service = Service::new(config, store.clone(), Library::new(store, 0));
-        let held = [service.list_turn().await.unwrap(), service.list_turn().await.unwrap()];
+        let held = [service.list_permit().await.unwrap(), service.list_permit().await.unwrap()];
         let mut first = listed(&service);
         assert!((&mut first).now_or_never().is_none());
         let refused = listed(&service).now_or_never().expect("it is told at once");

@@ -7,12 +7,12 @@ use serde::Deserialize;
 use utoipa::IntoParams;
 use utoipa_axum::routes;
 
-use super::download::Opened;
+use super::download::ServedFile;
 use super::error::{ApiError, ApiResult};
 use super::parameters::{Id, Parameters};
+use super::permits::Permit;
 use super::resources::Resources;
-use super::spool::Received;
-use super::turns::Turn;
+use super::spool::SpooledBody;
 use super::{Service, body, conditional, json, time, with_header};
 use crate::library::upload::{ExportFormat, Statement, Upload, export, read_upload};
 use crate::schema::ErrorCode;
@@ -104,8 +104,8 @@ async fn upload(
     } else {
         return Err(body::unsupported(&kind, READ_HERE));
     };
-    let turn = service.parse_turn().await?;
-    let (row, is_new) = match take_in(&service, &turn, body, &statement, true).await? {
+    let permit = service.parse_permit().await?;
+    let (row, is_new) = match take_in(&service, &permit, body, &statement, true).await? {
         TakenIn::Known(row) => {
             service.store.keep_mesh(&row.id).await?;
             (row, false)
@@ -126,7 +126,7 @@ struct MeshForm {
     file: Vec<u8>,
 }
 
-fn single_part(mut parts: Vec<(String, Received)>) -> ApiResult<Received> {
+fn single_part(mut parts: Vec<(String, SpooledBody)>) -> ApiResult<SpooledBody> {
     match (parts.pop(), parts.len()) {
         (Some((_, part)), 0) => Ok(part),
         (last, others) => {
@@ -146,8 +146,8 @@ pub enum TakenIn {
 /// Looks whether bytes are known, and reads them when not, in the turn of their request.
 pub async fn take_in(
     service: &Service,
-    turn: &Turn,
-    mut body: Received,
+    permit: &Permit,
+    mut body: SpooledBody,
     statement: &Statement,
     standalone: bool,
 ) -> ApiResult<TakenIn> {
@@ -157,7 +157,7 @@ pub async fn take_in(
         return Ok(TakenIn::Known(row));
     }
     let statement = statement.clone();
-    let read = turn.compute(move || -> ApiResult<Upload> {
+    let read = permit.compute(move || -> ApiResult<Upload> {
         let bytes = body.read()?;
         Ok(read_upload(&bytes, hash, &statement, standalone)?)
     });
@@ -279,11 +279,11 @@ async fn content(
         return Ok(conditional::not_modified(&tag));
     }
     let file = if format == stored_as && !is_turned {
-        Opened::blob(&service, &blob).await?
+        ServedFile::blob(&service, &blob).await?
     } else {
-        let turn = service.parse_turn().await?;
+        let permit = service.parse_permit().await?;
         let mesh = service.library.open(row).await?;
-        Opened::made(&service, &turn, move || export(&mesh, format)).await?
+        ServedFile::made(&service, &permit, move || export(&mesh, format)).await?
     };
     conditional::file(&headers, file, (format.media_type(), &name), &tag)
 }

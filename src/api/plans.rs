@@ -8,7 +8,7 @@ use utoipa::ToSchema;
 use utoipa_axum::routes;
 
 use super::error::{ApiError, ApiResult};
-use super::idempotency::{Asked, NewId};
+use super::idempotency::{KeyedRequest, NewId};
 use super::paging::PageParameters;
 use super::parameters::{Id, Parameters, PlanPath};
 use super::resources::Resources;
@@ -97,7 +97,7 @@ async fn create(service: Service, Id(case): Id, request: Request) -> ApiResult {
     let headers = request.headers().clone();
     let document = read(&service, request).await?;
     let address = format!("/v1/cases/{case}/plans");
-    let asked = Asked::at(&service, &headers, &address, &[document.as_bytes()])?;
+    let asked = KeyedRequest::at(&service, &headers, &address, &[document.as_bytes()])?;
     let NewId { id, is_known, .. } = asked.reserve(&service).await?;
     let is_there = is_known && service.store.plan(&case, &id).await?.is_some();
     if !is_there && !service.store.add_plan(&case, &id, &document).await? {

@@ -29,7 +29,7 @@ pub struct Rates {
 
 /// What a client has left.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Left {
+pub struct RateAllowance {
     per_minute: u32,
     requests: u32,
     /// Seconds until the bucket is full again.
@@ -43,11 +43,11 @@ impl Rates {
     }
 
     /// Takes one request out of the bucket of a client; `None` where nobody is counted.
-    pub fn take(&self, client: Client) -> Result<Option<Left>, ApiError> {
+    pub fn take(&self, client: Client) -> Result<Option<RateAllowance>, ApiError> {
         self.take_at(client, Instant::now())
     }
 
-    fn take_at(&self, client: Client, now: Instant) -> Result<Option<Left>, ApiError> {
+    fn take_at(&self, client: Client, now: Instant) -> Result<Option<RateAllowance>, ApiError> {
         if self.per_minute == 0 {
             return Ok(None);
         }
@@ -64,7 +64,7 @@ impl Rates {
         }
         full.insert(client, after);
         let left = (WINDOW - missing).as_secs_f64() / one.as_secs_f64();
-        Ok(Some(Left {
+        Ok(Some(RateAllowance {
             per_minute: self.per_minute,
             requests: left as u32,
             reset_s: missing.as_secs() + 1,
@@ -79,7 +79,7 @@ impl Rates {
     }
 }
 
-impl Left {
+impl RateAllowance {
     /// Writes what is left into the answer.
     pub fn tell(&self, response: &mut Response) {
         let policy = format!("\"requests\";q={};w={}", self.per_minute, WINDOW.as_secs());

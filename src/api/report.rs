@@ -6,7 +6,7 @@ use serde::Deserialize;
 use utoipa::{IntoParams, ToSchema};
 use utoipa_axum::routes;
 
-use super::download::Opened;
+use super::download::ServedFile;
 use super::error::{ApiError, ApiResult};
 use super::guard::preferred;
 use super::parameters::{Id, Parameters, id as spelled};
@@ -126,7 +126,7 @@ async fn report(
         if conditional::is_known(&headers, &row.blob) {
             return Ok(conditional::not_modified(&row.blob));
         }
-        let file = Opened::blob(&service, &row.blob).await?;
+        let file = ServedFile::blob(&service, &row.blob).await?;
         let answer = conditional::file(&headers, file, (&row.media_type, &row.name), &row.blob)?;
         return Ok(told(answer, outcome));
     };

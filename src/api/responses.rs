@@ -10,9 +10,9 @@ use utoipa::IntoParams;
 use utoipa_axum::routes;
 
 use super::case_state::whole;
-use super::download::Opened;
+use super::download::ServedFile;
 use super::error::{ApiError, ApiResult};
-use super::foreseen::Foreseen;
+use super::foreseen::ResponseLookup;
 use super::guard::preferred;
 use super::parameters::{Id, Parameters, id as spelled};
 use super::resources::Resources;
@@ -96,14 +96,14 @@ impl ApplyParameters {
 }
 
 /// Which response a request means.
-struct Meant<'a> {
+struct ResponseReference<'a> {
     case: &'a str,
     job: Option<&'a str>,
-    foreseen: Option<Foreseen>,
+    foreseen: Option<ResponseLookup>,
 }
 
-async fn find(service: &Service, meant: Meant<'_>) -> ApiResult<FoundResponse> {
-    let Meant { case, job, foreseen } = meant;
+async fn find(service: &Service, meant: ResponseReference<'_>) -> ApiResult<FoundResponse> {
+    let ResponseReference { case, job, foreseen } = meant;
     let job = match job {
         Some(text) => {
             let unknown = || refusal(MissingResponse::NotOfCase { job: text.to_owned() });
@@ -111,7 +111,7 @@ async fn find(service: &Service, meant: Meant<'_>) -> ApiResult<FoundResponse> {
         }
         None => None,
     };
-    let found = match foreseen.and_then(Foreseen::fresh) {
+    let found = match foreseen.and_then(ResponseLookup::fresh) {
         Some(built) => service.responses.find_among(built, case, job.as_deref()).await,
         None => service.responses.find(case, job.as_deref()).await,
     };
@@ -163,7 +163,7 @@ async fn show(
     let offered = [DESCRIPTION_MEDIA_TYPE, COLUMNS_MEDIA_TYPE, GLB_MEDIA_TYPE];
     let wanted = preferred(&headers, &offered)?;
     let columns_file = parameters.columns_file()?;
-    let meant = Meant { case: &id, job: parameters.job.as_deref(), foreseen: None };
+    let meant = ResponseReference { case: &id, job: parameters.job.as_deref(), foreseen: None };
     let found = find(&service, meant).await?;
     let files = [DESCRIPTION_FILE, columns_file];
     let Some(file) = files.get(wanted) else {
@@ -178,7 +178,7 @@ async fn show(
     let response = if conditional::is_known(&headers, &row.blob) {
         conditional::not_modified(&row.blob)
     } else {
-        let file = Opened::blob(&service, &row.blob).await?;
+        let file = ServedFile::blob(&service, &row.blob).await?;
         conditional::file(&headers, file, (&row.media_type, &row.name), &row.blob)?
     };
     let response = with_header(response, header::VARY, "Accept");
@@ -191,10 +191,10 @@ async fn rest(service: &Service, found: &FoundResponse, headers: &HeaderMap) -> 
     let response = if conditional::is_known(headers, &tag) {
         conditional::not_modified(&tag)
     } else {
-        let turn = service.parse_turn().await?;
+        let permit = service.parse_permit().await?;
         let loaded = service.responses.load(found).await?;
         let written = move || loaded.rest_glb().map_err(not_written);
-        let file = Opened::made(service, &turn, written).await?;
+        let file = ServedFile::made(service, &permit, written).await?;
         conditional::file(headers, file, (GLB_MEDIA_TYPE, "rest.glb"), &tag)?
     };
     let response = with_header(response, header::VARY, "Accept");
@@ -238,15 +238,15 @@ async fn apply(
     let started = Instant::now();
     let offered = [DESCRIPTION_MEDIA_TYPE, COLUMNS_MEDIA_TYPE, GLB_MEDIA_TYPE];
     let media_type = offered[preferred(request.headers(), &offered)?];
-    let wanted = Wanted {
+    let wanted = ReplyOptions {
         media_type,
         range_mm: parameters.range_mm()?,
         check_skin: parameters.check_skin.unwrap_or(false),
     };
-    let foreseen = request.extensions().get::<Foreseen>().cloned();
+    let foreseen = request.extensions().get::<ResponseLookup>().cloned();
     let bytes = body::json(&service, request).await?;
     let document: ApplyDocument = strict::parse(&bytes, &service.limits)?;
-    let meant = Meant { case: &id, job: parameters.job.as_deref(), foreseen };
+    let meant = ResponseReference { case: &id, job: parameters.job.as_deref(), foreseen };
     let found = find(&service, meant).await?;
     let loaded = service.responses.load(&found).await?;
     let amounts = loaded.description.amounts(&document.plan, &service.limits)?;
@@ -278,13 +278,13 @@ async fn apply(
 
 /// The form of an answer, and what is looked at for it.
 #[derive(Clone, Copy)]
-struct Wanted {
+struct ReplyOptions {
     media_type: &'static str,
     range_mm: f64,
     check_skin: bool,
 }
 
-impl Wanted {
+impl ReplyOptions {
     /// The body of an answer.
     fn encoded(
         &self,

@@ -5,7 +5,7 @@ use serde::Deserialize;
 use utoipa::IntoParams;
 use utoipa_axum::routes;
 
-use super::download::Opened;
+use super::download::ServedFile;
 use super::error::{ApiError, ApiResult};
 use super::parameters::{FileName, Id, Parameters};
 use super::prefer::successful;
@@ -82,6 +82,6 @@ async fn file(
     if conditional::is_known(&headers, &row.blob) {
         return Ok(conditional::not_modified(&row.blob));
     }
-    let file = Opened::blob(&service, &row.blob).await?;
+    let file = ServedFile::blob(&service, &row.blob).await?;
     conditional::file(&headers, file, (&row.media_type, &row.name), &row.blob)
 }

@@ -12,7 +12,7 @@ use tower_http::catch_panic::CatchPanicLayer;
 pub fn router(service: Service) -> Router {
     let Resources { router, declared } = resources();
     let resources: Router<Service> = router.into();
-    let door = super::guard::Door { service: service.clone(), declared: declared.into() };
+    let door = super::guard::GuardState { service: service.clone(), declared: declared.into() };
     let pages = utoipa_swagger_ui::SwaggerUi::new("/docs")
         .config(utoipa_swagger_ui::Config::from("/openapi.json").validator_url("none"));
     let pages: Router<Service> = Router::from(pages).layer(from_fn(super::headers::of_pages));

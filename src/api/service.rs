@@ -1,17 +1,17 @@
 //! What every request may use, scoped to the tenant of its caller.
 
-use super::budget::{Budget, Held, Most, Owner};
+use super::budget::{Budget, ByteLimits, ByteReservation, Owner};
 use super::client::Client;
 use super::error::{ApiError, ApiResult};
 use super::hosts::Hosts;
+use super::permits::{FairSemaphore, Permit};
 use super::spool::Ground;
-use super::turns::{Turn, Turns};
 use crate::config::Config;
 use crate::library::meshes::Library;
 use crate::library::pictures::Pictures;
 use crate::library::responses::Responses;
 use crate::schema::Limits;
-use crate::store::{Noting, Store};
+use crate::store::{AuditIntent, Store};
 use crate::worker::process::slot_bytes;
 use std::sync::Arc;
 use std::time::Duration;
@@ -33,14 +33,14 @@ pub struct Service {
     pub library: Library,
     pub responses: Responses,
     pub pictures: Pictures,
-    parsing: Turns,
-    checking: Turns,
-    listing: Turns,
+    parsing: FairSemaphore,
+    checking: FairSemaphore,
+    listing: FairSemaphore,
     budget: Budget,
     /// Who asks, for what is counted for each client.
     client: Client,
     /// Of a request that may change something.
-    noting: Option<Noting>,
+    intent: Option<AuditIntent>,
     pub(super) rates: Arc<super::rate::Rates>,
     /// Who is believed, where no key is asked for.
     pub(super) hosts: Option<Arc<Hosts>>,
@@ -79,67 +79,67 @@ impl Service {
             store: store.with_most_waiting(limits.waiting_requests),
             library,
             streams: super::streams::Streams::new(limits.event_streams),
-            parsing: Turns::new("parse", PARSED_AT_ONCE, waiting),
-            checking: Turns::new("check", CHECKED_AT_ONCE, waiting),
-            listing: Turns::new("list", LISTED_AT_ONCE, waiting),
-            budget: Budget::new(Most {
+            parsing: FairSemaphore::new("parse", PARSED_AT_ONCE, waiting),
+            checking: FairSemaphore::new("check", CHECKED_AT_ONCE, waiting),
+            listing: FairSemaphore::new("list", LISTED_AT_ONCE, waiting),
+            budget: Budget::new(ByteLimits {
                 of_process: config.bodies_bytes.max(limits.client_bodies_bytes),
                 of_client: limits.client_bodies_bytes,
             }),
             client: Client::named(""),
-            noting: None,
+            intent: None,
             rates: Arc::new(super::rate::Rates::new(limits.requests_per_minute)),
             config: Arc::new(config),
         }
     }
 
-    /// The same service in the hand of a tenant, asked by one of its clients; what may change something is noted.
-    pub(super) fn in_hand_of(
+    /// The same service scoped to a tenant, asked by one of its clients; what may change something is noted.
+    pub(super) fn scoped_to(
         &self,
         tenant: &str,
         client: Client,
-        noting: Option<Noting>,
+        intent: Option<AuditIntent>,
     ) -> Service {
         Service {
-            store: self.store.asked_by(tenant, noting.as_ref()),
+            store: self.store.asked_by(tenant, intent.as_ref()),
             library: self.library.of_tenant(tenant),
             responses: self.responses.of_tenant(tenant),
             client,
-            noting,
+            intent,
             ..self.clone()
         }
     }
 
     /// The turn of this request to parse a mesh or to write one: each may take several times its size in memory, which is
     /// held until the turn is over.
-    pub(super) async fn parse_turn(&self) -> ApiResult<Turn> {
-        self.parsing.turn(self.store.tenant()).await
+    pub(super) async fn parse_permit(&self) -> ApiResult<Permit> {
+        self.parsing.acquire(self.store.tenant()).await
     }
 
     /// The turn of this request to check a job or a case, which needs meshes that are parsed already, or small ones.
-    pub(super) async fn check_turn(&self) -> ApiResult<Turn> {
-        self.checking.turn(self.store.tenant()).await
+    pub(super) async fn check_permit(&self) -> ApiResult<Permit> {
+        self.checking.acquire(self.store.tenant()).await
     }
 
     /// The turn of this request to list jobs, whose places are counted among all that wait: those who list without a pause
     /// leave the database and the processors to others. Where a database answers late, who waits is told to come back.
-    pub(super) async fn list_turn(&self) -> ApiResult<Turn> {
-        let turn = self.listing.turn(self.store.tenant());
-        tokio::time::timeout(LIST_PATIENCE, turn)
+    pub(super) async fn list_permit(&self) -> ApiResult<Permit> {
+        let permit = self.listing.acquire(self.store.tenant());
+        tokio::time::timeout(LIST_PATIENCE, permit)
             .await
             .unwrap_or_else(|_| Err(ApiError::out_of_reach()))
     }
 
     /// Until the client of a request has gone for which something was changed. Any other ends with its client.
     pub(super) async fn client_has_gone(&self) {
-        match &self.noting {
-            Some(noting) => noting.left().await,
+        match &self.intent {
+            Some(intent) => intent.left().await,
             None => std::future::pending().await,
         }
     }
 
     /// The bytes of a request, none so far.
-    pub(super) fn hold(&self) -> Held {
+    pub(super) fn hold(&self) -> ByteReservation {
         let tenant = self.store.tenant().into();
         self.budget.hold(Owner { tenant, client: self.client.clone() })
     }

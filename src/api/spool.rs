@@ -8,7 +8,7 @@ use std::sync::Arc;
 use bytes::{Bytes, BytesMut};
 use sha2::{Digest, Sha256};
 
-use super::budget::Held;
+use super::budget::ByteReservation;
 use super::error::{ApiError, ApiResult};
 use crate::schema::wire::canonical::hex;
 use crate::store::{Store, StoreError};
@@ -38,7 +38,7 @@ impl Ground {
 /// A body that comes.
 pub struct Spool {
     ground: Ground,
-    held: Arc<Held>,
+    held: Arc<ByteReservation>,
     buffer: BytesMut,
     hasher: Sha256,
     file: Option<File>,
@@ -46,11 +46,11 @@ pub struct Spool {
 }
 
 /// A body that has come.
-pub struct Received {
+pub struct SpooledBody {
     content: Content,
     pub bytes: u64,
     pub sha256: [u8; 32],
-    _held: Arc<Held>,
+    _held: Arc<ByteReservation>,
 }
 
 enum Content {
@@ -66,7 +66,7 @@ struct Batch {
 }
 
 impl Spool {
-    pub fn new(ground: Ground, held: Arc<Held>) -> Spool {
+    pub fn new(ground: Ground, held: Arc<ByteReservation>) -> Spool {
         let (buffer, hasher) = (BytesMut::new(), Sha256::new());
         Spool { ground, held, buffer, hasher, file: None, bytes: 0 }
     }
@@ -93,7 +93,7 @@ impl Spool {
     }
 
     /// All of it.
-    pub async fn finish(mut self) -> ApiResult<Received> {
+    pub async fn finish(mut self) -> ApiResult<SpooledBody> {
         let content = if self.bytes <= IN_MEMORY as u64 && self.file.is_none() {
             let bytes = self.buffer.split().freeze();
             self.hasher.update(&bytes);
@@ -103,7 +103,7 @@ impl Spool {
             Content::File(self.file.take().ok_or_else(|| ApiError::internal("a lost file"))?)
         };
         let sha256 = self.hasher.finalize().into();
-        Ok(Received { content, bytes: self.bytes, sha256, _held: self.held })
+        Ok(SpooledBody { content, bytes: self.bytes, sha256, _held: self.held })
     }
 }
 
@@ -119,7 +119,7 @@ impl Batch {
     }
 }
 
-impl Received {
+impl SpooledBody {
     /// All of its bytes. Reads a file: not for an async thread.
     pub fn read(&mut self) -> Result<Bytes, StoreError> {
         match &mut self.content {

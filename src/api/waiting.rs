@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 
 use super::Service;
 use super::accepted::{Accepted, in_spec, require_compared};
-use super::case_state::Awaited;
+use super::case_state::PendingCase;
 use super::error::{ApiError, ApiResult};
 use super::parameters::id;
 use crate::jobs::{JobInput, OptimiseInput, PredictInput, ResponseInput};
@@ -23,7 +23,7 @@ use mechanics::mesh::Frame;
 /// A case that waits for its mesh.
 pub struct Waiting<'a> {
     pub case: &'a str,
-    pub awaited: Awaited,
+    pub awaited: PendingCase,
 }
 
 impl Waiting<'_> {
@@ -40,7 +40,7 @@ impl Waiting<'_> {
         let asked = json!({ "plan": to_value(&plan.unnamed()), "spec": spec.content() });
         let (case, tags) = (to_come(), spec.tags.clone());
         let input = PredictInput { job: None, queue_s: None, case, plan, spec };
-        self.accept(service, &JobInput::Predict(input), Asked { asked, tags, named }).await
+        self.accept(service, &JobInput::Predict(input), JobRequest { asked, tags, named }).await
     }
 
     pub async fn response(self, service: &Service, spec: ResponseDocument) -> ApiResult<NewJob> {
@@ -50,7 +50,7 @@ impl Waiting<'_> {
         faults.into_result().map_err(in_spec)?;
         let (asked, tags) = (json!({ "spec": spec.content() }), spec.tags.clone());
         let input = ResponseInput { job: None, queue_s: None, case: to_come(), spec };
-        let asked = Asked { asked, tags, named: Vec::new() };
+        let asked = JobRequest { asked, tags, named: Vec::new() };
         self.accept(service, &JobInput::Response(input), asked).await
     }
 
@@ -63,7 +63,7 @@ impl Waiting<'_> {
         let named = spec.surfaces_mut().into_iter().map(|id| id.clone()).collect();
         let (asked, tags) = (json!({ "spec": spec.content() }), spec.tags.clone());
         let input = OptimiseInput { job: None, queue_s: None, case: to_come(), spec };
-        self.accept(service, &JobInput::Optimise(input), Asked { asked, tags, named }).await
+        self.accept(service, &JobInput::Optimise(input), JobRequest { asked, tags, named }).await
     }
 
     /// Checks what needs no mesh, in the places where it stands on a case that has one.
@@ -92,8 +92,13 @@ impl Waiting<'_> {
         Ok(faults.into_result().map_err(in_spec)?)
     }
 
-    async fn accept(self, service: &Service, input: &JobInput, of: Asked) -> ApiResult<NewJob> {
-        let Asked { asked, tags, named } = of;
+    async fn accept(
+        self,
+        service: &Service,
+        input: &JobInput,
+        of: JobRequest,
+    ) -> ApiResult<NewJob> {
+        let JobRequest { asked, tags, named } = of;
         // Others are names of bones that the case will have.
         let mut mesh_ids = Vec::new();
         for mesh in named.iter().filter_map(|name| id(name)) {
@@ -117,7 +122,7 @@ impl Waiting<'_> {
 }
 
 /// What a job asks for.
-struct Asked {
+struct JobRequest {
     /// All of it that decides the result, but for the case.
     asked: Value,
     tags: Vec<String>,

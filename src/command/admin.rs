@@ -8,7 +8,7 @@ use super::settings::Arguments as Settings;
 use crate::config::Config;
 use crate::schema::key::{KeyDocument, RETENTION_DAYS, TENANT_NAMES, is_tenant, scopes_of};
 use crate::schema::wire::problem::Problem;
-use crate::store::{AuditRow, Chain, DEFAULT_TENANT, Deed, Findings, Store, StoreError};
+use crate::store::{AuditRow, AuditedAction, Chain, DEFAULT_TENANT, Findings, Store, StoreError};
 
 /// Rows of the audit log that are read together.
 const AUDIT_ROWS: i64 = 1000;
@@ -178,9 +178,9 @@ pub fn run(arguments: &Arguments) -> Result<(), AdminError> {
             Command::Key { command } => key(command).await,
             Command::Retention { tenant, days, settings } => {
                 let store = open(settings).await?.of_tenant(tenant);
-                let (deed, retained) =
-                    (store.deed(COMMAND, "admin retention", ""), store.retain(*days));
-                store.noted(deed, retained, |_| None).await?;
+                let (audited, retained) =
+                    (store.audited_action(COMMAND, "admin retention", ""), store.retain(*days));
+                store.noted(audited, retained, |_| None).await?;
                 let kept =
                     days.map_or("until it is erased".to_owned(), |days| format!("{days} days"));
                 println!("what {tenant} does not change is kept {kept}");
@@ -210,7 +210,9 @@ async fn key(command: &KeyCommand) -> Result<(), AdminError> {
             let store = open(settings).await?.of_tenant(tenant);
             let made = store.make_key(&wanted);
             let key = store
-                .noted(store.deed(COMMAND, "admin key new", ""), made, |key| Some(&key.id))
+                .noted(store.audited_action(COMMAND, "admin key new", ""), made, |key| {
+                    Some(&key.id)
+                })
                 .await?;
             println!("{}", key.text);
             Ok(())
@@ -221,8 +223,9 @@ async fn key(command: &KeyCommand) -> Result<(), AdminError> {
         KeyCommand::Rotate { tenant, id, overlap_h, settings } => {
             let store = open(settings).await?.of_tenant(tenant);
             let rotated = store.rotate_key(id, *overlap_h);
-            let key =
-                store.noted(store.deed(COMMAND, "admin key rotate", id), rotated, |_| None).await?;
+            let key = store
+                .noted(store.audited_action(COMMAND, "admin key rotate", id), rotated, |_| None)
+                .await?;
             let key = key.ok_or_else(|| no_key(id))?;
             println!("{}", key.text);
             Ok(())
@@ -230,7 +233,10 @@ async fn key(command: &KeyCommand) -> Result<(), AdminError> {
         KeyCommand::Revoke { tenant, id, settings } => {
             let store = open(settings).await?.of_tenant(tenant);
             let revoked = store.revoke_key(id);
-            if !store.noted(store.deed(COMMAND, "admin key revoke", id), revoked, |_| None).await? {
+            if !store
+                .noted(store.audited_action(COMMAND, "admin key revoke", id), revoked, |_| None)
+                .await?
+            {
                 return Err(no_key(id));
             }
             println!("{id} is not let in any more");
@@ -273,8 +279,8 @@ async fn audit(store: &Store, mut after: i64) -> Result<(), AdminError> {
         let rows = store.audit(after, "", AUDIT_ROWS).await?;
         let Some(last) = rows.last() else { break };
         after = last.number;
-        for AuditRow { number, at, deed, outcome, .. } in &rows {
-            let Deed { tenant, actor, action, object, request } = deed;
+        for AuditRow { number, at, audited, outcome, .. } in &rows {
+            let AuditedAction { tenant, actor, action, object, request } = audited;
             println!(
                 "{number} {at} {tenant:?} {actor} {action:?} {object:?} {outcome} {request:?}"
             );

@@ -9,7 +9,7 @@ use super::documents::read;
 use super::failure::CommandError;
 use super::files::{FileSource, ScaleArguments};
 use super::screen::{print_files, print_warnings, work_in_sight};
-use crate::jobs::{CohortInput, JobInput, Workplace};
+use crate::jobs::{CohortInput, JobContext, JobInput};
 use crate::schema::case::document::LengthUnit;
 use crate::schema::cohort::document::TwinsDocument;
 use crate::schema::cohort::result::CohortResultDocument;
@@ -77,7 +77,7 @@ pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
     let limits = Limits::default();
     let sources = FileSource::new(&PathBuf::new(), LengthUnit::Mm, ScaleArguments::default());
     let input = JobInput::Cohort(input);
-    let place = Workplace { sources: &sources, limits: &limits, out: &arguments.out };
+    let place = JobContext { sources: &sources, limits: &limits, out: &arguments.out };
     let done = work_in_sight(&input, &place)?;
     if let Some(cohort) = &done.result.cohort {
         print_cohort(cohort);

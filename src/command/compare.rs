@@ -9,7 +9,7 @@ use super::documents::read;
 use super::failure::CommandError;
 use super::files::{FileSource, ScaleArguments, UnitArgument, relative};
 use super::screen::{print_files, print_warnings, work_in_sight};
-use crate::jobs::{CompareInput, JobInput, Workplace};
+use crate::jobs::{CompareInput, JobContext, JobInput};
 use crate::schema::compare::document::{
     AlignDocument, AlignMethod, CompareDocument, CompareKind, MeshReference, NodeWise,
     PlaceDocument, SurfaceReference,
@@ -115,7 +115,7 @@ pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
     let sources = FileSource::new(&PathBuf::new(), arguments.units.unit(), arguments.scale);
     let spec = arguments.document()?;
     let input = JobInput::Compare(CompareInput { job: None, queue_s: None, spec });
-    let place = Workplace { sources: &sources, limits: &limits, out: &arguments.out };
+    let place = JobContext { sources: &sources, limits: &limits, out: &arguments.out };
     let done = work_in_sight(&input, &place)?;
     print_result(&done.result);
     print_files(&done.files, &arguments.out);

@@ -114,7 +114,7 @@ async fn beside_the_service(
     Ok((workers, done.map(|_| ())))
 }
 
-async fn show(arguments: &Arguments, client: Client) -> Result<[Done; 3], DemoError> {
+async fn show(arguments: &Arguments, client: Client) -> Result<[FinishedJob; 3], DemoError> {
     let started = Instant::now();
 
     // 1. The half head, its plan, and what becomes of its skin.
@@ -163,7 +163,7 @@ fn setting(name: &str, bind: Option<&str>, data: &Path) -> Option<String> {
 }
 
 /// A job that is done.
-struct Done {
+struct FinishedJob {
     name: String,
     id: String,
     /// The case that it is about.
@@ -173,7 +173,7 @@ struct Done {
     results: Value,
 }
 
-impl Done {
+impl FinishedJob {
     fn path(&self) -> String {
         format!("/v1/jobs/{}", self.id)
     }
@@ -194,7 +194,7 @@ async fn predict(
     head: &HalfHead,
     volume: &VolumeMesh,
     (name, files): (&str, &[&str]),
-) -> Result<Done, DemoError> {
+) -> Result<FinishedJob, DemoError> {
     let bar = progress_bar(name);
     bar.set_message("upload");
     let started = Instant::now();
@@ -203,10 +203,14 @@ async fn predict(
     let case = text(&case, "POST /v1/cases", "id")?;
     let upload_s = started.elapsed().as_secs_f64();
     let done = run_job(client, name, &scene::prediction_of(&case, files), bar).await?;
-    Ok(Done { upload_s, ..done })
+    Ok(FinishedJob { upload_s, ..done })
 }
 
-async fn compare(client: &Client, coarse: &Done, skin: &Bytes) -> Result<Done, DemoError> {
+async fn compare(
+    client: &Client,
+    coarse: &FinishedJob,
+    skin: &Bytes,
+) -> Result<FinishedJob, DemoError> {
     let name = "comparison";
     let bar = progress_bar(name);
     let started = Instant::now();
@@ -215,7 +219,7 @@ async fn compare(client: &Client, coarse: &Done, skin: &Bytes) -> Result<Done, D
     let mesh = text(&mesh, "POST /v1/meshes", "id")?;
     let upload_s = started.elapsed().as_secs_f64();
     let done = run_job(client, name, &scene::comparison_of(&coarse.id, &mesh), bar).await?;
-    Ok(Done { upload_s, ..done })
+    Ok(FinishedJob { upload_s, ..done })
 }
 
 /// Posts a job and follows it to its end.
@@ -224,7 +228,7 @@ async fn run_job(
     name: &str,
     document: &Value,
     bar: ProgressBar,
-) -> Result<Done, DemoError> {
+) -> Result<FinishedJob, DemoError> {
     let mut state = client.post("/v1/jobs", document).await?;
     let id = text(&state, "POST /v1/jobs", "id")?;
     let known = state["deduplicated"].as_bool().unwrap_or(false);
@@ -249,7 +253,7 @@ async fn run_job(
     let known = if known { ", known from an earlier run" } else { "" };
     println!("{name}: {:.1} s{known}", bar.elapsed().as_secs_f64());
     let case = text(&state, "GET /v1/jobs/{id}", "case")?;
-    Ok(Done { name: name.to_owned(), id, case, upload_s: 0.0, results })
+    Ok(FinishedJob { name: name.to_owned(), id, case, upload_s: 0.0, results })
 }
 
 fn doing(state: &Value) -> String {
@@ -280,7 +284,7 @@ fn text(document: &Value, what: &'static str, member: &'static str) -> Result<St
 /// Writes the files of a job into a folder and tells where they are.
 async fn fetch_files(
     client: &Client,
-    job: &Done,
+    job: &FinishedJob,
     folder: &Path,
 ) -> Result<Vec<PathBuf>, DemoError> {
     std::fs::create_dir_all(folder)

@@ -26,7 +26,7 @@ pub struct CaseFile {
 }
 
 /// The documents that a command is about, and where they come from.
-pub struct Asked {
+pub struct CaseDocuments {
     pub file: CaseFile,
     /// The case file, or the mesh.
     pub path: PathBuf,
@@ -64,7 +64,7 @@ const OF_FILES: [&str; 10] = [
 /// from the spec of the case file, so that all commands compute the same tissue.
 pub fn spec_beside<T: DeserializeOwned>(
     path: Option<&Path>,
-    asked: &Asked,
+    asked: &CaseDocuments,
 ) -> Result<T, CommandError> {
     let mut value = path.map_or_else(|| Ok(Value::Object(Map::new())), read::<Value>)?;
     let stated = asked.file.stated();

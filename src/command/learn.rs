@@ -9,7 +9,7 @@ use super::documents::read;
 use super::failure::CommandError;
 use super::files::{FileSource, ScaleArguments};
 use super::screen::{print_files, print_warnings, work_in_sight};
-use crate::jobs::{JobInput, LearnInput, LearnedCase, PredictInput, Workplace};
+use crate::jobs::{JobContext, JobInput, LearnInput, LearnedCase, PredictInput};
 use crate::schema::case::document::LengthUnit;
 use crate::schema::learn::document::VirtualCohortDocument;
 use crate::schema::learn::result::{
@@ -91,7 +91,7 @@ pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
     let sources = FileSource::new(&folder, LengthUnit::Mm, ScaleArguments::default());
     let (job, queue_s, cohort) = (None, None, None);
     let input = JobInput::Learn(LearnInput { job, queue_s, spec, cohort, cases });
-    let place = Workplace { sources: &sources, limits: &limits, out: &arguments.out };
+    let place = JobContext { sources: &sources, limits: &limits, out: &arguments.out };
     let done = work_in_sight(&input, &place)?;
     if let Some(found) = &done.result.learning {
         print_learning(found);

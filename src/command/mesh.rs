@@ -12,7 +12,7 @@ use super::screen::{print_files, print_warnings, work_in_sight};
 use super::selection::{BoneArgument, bone};
 use super::watch::Watch;
 use crate::jobs::JobError;
-use crate::jobs::{JobInput, JobOutput, MadeMesh, MeshingInput, StoredMesh, Workplace};
+use crate::jobs::{JobContext, JobInput, JobOutput, MadeMesh, MeshingInput, StoredMesh};
 use crate::schema::case::document::LengthUnit;
 use crate::schema::meshing::labels::LabelsDocument;
 use crate::schema::meshing::result::MeshingResultDocument;
@@ -62,7 +62,7 @@ pub struct Arguments {
 }
 
 /// What is said beside a scan or the bone of surfaces.
-pub struct Beside<'a> {
+pub struct ScanContext<'a> {
     pub skin: Option<&'a str>,
     /// Its osteotomy cuts the bone.
     pub plan: Option<&'a Path>,
@@ -119,7 +119,7 @@ impl Meshed {
 pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
     let Arguments { scan, skin, units, plan, out, scale } = arguments;
     let (skin, plan, units, scale) = (skin.as_deref(), plan.as_deref(), *units, *scale);
-    let meshed = scan.mesh(&Beside { skin, plan, units, scale }, out)?;
+    let meshed = scan.mesh(&ScanContext { skin, plan, units, scale }, out)?;
     let path = out.join("case.json");
     write(&path, format!("{:#}\n", canonical::to_value(&meshed.file)))?;
     meshed.print(out);
@@ -135,14 +135,14 @@ impl ScanArguments {
 
     /// Meshes the scan, or what lies between skin and bone, into a folder: the case with the plan without its cuts. Paths of meshes
     /// lead from the folder.
-    pub fn mesh(&self, beside: &Beside, out: &Path) -> Result<Meshed, CommandError> {
+    pub fn mesh(&self, beside: &ScanContext, out: &Path) -> Result<Meshed, CommandError> {
         self.refuse_beside_image(beside)?;
         let plan = beside.plan.map(read::<PlanDocument>).transpose()?;
         let (spec, plan) = self.spec(beside.skin, plan)?;
         let limits = Limits::default();
         let units = beside.units.unwrap_or_default().unit();
         let sources = FileSource::new(Path::new(""), units, beside.scale);
-        let place = Workplace { sources: &sources, limits: &limits, out };
+        let place = JobContext { sources: &sources, limits: &limits, out };
         let input = MeshingInput { job: None, queue_s: None, spec, case: None };
         let _watch = Watch::start(&input.spec.budget);
         let done = work_in_sight(&JobInput::Meshing(input), &place)?;
@@ -158,7 +158,7 @@ impl ScanArguments {
     }
 
     /// Refuses what says of surfaces what an image says itself.
-    fn refuse_beside_image(&self, beside: &Beside) -> Result<(), CommandError> {
+    fn refuse_beside_image(&self, beside: &ScanContext) -> Result<(), CommandError> {
         let is_image = self.scan.is_some() || self.labels.is_some();
         let why = match (beside.skin.is_some(), beside.units.is_some()) {
             _ if !is_image => return Ok(()),

@@ -8,7 +8,7 @@ use super::documents::{spec_beside, write};
 use super::failure::CommandError;
 use super::scene::SceneArguments;
 use super::screen::{print_files, print_warnings, work_in_sight};
-use crate::jobs::{JobInput, OptimiseInput, Workplace};
+use crate::jobs::{JobContext, JobInput, OptimiseInput};
 use crate::schema::Limits;
 use crate::schema::optimise::result::OptimisationDocument;
 use crate::schema::wire::canonical;
@@ -36,7 +36,7 @@ pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
     let case = asked.file.case;
     let input = JobInput::Optimise(OptimiseInput { job: None, queue_s: None, case, spec });
     let limits = Limits::default();
-    let place = Workplace { sources: &asked.sources, limits: &limits, out: &arguments.out };
+    let place = JobContext { sources: &asked.sources, limits: &limits, out: &arguments.out };
     let done = work_in_sight(&input, &place)?;
     if let Some(found) = &done.result.optimisation {
         let plan = canonical::to_value(&found.plan);

@@ -10,7 +10,7 @@ use super::mesh::ScanArguments;
 use super::scene::{PlanArgument, SceneArguments};
 use super::screen::{print_check, print_files, print_warnings, work_in_sight};
 use super::watch::Watch;
-use crate::jobs::{JobInput, Workplace, check};
+use crate::jobs::{JobContext, JobInput, check};
 use crate::schema::Limits;
 use crate::schema::methods::MethodName;
 use crate::schema::predict::check::CheckDocument;
@@ -33,7 +33,7 @@ pub struct Arguments {
     plan: PlanArgument,
     #[command(flatten)]
     scan: ScanArguments,
-    /// The way of modelling soft tissue [default: auto, the cheapest that is expected to be near enough]
+    /// The model soft tissue [default: auto, the cheapest that is expected to be near enough]
     #[arg(long, value_name = "NAME", value_parser = word::<MethodName>, help_heading = "Tissue")]
     method: Option<MethodName>,
     /// Add what the mesh leaves out, as far as that is estimated, to the displacement
@@ -93,7 +93,7 @@ pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
     let before = check(&input, &asked.sources, &limits)?.document;
     print_check(&before);
 
-    let place = Workplace { sources: &asked.sources, limits: &limits, out: &arguments.out };
+    let place = JobContext { sources: &asked.sources, limits: &limits, out: &arguments.out };
     let done = work_in_sight(&JobInput::Predict(input), &place)?;
 
     let read_from = arguments.scene.case.as_deref();

@@ -8,7 +8,7 @@ use super::documents::{read, write};
 use super::failure::CommandError;
 use super::files::{FileSource, ScaleArguments, UnitArgument};
 use super::screen::{print_files, print_warnings, work_in_sight};
-use crate::jobs::{JobInput, ReproduceInput, Workplace};
+use crate::jobs::{JobContext, JobInput, ReproduceInput};
 use crate::schema::reproduce::result::{FitDocument, ReproductionDocument};
 use crate::schema::wire::canonical;
 use crate::schema::{Limits, ReproduceDocument};
@@ -41,7 +41,7 @@ pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
     let limits = Limits::default();
     let sources = FileSource::new(&PathBuf::new(), arguments.units.unit(), arguments.scale);
     let input = JobInput::Reproduce(ReproduceInput { job: None, queue_s: None, spec });
-    let place = Workplace { sources: &sources, limits: &limits, out: &arguments.out };
+    let place = JobContext { sources: &sources, limits: &limits, out: &arguments.out };
     let done = work_in_sight(&input, &place)?;
     if let Some(found) = &done.result.reproduction {
         let plan = canonical::to_value(&found.plan);

@@ -8,7 +8,7 @@ use super::documents::spec_beside;
 use super::failure::CommandError;
 use super::scene::SceneArguments;
 use super::screen::{print_files, print_warnings, work_in_sight};
-use crate::jobs::{JobInput, ResponseInput, Workplace};
+use crate::jobs::{JobContext, JobInput, ResponseInput};
 use crate::schema::{Limits, ResponseDocument};
 
 #[derive(Debug, Args)]
@@ -41,7 +41,7 @@ pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
     let case = asked.file.case;
     let input = JobInput::Response(ResponseInput { job: None, queue_s: None, case, spec });
     let limits = Limits::default();
-    let place = Workplace { sources: &asked.sources, limits: &limits, out: &arguments.out };
+    let place = JobContext { sources: &asked.sources, limits: &limits, out: &arguments.out };
     let done = work_in_sight(&input, &place)?;
     let provenance = &done.result.provenance;
     println!("time       {:.2} s; key {}", provenance.timing.total_s, provenance.spec_hash);

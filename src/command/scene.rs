@@ -4,10 +4,10 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 
-use super::documents::{Asked, CaseFile, read};
+use super::documents::{CaseDocuments, CaseFile, read};
 use super::failure::CommandError;
 use super::files::{FileSource, ScaleArguments, UnitArgument};
-use super::mesh::{Beside, Meshed, ScanArguments};
+use super::mesh::{Meshed, ScanArguments, ScanContext};
 use super::selection::{segment, selection};
 use crate::schema::case::document::{FrameName, SegmentDocument};
 use crate::schema::case::preset_name::PresetName;
@@ -101,7 +101,7 @@ enum ElementArgument {
 
 impl SceneArguments {
     /// The documents that the arguments name or stand for, with a plan where the command has one.
-    pub fn documents(&self, plan: Option<&Path>) -> Result<Asked, CommandError> {
+    pub fn documents(&self, plan: Option<&Path>) -> Result<CaseDocuments, CommandError> {
         let (file, path, folder) = match (&self.case, &self.mesh) {
             (Some(path), _) => {
                 let folder = path.parent().unwrap_or(Path::new("")).to_owned();
@@ -115,7 +115,7 @@ impl SceneArguments {
             }
         };
         let sources = FileSource::new(&folder, file.case.units, self.scale);
-        Ok(Asked { file, path: path.clone(), folder, sources })
+        Ok(CaseDocuments { file, path: path.clone(), folder, sources })
     }
 
     /// The documents of a scan or surfaces that are meshed first; the mesh is written into `mesh` of the folder for the result.
@@ -124,7 +124,7 @@ impl SceneArguments {
         scan: &ScanArguments,
         plan: Option<&Path>,
         out: &Path,
-    ) -> Result<Asked, CommandError> {
+    ) -> Result<CaseDocuments, CommandError> {
         if self.case.is_some() || self.mesh.is_some() {
             let detail = "give one of --case, --mesh, --scan and --bone: the last two become a mesh and a case";
             return Err(CommandError::Usage(detail.to_owned()));
@@ -132,12 +132,12 @@ impl SceneArguments {
         self.refuse_beside_scan()?;
         let folder = out.join("mesh");
         let (skin, units, scale) = (self.skin.as_deref(), self.units, self.scale);
-        let meshed = scan.mesh(&Beside { skin, plan, units, scale }, &folder)?;
+        let meshed = scan.mesh(&ScanContext { skin, plan, units, scale }, &folder)?;
         meshed.print(&folder);
         let Meshed { mut file, meshes, .. } = meshed;
         file.spec = self.spec();
         let sources = FileSource::new(&folder, file.case.units, self.scale).with(meshes);
-        Ok(Asked { file, path: folder.clone(), folder, sources })
+        Ok(CaseDocuments { file, path: folder.clone(), folder, sources })
     }
 
     /// Refuses what says of a mesh that is there what a meshing finds.

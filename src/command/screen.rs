@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
 
-use crate::jobs::{JobError, JobInput, JobOutput, Workplace, work};
+use crate::jobs::{JobContext, JobError, JobInput, JobOutput, work};
 use crate::schema::WarningDocument;
 use crate::schema::case::muscle_mixing::MusclesDocument;
 use crate::schema::predict::check::CheckDocument;
@@ -59,7 +59,7 @@ impl TerminalProgress {
 }
 
 /// Does a job, and shows where it is.
-pub fn work_in_sight(input: &JobInput, place: &Workplace) -> Result<JobOutput, JobError> {
+pub fn work_in_sight(input: &JobInput, place: &JobContext) -> Result<JobOutput, JobError> {
     let progress = TerminalProgress::start();
     let done = work(input, place, &progress);
     progress.finish();

@@ -152,7 +152,7 @@ impl Server {
         if tokio::time::timeout(deadline, served).await.is_err() {
             tracing::warn!("requests were cut off");
         }
-        if let Err(error) = store.tell_deeds().await {
+        if let Err(error) = store.write_outcomes().await {
             tracing::error!(%error, "the audit log is not told how requests ended");
         }
         Ok(self.workers)
@@ -274,8 +274,8 @@ fn keep_chained(store: &Store) {
 }
 
 async fn chain(store: &Store) -> Result<(), StoreError> {
-    store.tell_deeds().await?;
-    store.chain_deeds().await?;
+    store.write_outcomes().await?;
+    store.chain_actions().await?;
     Ok(())
 }
 

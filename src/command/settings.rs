@@ -28,24 +28,24 @@ pub enum Source {
 }
 
 /// Every setting that was given, and where.
-pub struct Given {
+pub struct SettingSources {
     flags: BTreeMap<&'static str, String>,
     file: BTreeMap<&'static str, String>,
 }
 
 impl Arguments {
     /// Reads the file of settings, if there is one.
-    pub fn given(&self) -> Result<Given, ConfigError> {
+    pub fn given(&self) -> Result<SettingSources, ConfigError> {
         let variable = || std::env::var_os(FILE_VARIABLE).map(PathBuf::from);
         let file = match self.file.clone().or_else(variable) {
             Some(path) => file::read(&path)?,
             None => BTreeMap::new(),
         };
-        Ok(Given { flags: self.flags.clone(), file })
+        Ok(SettingSources { flags: self.flags.clone(), file })
     }
 }
 
-impl Given {
+impl SettingSources {
     /// What was given for a setting.
     pub fn get(&self, name: &str) -> Option<String> {
         let setting = SETTINGS.iter().find(|setting| setting.name == name)?;

@@ -15,7 +15,7 @@ use super::study_screen::print_report;
 use super::sweep::{self, Sweep};
 use crate::jobs::study::ALL_METHODS;
 use crate::jobs::study::files::REPORT_JSON;
-use crate::jobs::{JobInput, StudyInput, Workplace};
+use crate::jobs::{JobContext, JobInput, StudyInput};
 use crate::schema::study::document::{
     CaseReference, PlanReference, SceneReference, StudyKind, ThresholdsDocument,
 };
@@ -110,7 +110,7 @@ pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
     let mut input = arguments.input()?;
     let limits = Limits::default();
     let sources = FileSource::of_cases(input.cases.values(), arguments.scale);
-    let place = Workplace { sources: &sources, limits: &limits, out: &arguments.out };
+    let place = JobContext { sources: &sources, limits: &limits, out: &arguments.out };
     let prepared = input.prepare(&sources, &limits)?;
     let kept = arguments.keep.as_ref().map(|folder| folder.join(prepared.rows_key + ".json"));
     if let Some(file) = kept.as_ref().filter(|file| file.exists()) {

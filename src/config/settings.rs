@@ -1,7 +1,7 @@
 //! The settings with their defaults, units and ranges, as `--help` and `facies config` show them and
 //! `docs/configuration.md` explains them.
 
-use super::places;
+use super::storage_locations;
 
 /// One setting as it is documented: the flag is `--name`, the variable `FACIES_NAME`.
 pub struct Setting {
@@ -23,7 +23,7 @@ impl Setting {
     pub fn shown(&self, value: &str) -> String {
         match self.name {
             "api-key" | "admin-key" if !value.is_empty() => "…".to_owned(),
-            "database" if !value.is_empty() => places::without_password(value),
+            "database" if !value.is_empty() => storage_locations::without_password(value),
             _ => value.to_owned(),
         }
     }

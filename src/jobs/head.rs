@@ -12,24 +12,24 @@ use mechanics::cephalometry::{
 };
 use mechanics::mesh::Vector;
 
-type Places = BTreeMap<String, Vector>;
+type NamedPoints = BTreeMap<String, Vector>;
 /// Where a segment of that name takes a point; nowhere where it stays.
-type Moved<'a> = &'a dyn Fn(&str, &Vector) -> Option<Vector>;
+type SegmentMotion<'a> = &'a dyn Fn(&str, &Vector) -> Option<Vector>;
 type BoneLandmarks = BTreeMap<String, BoneLandmarkOfCaseDocument>;
 
 /// Landmarks of bone in mm.
 #[derive(Default)]
 pub struct Bone {
-    pub before: Places,
-    pub planned: Option<Places>,
-    pub performed: Option<Places>,
+    pub before: NamedPoints,
+    pub planned: Option<NamedPoints>,
+    pub performed: Option<NamedPoints>,
 }
 
 /// Landmarks of skin in mm.
 #[derive(Default)]
 pub struct Skin {
-    pub before: Places,
-    pub predicted: Option<Places>,
+    pub before: NamedPoints,
+    pub predicted: Option<NamedPoints>,
 }
 
 /// A head by its landmarks, with norms that take the place of those that are built in.
@@ -56,18 +56,18 @@ impl Bone {
     }
 
     /// With what the movements of segments make of it.
-    pub fn planned(self, landmarks: &BoneLandmarks, moved: Moved) -> Self {
+    pub fn planned(self, landmarks: &BoneLandmarks, moved: SegmentMotion) -> Self {
         Bone { planned: Some(taken(landmarks, moved)), ..self }
     }
 
     /// With what an operation made of it.
-    pub fn performed(self, landmarks: &BoneLandmarks, moved: Moved) -> Self {
+    pub fn performed(self, landmarks: &BoneLandmarks, moved: SegmentMotion) -> Self {
         Bone { performed: Some(taken(landmarks, moved)), ..self }
     }
 }
 
 /// Each landmark where its segment takes it.
-fn taken(landmarks: &BoneLandmarks, moved: Moved) -> Places {
+fn taken(landmarks: &BoneLandmarks, moved: SegmentMotion) -> NamedPoints {
     let taken = |(name, own): (&String, &BoneLandmarkOfCaseDocument)| {
         let at = Vector::from(own.position_mm);
         let moved = own.segment.as_deref().and_then(|segment| moved(segment.trim(), &at));
@@ -79,7 +79,8 @@ fn taken(landmarks: &BoneLandmarks, moved: Moved) -> Places {
 impl Head {
     /// What a function of landmarks is at each stage; none where it is nothing before.
     fn at<T>(&self, tissue: Tissue, of: impl Fn(&Landmarks) -> Option<T>) -> Option<Stages<T>> {
-        let after = |places: &Option<Places>| places.as_ref().and_then(|own| of(&Landmarks(own)));
+        let after =
+            |places: &Option<NamedPoints>| places.as_ref().and_then(|own| of(&Landmarks(own)));
         Some(match tissue {
             Tissue::Bone => Stages {
                 before: of(&Landmarks(&self.bone.before))?,

@@ -33,7 +33,7 @@ pub use input::JobInput;
 pub use learn::{LearnInput, LearnedCase};
 pub use meshing::{MeshingInput, WaitingCase};
 pub use optimise::OptimiseInput;
-pub use output::{JobOutput, MadeMesh, Workplace};
+pub use output::{JobContext, JobOutput, MadeMesh};
 pub use predict::{CheckReport, PredictInput, check};
 pub use reproduce::ReproduceInput;
 pub use response::ResponseInput;

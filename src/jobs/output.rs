@@ -32,7 +32,7 @@ pub struct MadeMesh {
 }
 
 /// Where a job finds its meshes, what it is allowed, and where its files go.
-pub struct Workplace<'a> {
+pub struct JobContext<'a> {
     pub sources: &'a dyn MeshSource,
     pub limits: &'a Limits,
     pub out: &'a Path,

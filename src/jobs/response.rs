@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::clock::Observed;
 use super::failure::JobError;
-use super::output::{JobOutput, Workplace};
+use super::output::{JobContext, JobOutput};
 use super::source::MeshSource;
 use crate::jobs::predict::{PredictInput, Prepared};
 use crate::jobs::result::folder::ResultFolder;
@@ -108,7 +108,7 @@ impl ResponseInput {
 /// Builds a response and writes its files.
 pub fn response_job(
     input: &ResponseInput,
-    place: &Workplace,
+    place: &JobContext,
     progress: &dyn Progress,
 ) -> Result<JobOutput, JobError> {
     let clock = Observed::start(progress, input.spec.budget.wall_s);

@@ -8,7 +8,7 @@ use super::input::JobInput;
 use super::learn::learn_job;
 use super::meshing::meshing_job;
 use super::optimise::optimise_job;
-use super::output::{JobOutput, Workplace};
+use super::output::{JobContext, JobOutput};
 use super::predict::predict_job;
 use super::reproduce::reproduce_job;
 use super::response::response_job;
@@ -18,7 +18,7 @@ use mechanics::progress::Progress;
 /// Does a job. The same input and meshes give the same files, but for times in `result.json`.
 pub fn work(
     input: &JobInput,
-    place: &Workplace,
+    place: &JobContext,
     progress: &dyn Progress,
 ) -> Result<JobOutput, JobError> {
     match input {

@@ -39,10 +39,10 @@ pub struct Cache<T> {
     room: usize,
     used: usize,
     clock: u64,
-    kept: HashMap<String, Kept<T>>,
+    kept: HashMap<String, Entry<T>>,
 }
 
-struct Kept<T> {
+struct Entry<T> {
     thing: T,
     last_used: u64,
 }
@@ -66,7 +66,7 @@ impl<T: Clone + InMemory> Cache<T> {
         }
         self.clock += 1;
         self.used += size;
-        self.kept.insert(blob.to_owned(), Kept { thing, last_used: self.clock });
+        self.kept.insert(blob.to_owned(), Entry { thing, last_used: self.clock });
         while self.used > self.room {
             let oldest = self.kept.iter().min_by_key(|(_, kept)| kept.last_used);
             let Some(oldest) = oldest.map(|(blob, _)| blob.clone()) else { break };

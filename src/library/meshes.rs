@@ -79,7 +79,7 @@ impl Library {
         Library { store, cache: Arc::new(Mutex::new(MeshCache::new(room))) }
     }
 
-    /// The same library in the hand of a tenant.
+    /// The same library scoped to a tenant.
     pub fn of_tenant(&self, tenant: &str) -> Self {
         Library { store: self.store.of_tenant(tenant), cache: self.cache.clone() }
     }

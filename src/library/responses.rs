@@ -158,7 +158,7 @@ impl Responses {
         Responses { store, memory: Arc::new(Mutex::new(memory)) }
     }
 
-    /// The same responses in the hand of a tenant.
+    /// The same responses scoped to a tenant.
     pub fn of_tenant(&self, tenant: &str) -> Self {
         Responses { store: self.store.of_tenant(tenant), memory: self.memory.clone() }
     }

@@ -49,7 +49,7 @@ pub struct Upload {
 }
 
 /// Bytes that were read.
-struct Received {
+struct ReadBytes {
     read: ReadMesh,
     /// How many bytes, and their hash.
     bytes: u64,
@@ -66,7 +66,7 @@ pub fn read_upload(
     standalone: bool,
 ) -> Result<Upload, Problem> {
     let read = format::read(bytes, &ReadLimits::default()).map_err(|error| problem_of(&error))?;
-    let received = Received { read, bytes: bytes.len() as u64, sha256, told: Vec::new() };
+    let received = ReadBytes { read, bytes: bytes.len() as u64, sha256, told: Vec::new() };
     understand(received, statement, standalone)
 }
 
@@ -83,16 +83,16 @@ pub fn upload_made(mesh: &MadeMesh) -> Result<Upload, Problem> {
     };
     let (bytes, sha256) = (bytes.len() as u64, sha256_hex(&bytes));
     let told = mesh.told.clone();
-    understand(Received { read, bytes, sha256, told }, &statement, false)
+    understand(ReadBytes { read, bytes, sha256, told }, &statement, false)
 }
 
 /// What was read as a mesh that can be stored.
 fn understand(
-    received: Received,
+    received: ReadBytes,
     statement: &Statement,
     standalone: bool,
 ) -> Result<Upload, Problem> {
-    let Received { read, bytes, sha256, told } = received;
+    let ReadBytes { read, bytes, sha256, told } = received;
     let is_image = matches!(read.mesh, Mesh::Image(_));
     let units = statement.units.filter(|_| !is_image);
     // The frame stated for a form of several parts is that of the case, to which an image is turned.

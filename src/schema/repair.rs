@@ -72,7 +72,7 @@ pub struct UnprovenDocument {
 }
 
 /// A mesh in mm after a repair, and what that did.
-pub struct Mended {
+pub struct RepairedMesh {
     pub volume: Arc<VolumeMesh>,
     pub report: RepairReport,
 }
@@ -86,7 +86,12 @@ impl RepairDocument {
 
     /// A mesh in mm with its cells repaired, its boundary moved along itself only. `None` where faults were added: a mesh of
     /// which many cells are distorted is refused.
-    pub fn mended(&self, volume: &VolumeMesh, at: &Pointer, faults: &mut Faults) -> Option<Mended> {
+    pub fn mended(
+        &self,
+        volume: &VolumeMesh,
+        at: &Pointer,
+        faults: &mut Faults,
+    ) -> Option<RepairedMesh> {
         if !self.check(at, faults) {
             return None;
         }
@@ -107,11 +112,11 @@ impl RepairDocument {
         boundary.dedup();
         let bounds = Bounds::of(&mesh, self.boundary_mm, self.inner_mm).along(&mesh, &[&boundary]);
         let report = repair(&mut mesh, &bounds, &Unobserved);
-        Some(Mended { volume: Arc::new(mesh), report })
+        Some(RepairedMesh { volume: Arc::new(mesh), report })
     }
 }
 
-impl Mended {
+impl RepairedMesh {
     /// What a reader of a result has to know; nothing where all cells were valid.
     pub fn warning(&self) -> Option<Warning> {
         let RepairReport { unproven_before, nodes_moved, largest_move, unproven, .. } =

@@ -1,8 +1,8 @@
 //! The audit log: what was asked for that changes something. Rows are added, never changed; each carries a hash of
 //! itself and of the hash before it, so that a row that was changed, taken out or put in shows.
 
+use super::audited_action::AuditedAction;
 use super::database::{Row, query};
-use super::deed::Deed;
 use super::{Store, StoreError};
 use crate::schema::wire::canonical::sha256_hex;
 
@@ -12,7 +12,7 @@ pub struct AuditRow {
     pub number: i64,
     /// When it began, ms since 1970 by the clock of the database.
     pub at: i64,
-    pub deed: Deed,
+    pub audited: AuditedAction,
     /// HTTP status, `done`, `failed`, or `unknown` where nobody lived to tell.
     pub outcome: String,
     pub hash: String,
@@ -37,7 +37,7 @@ const AT_ONCE: i64 = 1000;
 impl AuditRow {
     /// Fields are told apart by a byte that none of them has.
     pub(super) fn hash_after(&self, previous: &str) -> String {
-        let Deed { tenant, actor, action, object, request } = &self.deed;
+        let AuditedAction { tenant, actor, action, object, request } = &self.audited;
         let (number, at) = (self.number.to_string(), self.at.to_string());
         let fields: [&str; 9] =
             [previous, &number, &at, tenant, actor, action, object, &self.outcome, request];
@@ -48,7 +48,7 @@ impl AuditRow {
         Ok(AuditRow {
             number: row.try_get("number")?,
             at: row.try_get("at")?,
-            deed: Deed::of_row(row)?,
+            audited: AuditedAction::of_row(row)?,
             outcome: row.try_get("outcome")?,
             hash: row.try_get("hash")?,
         })
@@ -64,8 +64,8 @@ impl Store {
         tenant: &str,
         limit: i64,
     ) -> Result<Vec<AuditRow>, StoreError> {
-        self.tell_deeds().await?;
-        self.chain_deeds().await?;
+        self.write_outcomes().await?;
+        self.chain_actions().await?;
         self.rows(after, tenant, limit).await
     }
 
@@ -86,8 +86,8 @@ impl Store {
 
     /// Looks at every row whether it follows from the one before.
     pub async fn check_audit(&self) -> Result<Chain, StoreError> {
-        self.tell_deeds().await?;
-        self.chain_deeds().await?;
+        self.write_outcomes().await?;
+        self.chain_actions().await?;
         let end = query(LOOK).fetch_optional(self.database.reader()).await?;
         let (number, hash): (i64, String) = match end {
             Some(end) => (end.try_get("number")?, end.try_get("hash")?),

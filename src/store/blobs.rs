@@ -13,7 +13,7 @@ use object_store::{ClientOptions, ObjectStore, ObjectStoreExt, PutPayload, Retry
 
 use super::StoreError;
 use super::files::FoundBlob;
-use crate::config::{BlobsPlace, Places, Secret};
+use crate::config::{BlobLocation, Secret, StorageLocations};
 use crate::schema::wire::canonical::sha256_hex;
 
 /// How long a store may take to accept a connection, and one request for a whole blob.
@@ -31,11 +31,11 @@ pub struct Blobs {
 }
 
 impl Blobs {
-    pub fn open(places: &Places) -> Result<Blobs, StoreError> {
+    pub fn open(places: &StorageLocations) -> Result<Blobs, StoreError> {
         match &places.blobs {
-            BlobsPlace::InData => Blobs::in_folder(&places.data.join("blobs")),
-            BlobsPlace::Folder(folder) => Blobs::in_folder(folder),
-            BlobsPlace::Bucket { bucket, prefix, settings } => {
+            BlobLocation::InData => Blobs::in_folder(&places.data.join("blobs")),
+            BlobLocation::Folder(folder) => Blobs::in_folder(folder),
+            BlobLocation::Bucket { bucket, prefix, settings } => {
                 Blobs::in_bucket(bucket, prefix, settings)
             }
         }

@@ -4,10 +4,10 @@ use super::blobs::Blobs;
 use super::database::{Address, Database};
 use super::error::StoreError;
 use super::notes::Notes;
-use super::open_deeds::OpenDeeds;
+use super::open_actions::OpenActions;
 use super::spare::Spare;
 use super::wake::{Changes, Wake};
-use crate::config::{DatabasePlace, Places};
+use crate::config::{DatabaseLocation, StorageLocations};
 use crate::store::database::schema::Migrated;
 use std::fs::File;
 use std::path::{Path, PathBuf};
@@ -24,7 +24,7 @@ const MOST_WAITING: usize = 256;
 /// Whose everything is where nobody says otherwise.
 pub const DEFAULT_TENANT: &str = "default";
 
-/// The database, the blobs and the folder for files under way, in the hand of one tenant: whoever asks for a case,
+/// The database, the blobs and the folder for files under way, scoped to one tenant: whoever asks for a case,
 /// a mesh or a job finds those of that tenant only.
 #[derive(Clone)]
 pub struct Store {
@@ -46,7 +46,7 @@ pub struct Store {
     pub(super) most_keys: i64,
     /// Requests of a tenant that may wait to write.
     pub(super) most_waiting: usize,
-    pub(super) open_deeds: OpenDeeds,
+    pub(super) open_actions: OpenActions,
     pub(super) notes: Notes,
     /// Whether nothing is begun any more.
     pub(super) closing: Arc<watch::Sender<bool>>,
@@ -56,18 +56,18 @@ pub struct Store {
 impl Store {
     /// Opens the store that has everything in one folder, which no other process may serve.
     pub async fn open(folder: &Path) -> Result<Store, StoreError> {
-        Store::connect(&Places::in_folder(folder)).await
+        Store::connect(&StorageLocations::in_folder(folder)).await
     }
 
     /// Opens the store. The data folder is that of this process alone.
-    pub async fn connect(places: &Places) -> Result<Store, StoreError> {
+    pub async fn connect(places: &StorageLocations) -> Result<Store, StoreError> {
         std::fs::create_dir_all(places.data.join("tmp"))?;
         let lock = lock(&places.data)?;
-        let shared = matches!(places.database, DatabasePlace::Server { .. });
+        let shared = matches!(places.database, DatabaseLocation::Server { .. });
         // Before the database is opened, which may need the room.
         let spare = (!shared).then(|| Arc::new(Spare::new(&places.data)));
         let database = Database::open(address(places)?).await?;
-        let open_deeds = OpenDeeds::default();
+        let open_actions = OpenActions::default();
         Ok(Store {
             tenant: DEFAULT_TENANT.into(),
             blobs: Blobs::open(places)?,
@@ -81,8 +81,8 @@ impl Store {
             last_written: Arc::default(),
             most_keys: MOST_KEYS,
             most_waiting: MOST_WAITING,
-            notes: Notes::of(open_deeds.clone()),
-            open_deeds,
+            notes: Notes::of(open_actions.clone()),
+            open_actions,
             closing: Arc::new(watch::Sender::new(false)),
             _lock: Arc::new(lock),
         })
@@ -99,7 +99,7 @@ impl Store {
     }
 
     /// Brings the schema of the database up to date.
-    pub async fn migrate(places: &Places) -> Result<Migrated, StoreError> {
+    pub async fn migrate(places: &StorageLocations) -> Result<Migrated, StoreError> {
         std::fs::create_dir_all(&places.data)?;
         // The embedded database is open in one process at a time.
         let _lock = lock(&places.data)?;
@@ -111,7 +111,7 @@ impl Store {
         Ok(Store { database: self.database.again().await?, ..self.clone() })
     }
 
-    /// The same store in the hand of another tenant.
+    /// The same store scoped to another tenant.
     pub fn of_tenant(&self, tenant: &str) -> Store {
         Store { tenant: tenant.into(), ..self.clone() }
     }
@@ -221,10 +221,10 @@ fn lock(folder: &Path) -> Result<File, StoreError> {
     Ok(lock)
 }
 
-fn address(places: &Places) -> Result<Address, StoreError> {
+fn address(places: &StorageLocations) -> Result<Address, StoreError> {
     Ok(match &places.database {
-        DatabasePlace::Embedded => Address::File(places.data.join("facies.db")),
-        DatabasePlace::Server { address, connections } => {
+        DatabaseLocation::Embedded => Address::File(places.data.join("facies.db")),
+        DatabaseLocation::Server { address, connections } => {
             Address::server(address.reveal(), *connections)?
         }
     })

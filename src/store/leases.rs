@@ -62,7 +62,7 @@ pub struct FileRow {
 
 /// A job whose worker was lost.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Reaped {
+pub struct LostJob {
     pub job: String,
     pub attempt: i64,
     /// False: it has lost its worker too often and has failed.
@@ -149,7 +149,7 @@ impl Store {
     }
 
     /// Publishes the result of an attempt, all of it or, when the job is not ours any more, nothing: bytes first, then one
-    /// transaction. The store has to be in the hand of the job's tenant.
+    /// transaction. The store has to be scoped to the job's tenant.
     pub async fn publish(&self, lease: &Lease, made: Published<'_>) -> Result<bool, StoreError> {
         let mut contents: Vec<Content> = Vec::new();
         for file in made.files {
@@ -256,7 +256,7 @@ impl Store {
 
     /// Takes jobs from workers that gave no sign of life for a lease. `error` is for those that this
     /// happened to `attempts` times.
-    pub async fn reap(&self, attempts: u32, error: &str) -> Result<Vec<Reaped>, StoreError> {
+    pub async fn reap(&self, attempts: u32, error: &str) -> Result<Vec<LostJob>, StoreError> {
         let mut transaction = self.database.begin().await?;
         let rows = query(REAP)
             .bind(i64::from(attempts))
@@ -273,7 +273,7 @@ impl Store {
         transaction.commit().await?;
         let mut reaped = Vec::with_capacity(rows.len());
         for row in &rows {
-            reaped.push(Reaped {
+            reaped.push(LostJob {
                 job: row.try_get("id")?,
                 attempt: row.try_get("attempt")?,
                 accepted_again: row.try_get::<String, _>("status")? == "accepted",

@@ -1,14 +1,14 @@
-//! The rows of deeds: one before a deed begins, which is told how it ended.
+//! The rows of audited actions: one before an audited action begins, which is told how it ended.
 
 use super::StoreError;
+use super::audited_action::AuditedAction;
 use super::database::{Transaction, query};
-use super::deed::Deed;
-use super::open_deeds::{End, Open};
+use super::open_actions::{End, Open};
 
 const BEGIN: &str = "INSERT INTO deeds (id, at, alive, tenant, actor, action, object, request) \
      VALUES ($1, (SELECT now_ms FROM clock), (SELECT now_ms FROM clock), $2, $3, $4, $5, $6) RETURNING at";
 const END: &str = "UPDATE deeds SET object = $2, outcome = $3 WHERE id = $1";
-/// Of a deed that has no row: it was over before it was noted, or its row was lost or is in the chain.
+/// Of an audited action that has no row: it was over before it was noted, or its row was lost or is in the chain.
 const WHOLE: &str = "INSERT INTO deeds (id, at, alive, tenant, actor, action, object, request, outcome) \
      VALUES ($1, COALESCE($2, (SELECT now_ms FROM clock)), (SELECT now_ms FROM clock), $3, $4, $5, $6, $7, $8) \
      ON CONFLICT (id) DO UPDATE SET outcome = excluded.outcome";
@@ -17,18 +17,19 @@ const CHAINED: &str = "SELECT 1 FROM audit \
      WHERE number > (SELECT number FROM audit_end WHERE one = 1) - 100000 AND tenant = $1 AND actor = $2 \
      AND action = $3 AND object = $4 AND request = $5 AND outcome = $6 AND at = COALESCE($7, at) LIMIT 1";
 
-/// Makes the row of a deed; when it begins, by the clock of the database.
+/// Makes the row of an audited action; when it begins, by the clock of the database.
 pub(super) async fn begin(
     transaction: &mut Transaction,
     id: &str,
-    deed: &Deed,
+    audited: &AuditedAction,
 ) -> Result<i64, StoreError> {
-    let row = query(BEGIN).bind(id).bind(&deed.tenant).bind(&deed.actor).bind(&deed.action);
-    let row = row.bind(&deed.object).bind(&deed.request).fetch_one(transaction).await?;
+    let row =
+        query(BEGIN).bind(id).bind(&audited.tenant).bind(&audited.actor).bind(&audited.action);
+    let row = row.bind(&audited.object).bind(&audited.request).fetch_one(transaction).await?;
     Ok(row.try_get("at")?)
 }
 
-/// Says in the row of a deed how it ended, once however often it is said.
+/// Says in the row of an audited action how it ended, once however often it is said.
 pub(super) async fn end(
     transaction: &mut Transaction,
     id: &str,
@@ -47,9 +48,9 @@ pub(super) async fn end(
     }
     if has_begun {
         // It is in the chain as unknown, or a crash took it: how it ended becomes a row of its own.
-        tracing::error!(request = %open.deed.request, "a deed had no row that could tell its end");
+        tracing::error!(request = %open.audited.request, "a deed had no row that could tell its end");
     }
-    let Deed { tenant, actor, action, request, .. } = &open.deed;
+    let AuditedAction { tenant, actor, action, request, .. } = &open.audited;
     let row = query(WHOLE).bind(id).bind(open.at).bind(tenant).bind(actor).bind(action);
     row.bind(&end.object).bind(request).bind(&end.outcome).execute(transaction).await?;
     Ok(())
@@ -60,7 +61,7 @@ async fn is_chained(
     open: &Open,
     end: &End,
 ) -> Result<bool, StoreError> {
-    let Deed { tenant, actor, action, request, .. } = &open.deed;
+    let AuditedAction { tenant, actor, action, request, .. } = &open.audited;
     let row = query(CHAINED).bind(tenant).bind(actor).bind(action).bind(&end.object);
     let row = row.bind(request).bind(&end.outcome).bind(open.at).fetch_optional(transaction);
     Ok(row.await?.is_some())
@@ -76,11 +77,11 @@ mod tests {
     async fn an_end_that_is_told_again_is_in_the_log_once() {
         let folder = tempfile::TempDir::new().unwrap();
         let store = Store::open(folder.path()).await.unwrap();
-        let deed = Deed { action: "posted".into(), ..Deed::default() };
+        let audited = AuditedAction { action: "posted".into(), ..AuditedAction::default() };
         let told = End { object: "job".into(), outcome: "201".into() };
-        let mut open = Open { deed, at: None, end: None, was_told: false };
+        let mut open = Open { audited, at: None, end: None, was_told: false };
         let mut transaction = store.database.begin().await.unwrap();
-        open.at = Some(begin(&mut transaction, "one", &open.deed).await.unwrap());
+        open.at = Some(begin(&mut transaction, "one", &open.audited).await.unwrap());
         transaction.commit().await.unwrap();
         for _ in 0..2 {
             let mut transaction = store.database.begin().await.unwrap();

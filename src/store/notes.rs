@@ -1,4 +1,4 @@
-//! Notes of deeds on their way into the database: all that wait are committed together, so that however many requests
+//! Notes of audited actions on their way into the database: all that wait are committed together, so that however many requests
 //! there are, they wait for one commit and not for one another.
 
 use std::collections::VecDeque;
@@ -7,39 +7,39 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use tokio::sync::oneshot;
 
 use super::StoreError;
+use super::audited_action::AuditedAction;
 use super::database::{Database, Transaction};
-use super::deed::Deed;
 use super::note_rows;
-use super::open_deeds::OpenDeeds;
+use super::open_actions::OpenActions;
 
 /// Most of them in one transaction, for whose end others wait.
 const AT_ONCE: usize = 100;
 
-/// Whether a deed is still to be begun; asked once, and where the answer is yes it is.
-pub(super) type Wanted = Box<dyn FnOnce() -> bool + Send + Sync>;
+/// Whether an audited action is still to be begun; asked once, and where the answer is yes it is.
+pub(super) type StartCondition = Box<dyn FnOnce() -> bool + Send + Sync>;
 
 /// What is to be noted.
 pub(super) enum Note {
-    Begin { id: String, deed: Deed },
+    Begin { id: String, audited: AuditedAction },
     End { id: String },
 }
 
-/// What is heard of a note. A deed that nobody wanted to be begun any more leaves its teller without an answer.
-pub(super) type Told = oneshot::Receiver<Result<(), StoreError>>;
+/// What is heard of a note. An audited action that nobody wanted to be begun any more leaves its teller without an answer.
+pub(super) type Acknowledgement = oneshot::Receiver<Result<(), StoreError>>;
 
-type Teller = oneshot::Sender<Result<(), StoreError>>;
+type Acknowledger = oneshot::Sender<Result<(), StoreError>>;
 
 /// A note that waits, and who hears of it.
 struct Waiter {
     note: Note,
-    is_wanted: Wanted,
-    teller: Teller,
+    is_wanted: StartCondition,
+    teller: Acknowledger,
 }
 
 /// Those that wait.
 #[derive(Clone, Default)]
 pub(super) struct Notes {
-    deeds: OpenDeeds,
+    open_actions: OpenActions,
     waiting: Arc<Mutex<Waiting>>,
 }
 
@@ -50,12 +50,17 @@ struct Waiting {
 }
 
 impl Notes {
-    pub fn of(deeds: OpenDeeds) -> Notes {
-        Notes { deeds, waiting: Arc::default() }
+    pub fn of(open_actions: OpenActions) -> Notes {
+        Notes { open_actions, waiting: Arc::default() }
     }
 
     /// Notes it with all that wait meanwhile.
-    pub fn note(&self, database: &Database, note: Note, is_wanted: Wanted) -> Told {
+    pub fn note(
+        &self,
+        database: &Database,
+        note: Note,
+        is_wanted: StartCondition,
+    ) -> Acknowledgement {
         let (teller, told) = oneshot::channel();
         self.lock().notes.push_back(Waiter { note, is_wanted, teller });
         if let Some(writing) = self.writing() {
@@ -74,7 +79,7 @@ impl Notes {
     /// How many wait for the same tenant to begin something.
     pub fn waiting(&self, tenant: &str) -> usize {
         let is_his = |waiter: &&Waiter| match &waiter.note {
-            Note::Begin { deed, .. } => deed.tenant == tenant && !waiter.teller.is_closed(),
+            Note::Begin { audited, .. } => audited.tenant == tenant && !waiter.teller.is_closed(),
             Note::End { .. } => false,
         };
         self.lock().notes.iter().filter(is_his).count()
@@ -95,7 +100,7 @@ struct Writing {
 impl Writing {
     async fn write(mut self, database: Database) {
         while let Some(group) = self.next() {
-            let (notes, tellers): (Vec<Note>, Vec<Teller>) = group.into_iter().unzip();
+            let (notes, tellers): (Vec<Note>, Vec<Acknowledger>) = group.into_iter().unzip();
             let written = self.write_some(&database, &notes).await.map_err(Arc::new);
             for teller in tellers {
                 // Whoever asked may have left.
@@ -105,7 +110,7 @@ impl Writing {
     }
 
     /// Those that are written next, without those that nobody wants any more.
-    fn next(&mut self) -> Option<Vec<(Note, Teller)>> {
+    fn next(&mut self) -> Option<Vec<(Note, Acknowledger)>> {
         let mut waiting = self.notes.lock();
         let count = waiting.notes.len().min(AT_ONCE);
         if count == 0 {
@@ -135,29 +140,29 @@ impl Writing {
         }
         transaction.commit().await?;
         for (id, at) in begun {
-            self.notes.deeds.began(id, at);
+            self.notes.open_actions.began(id, at);
         }
         for note in notes {
             if let Note::End { id } = note {
-                self.notes.deeds.forget(id);
+                self.notes.open_actions.forget(id);
             }
         }
         Ok(())
     }
 
-    /// When a deed begins, where it does.
+    /// When an audited action begins, where it does.
     async fn write_one<'a>(
         &self,
         transaction: &mut Transaction,
         note: &'a Note,
     ) -> Result<Option<(&'a str, i64)>, StoreError> {
         match note {
-            Note::Begin { id, deed } => {
-                let at = note_rows::begin(transaction, id, deed).await?;
+            Note::Begin { id, audited } => {
+                let at = note_rows::begin(transaction, id, audited).await?;
                 Ok(Some((id, at)))
             }
             Note::End { id } => {
-                if let Some(open) = self.notes.deeds.tell(id)
+                if let Some(open) = self.notes.open_actions.tell(id)
                     && let Some(end) = &open.end
                 {
                     note_rows::end(transaction, id, &open, end).await?;

@@ -92,17 +92,23 @@ impl Store {
             let store = self.of_tenant(&name);
             for case in store.old(OLD_CASES, age).await? {
                 let work = async { store.delete_case(&case, None).await.map(drop) };
-                store.noted(store.deed(RETENTION, "erase case", &case), work, |()| None).await?;
+                store
+                    .noted(store.audited_action(RETENTION, "erase case", &case), work, |()| None)
+                    .await?;
                 erased += 1;
             }
             for job in store.old(OLD_JOBS, age).await? {
                 let work = async { store.dismiss(&job).await.map(drop) };
-                store.noted(store.deed(RETENTION, "erase job", &job), work, |()| None).await?;
+                store
+                    .noted(store.audited_action(RETENTION, "erase job", &job), work, |()| None)
+                    .await?;
                 erased += 1;
             }
             for mesh in store.old(OLD_MESHES, age).await? {
                 let work = async { store.delete_mesh(&mesh).await.map(drop) };
-                store.noted(store.deed(RETENTION, "erase mesh", &mesh), work, |()| None).await?;
+                store
+                    .noted(store.audited_action(RETENTION, "erase mesh", &mesh), work, |()| None)
+                    .await?;
                 erased += 1;
             }
         }

@@ -12,7 +12,7 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 use serde_json::Value as Json;
 
-use super::database::{Place, Row, Transaction, Value, newest_step, query, query_of};
+use super::database::{Executor, Row, Transaction, Value, newest_step, query, query_of};
 use super::references::{Content, hold};
 use super::{Store, StoreError};
 
@@ -47,7 +47,7 @@ const MANIFEST: &str = "export.json";
 
 /// How much was moved.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Moved {
+pub struct TransferCounts {
     pub rows: usize,
     pub blobs: usize,
 }
@@ -76,7 +76,7 @@ enum Kind {
 
 impl Store {
     /// Writes everything into a new folder, as it is at this moment.
-    pub async fn export(&self, folder: &Path) -> Result<Moved, StoreError> {
+    pub async fn export(&self, folder: &Path) -> Result<TransferCounts, StoreError> {
         // It holds faces of patients.
         DirBuilder::new().mode(0o700).create(folder)?;
         std::fs::create_dir(folder.join("blobs"))?;
@@ -98,11 +98,11 @@ impl Store {
         }
         let text = serde_json::to_vec_pretty(&manifest).map_err(unreadable)?;
         write_durably(&folder.join(MANIFEST), &text)?;
-        Ok(Moved { rows: manifest.rows.values().sum(), blobs: manifest.blobs.len() })
+        Ok(TransferCounts { rows: manifest.rows.values().sum(), blobs: manifest.blobs.len() })
     }
 
     /// Takes in what was exported, all of it or nothing. Only into a deployment in which there is nothing.
-    pub async fn import(&self, folder: &Path) -> Result<Moved, StoreError> {
+    pub async fn import(&self, folder: &Path) -> Result<TransferCounts, StoreError> {
         let text = std::fs::read(folder.join(MANIFEST))?;
         let manifest: Manifest = serde_json::from_slice(&text).map_err(unreadable)?;
         if manifest.schema != newest_step() {
@@ -118,7 +118,7 @@ impl Store {
             stored.extend(self.put(&[content]).await?);
         }
         let mut transaction = self.database.begin().await?;
-        let mut moved = Moved { rows: 0, blobs: stored.len() };
+        let mut moved = TransferCounts { rows: 0, blobs: stored.len() };
         if !hold(&mut transaction, &stored).await? {
             return Err(StoreError::Contended);
         }
@@ -163,7 +163,7 @@ async fn export_table(
         write_line(&mut out, &values)
     };
     let all = query_of(format!("SELECT * FROM {table}")).patiently();
-    all.run(Place::Transaction(snapshot), &mut take).await?;
+    all.run(Executor::Transaction(snapshot), &mut take).await?;
     out.into_inner().map_err(std::io::IntoInnerError::into_error)?.sync_all()?;
     Ok(rows)
 }

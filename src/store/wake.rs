@@ -40,7 +40,7 @@ impl Wake {
         let here = broadcast::Sender::new(BACKLOG);
         let Some(pool) = server else { return Wake { here, there: None } };
         let (there, changed) = unbounded_channel();
-        let others = Others {
+        let others = PeerProcesses {
             pool: pool.clone(),
             // What this process signs its words with, so that it does not wake itself.
             name: uuid::Uuid::now_v7().to_string(),
@@ -92,12 +92,12 @@ impl Changes {
 }
 
 /// The other processes on the same database.
-struct Others {
+struct PeerProcesses {
     pool: PgPool,
     name: String,
 }
 
-impl Others {
+impl PeerProcesses {
     async fn talk(self, changed: UnboundedReceiver<Arc<str>>, here: broadcast::Sender<Arc<str>>) {
         tokio::select! {
             () = self.tell(changed) => {}

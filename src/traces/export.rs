@@ -80,7 +80,8 @@ struct Queue {
 impl Queue {
     fn new(exporter: impl SpanExporter + 'static) -> Queue {
         let waiting = Arc::<AtomicUsize>::default();
-        let counted = Counted { next: exporter, waiting: waiting.clone(), fails: false.into() };
+        let counted =
+            CountingExporter { next: exporter, waiting: waiting.clone(), fails: false.into() };
         let config = BatchConfigBuilder::default()
             .with_max_queue_size(QUEUE)
             .with_scheduled_delay(GATHERED)
@@ -116,13 +117,13 @@ impl SpanProcessor for Queue {
 
 /// An exporter whose failures are counted, and told when they begin and end.
 #[derive(Debug)]
-struct Counted<E> {
+struct CountingExporter<E> {
     next: E,
     waiting: Arc<AtomicUsize>,
     fails: AtomicBool,
 }
 
-impl<E: SpanExporter> SpanExporter for Counted<E> {
+impl<E: SpanExporter> SpanExporter for CountingExporter<E> {
     async fn export(&self, batch: Vec<SpanData>) -> OTelSdkResult {
         let spans = batch.len();
         let exported = self.next.export(batch).await;
@@ -164,9 +165,9 @@ mod tests {
 
     /// A collector that answers when it is told to.
     #[derive(Debug)]
-    struct Held(Mutex<Receiver<()>>);
+    struct StalledCollector(Mutex<Receiver<()>>);
 
-    impl SpanExporter for Held {
+    impl SpanExporter for StalledCollector {
         async fn export(&self, _batch: Vec<SpanData>) -> OTelSdkResult {
             // The other end is dropped to let everything go.
             let _ = self.0.lock().unwrap().recv();
@@ -196,7 +197,7 @@ mod tests {
     fn spans_beyond_the_queue_are_counted_and_nobody_waits_for_the_collector() {
         metrics::start().unwrap();
         let (let_go, held) = channel();
-        let queue = Queue::new(Held(held.into()));
+        let queue = Queue::new(StalledCollector(held.into()));
         let begun = Instant::now();
         for _ in 0..QUEUE + 7 {
             queue.on_end(span());

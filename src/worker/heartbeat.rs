@@ -107,18 +107,18 @@ impl Progress for RunningJob {
 }
 
 /// The jobs of this process by their lease.
-type Held = Arc<Mutex<HashMap<Lease, Arc<RunningJob>>>>;
+type RunningJobs = Arc<Mutex<HashMap<Lease, Arc<RunningJob>>>>;
 
 /// The thread that keeps leases alive, and takes jobs from workers that gave no sign of life.
 pub struct Heartbeat {
-    held: Held,
+    held: RunningJobs,
     stop: Option<Sender<()>>,
     thread: Option<JoinHandle<()>>,
 }
 
 impl Heartbeat {
     pub fn start(store: Store, config: &Config) -> Result<Heartbeat, StoreError> {
-        let held = Held::default();
+        let held = RunningJobs::default();
         let pulse = Pulse {
             held: held.clone(),
             lease: config.lease,
@@ -189,7 +189,7 @@ pub(super) fn worker_lost(attempts: u32, how: Option<&str>) -> String {
 }
 
 struct Pulse {
-    held: Held,
+    held: RunningJobs,
     lease: Duration,
     interval: Duration,
     attempts: u32,

@@ -19,10 +19,10 @@ pub struct Publication {
     /// The manifest, JSON.
     result: String,
     files: Vec<PublishedFile>,
-    meshes: Vec<Kept>,
+    meshes: Vec<MeshOutput>,
 }
 
-struct Kept {
+struct MeshOutput {
     what: MadeName,
     name: Option<String>,
     mesh: NewMesh,
@@ -49,7 +49,7 @@ impl Publication {
         }
         let mut meshes = Vec::with_capacity(self.meshes.len());
         let mut kept = Vec::with_capacity(self.meshes.len());
-        for Kept { what, name, mesh } in &self.meshes {
+        for MeshOutput { what, name, mesh } in &self.meshes {
             let known = store.mesh_by_content(&mesh.sha256, &mesh.options).await?;
             let made = MadeMesh { mesh: mesh.clone(), known };
             kept.push(KeptMeshDocument::new(*what, name.clone(), made.id()));
@@ -126,10 +126,10 @@ fn read_file(file: FinishedFile) -> std::io::Result<PublishedFile> {
     Ok(PublishedFile { name: file.name, media_type: file.media_type, sha256, bytes })
 }
 
-fn read_mesh(FinishedMesh { mesh, path }: FinishedMesh) -> std::io::Result<Kept> {
+fn read_mesh(FinishedMesh { mesh, path }: FinishedMesh) -> std::io::Result<MeshOutput> {
     let bytes = Bytes::from(std::fs::read(path)?);
     let MeshFile { what, name, id, sha256, options, report, .. } = mesh;
     let blob = sha256_hex(&bytes);
     let mesh = NewMesh { id, sha256, options, blob, bytes, standalone: false, report };
-    Ok(Kept { what, name, mesh })
+    Ok(MeshOutput { what, name, mesh })
 }

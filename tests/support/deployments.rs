@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::sync::OnceLock;
 
-use facies::config::{BlobsPlace, DatabasePlace, Places, Secret};
+use facies::config::{BlobLocation, DatabaseLocation, Secret, StorageLocations};
 use facies::store::Store;
 use hyper_util::rt::{TokioExecutor, TokioIo};
 use s3s::auth::SimpleAuth;
@@ -178,13 +178,13 @@ async fn serve_objects(root: &Path, told: std::sync::mpsc::Sender<std::net::Sock
 /// Rows and bytes of one test.
 pub struct Deployment {
     folder: TempDir,
-    pub places: Places,
+    pub places: StorageLocations,
 }
 
 impl Deployment {
     pub async fn embedded() -> Deployment {
         let folder = TempDir::new().unwrap();
-        Deployment { places: Places::in_folder(&folder.path().join("data")), folder }
+        Deployment { places: StorageLocations::in_folder(&folder.path().join("data")), folder }
     }
 
     /// PostgreSQL and S3, with the tables made.
@@ -203,13 +203,13 @@ impl Deployment {
     pub fn on(address: &str) -> Deployment {
         let folder = TempDir::new().unwrap();
         let secret = |(name, value): &(String, String)| (name.clone(), Secret::new(value.clone()));
-        let places = Places {
+        let places = StorageLocations {
             data: folder.path().join("data"),
-            database: DatabasePlace::Server {
+            database: DatabaseLocation::Server {
                 address: Secret::new(address.to_owned()),
                 connections: 8,
             },
-            blobs: BlobsPlace::Bucket {
+            blobs: BlobLocation::Bucket {
                 bucket: BUCKET.into(),
                 prefix: uuid::Uuid::now_v7().to_string(),
                 settings: object_store().iter().map(secret).collect(),
@@ -225,10 +225,10 @@ impl Deployment {
     /// The store as another process sees it: one on another host, where hosts share one.
     pub async fn again(&self, store: &Store) -> Store {
         match self.places.database {
-            DatabasePlace::Embedded => store.again().await.unwrap(),
-            DatabasePlace::Server { .. } => {
+            DatabaseLocation::Embedded => store.again().await.unwrap(),
+            DatabaseLocation::Server { .. } => {
                 let data = self.folder.path().join(uuid::Uuid::now_v7().to_string());
-                Store::connect(&Places { data, ..self.places.clone() }).await.unwrap()
+                Store::connect(&StorageLocations { data, ..self.places.clone() }).await.unwrap()
             }
         }
     }
@@ -236,8 +236,8 @@ impl Deployment {
     /// What an administrator does behind the service's back.
     pub async fn execute(&self, sql: &str) {
         match &self.places.database {
-            DatabasePlace::Server { address, .. } => execute_on(address.reveal(), sql).await,
-            DatabasePlace::Embedded => {
+            DatabaseLocation::Server { address, .. } => execute_on(address.reveal(), sql).await,
+            DatabaseLocation::Embedded => {
                 std::fs::create_dir_all(&self.places.data).unwrap();
                 let options = sqlx::sqlite::SqliteConnectOptions::new()
                     .filename(self.places.data.join("facies.db"))
@@ -252,11 +252,11 @@ impl Deployment {
     /// The first column of a query, as texts.
     pub async fn texts(&self, sql: &'static str) -> Vec<String> {
         match &self.places.database {
-            DatabasePlace::Server { address, .. } => {
+            DatabaseLocation::Server { address, .. } => {
                 let mut connection = PgConnection::connect(address.reveal()).await.unwrap();
                 sqlx::query_scalar(sql).fetch_all(&mut connection).await.unwrap()
             }
-            DatabasePlace::Embedded => {
+            DatabaseLocation::Embedded => {
                 let file = self.places.data.join("facies.db");
                 let options = sqlx::sqlite::SqliteConnectOptions::new().filename(file);
                 let mut connection = SqliteConnection::connect_with(&options).await.unwrap();
@@ -268,7 +268,7 @@ impl Deployment {
     /// The files in which the bytes lie.
     pub fn objects(&self) -> Vec<PathBuf> {
         let root = match &self.places.blobs {
-            BlobsPlace::Bucket { prefix, .. } => objects_root().join(BUCKET).join(prefix),
+            BlobLocation::Bucket { prefix, .. } => objects_root().join(BUCKET).join(prefix),
             _ => self.places.data.join("blobs"),
         };
         let mut found = Vec::new();
@@ -291,10 +291,10 @@ impl Deployment {
     pub fn bring(&self, command: &mut Command) {
         let data = self.folder.path().join(uuid::Uuid::now_v7().to_string());
         command.arg("--data").arg(data);
-        if let DatabasePlace::Server { address, .. } = &self.places.database {
+        if let DatabaseLocation::Server { address, .. } = &self.places.database {
             command.args(["--database", address.reveal()]);
         }
-        if let BlobsPlace::Bucket { bucket, prefix, settings } = &self.places.blobs {
+        if let BlobLocation::Bucket { bucket, prefix, settings } = &self.places.blobs {
             command.args(["--blobs", &format!("s3://{bucket}/{prefix}")]);
             command.envs(settings.iter().map(|(name, value)| (name, value.reveal())));
         }

@@ -13,7 +13,7 @@ pub struct CellSizesPicture<'a> {
     pub notes: &'a [String],
 }
 
-/// One way of modelling: cell sizes and mean movements in mm, and what fits them.
+/// One model: cell sizes and mean movements in mm, and what fits them.
 pub struct CellSizesSeries {
     pub name: String,
     pub points: Vec<[f64; 2]>,

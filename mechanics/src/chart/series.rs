@@ -1,9 +1,9 @@
-//! The ways of modelling of a study as series of its charts: one symbol each, whichever of them a chart shows.
+//! The models of a study as series of its charts: one symbol each, whichever of them a chart shows.
 
 use super::drawing::{Document, Style};
 use super::symbol::Symbol;
 
-/// A way of modelling.
+/// A model.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct MethodSeries {
     /// In words.

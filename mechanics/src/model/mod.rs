@@ -1,4 +1,4 @@
-//! Ways of modelling: conditions, materials and mesh in, nodal displacement out.
+//! Models: conditions, materials and mesh in, nodal displacement out.
 
 pub mod cell_state;
 pub mod dofs;

@@ -9,7 +9,7 @@ use crate::model::spline::{Stiffness, VolumeSpline};
 use crate::model::thickness_warp::ThicknessWarp;
 
 listed! {
-    /// A way of modelling, without what it has to be told; in the order of lists.
+    /// A model, without what it has to be told; in the order of lists.
     #[derive(Clone, Copy, Debug, PartialEq, Eq)]
     pub enum MethodKind {
         FemLinear,
@@ -23,7 +23,7 @@ listed! {
     }
 }
 
-/// The way of modelling, with what only it has to be told.
+/// The model, with what only it has to be told.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum Method {
     /// Linear finite elements at small strain.

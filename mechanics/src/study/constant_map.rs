@@ -10,7 +10,7 @@ use super::report::{Outcome, Report, Row};
 use super::sweep::{Constant, SweptAxis};
 use super::variant::{Study, StudyScene, Truth};
 
-/// D of one way of modelling on one plan.
+/// D of one model on one plan.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ConstantMap {
     pub scene: String,

@@ -11,7 +11,7 @@
 
 use super::report::{Outcome, Report, Row};
 
-/// The last levels of one way of modelling, on one plan and material.
+/// The last levels of one model, on one plan and material.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Series {
     pub scene: String,

@@ -1,4 +1,4 @@
-//! The variants of a study: every way of modelling that is built, with its usual settings.
+//! The variants of a study: every model that is built, with its usual settings.
 
 use super::variant::Variant;
 use crate::model::fem::mass_tensor::{Iterations, MassTensorSettings};

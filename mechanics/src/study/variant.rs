@@ -78,7 +78,7 @@ impl Materials {
     }
 }
 
-/// A way of modelling under a name for the row.
+/// A model under a name for the row.
 #[derive(Clone)]
 pub struct Variant {
     /// The method as documents call it.

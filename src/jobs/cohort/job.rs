@@ -7,7 +7,7 @@ use super::subjects::doubts;
 use super::twins::groups_of_twins;
 use crate::jobs::clock::Observed;
 use crate::jobs::failure::JobError;
-use crate::jobs::output::{JobOutput, Workplace};
+use crate::jobs::output::{JobContext, JobOutput};
 use crate::jobs::result::folder::ResultFolder;
 use crate::jobs::result::provenance::{Origin, encode_result};
 use crate::jobs::result::warnings::warning_documents;
@@ -32,7 +32,7 @@ const EQUAL_WITHIN_MM: f64 = 1e-4;
 /// Makes the table, the boxes and the tests.
 pub fn cohort_job(
     input: &CohortInput,
-    place: &Workplace,
+    place: &JobContext,
     progress: &dyn Progress,
 ) -> Result<JobOutput, JobError> {
     let made = input.spec.made.as_ref();

@@ -5,11 +5,11 @@ use std::sync::Arc;
 use super::input::CompareInput;
 use super::meshes::ComparedMeshes;
 use super::picture::{DISTANCE_MEDIA_TYPE, DISTANCE_PICTURE, distance_picture};
-use super::surfaces::{Compared, Pair};
+use super::surfaces::{ComparisonFindings, Pair};
 use crate::jobs::clock::Observed;
 use crate::jobs::failure::JobError;
 use crate::jobs::fetch::no_surface;
-use crate::jobs::output::{JobOutput, Workplace};
+use crate::jobs::output::{JobContext, JobOutput};
 use crate::jobs::report::{ComparisonFacts, Report, comparison_report};
 use crate::jobs::result::folder::ResultFolder;
 use crate::jobs::result::provenance::{Origin, encode_result};
@@ -31,7 +31,7 @@ const WALL_S: f64 = 600.0;
 /// A comparison as a job of its own.
 pub fn compare_job(
     input: &CompareInput,
-    place: &Workplace,
+    place: &JobContext,
     progress: &dyn Progress,
 ) -> Result<JobOutput, JobError> {
     let clock = Observed::start(progress, WALL_S);
@@ -77,7 +77,7 @@ struct Measured {
     frame: Option<Frame>,
     prediction: StoredMesh,
     meshes: ComparedMeshes,
-    compared: Compared,
+    compared: ComparisonFindings,
 }
 
 impl CompareInput {
@@ -142,7 +142,7 @@ impl CompareInput {
 fn write_maps(
     folder: &mut ResultFolder,
     surface: &TriangleSurface,
-    compared: &Compared,
+    compared: &ComparisonFindings,
     (frame, range_mm): (Frame, Option<f64>),
 ) -> Result<(), JobError> {
     let mut output = SurfaceOutput::plain(surface, frame);

@@ -9,4 +9,4 @@ mod surfaces;
 pub use input::CompareInput;
 pub use job::compare_job;
 pub use meshes::{ComparedMeshes, surface_of};
-pub use surfaces::{Compared, Pair, admit, by_landmarks, place_of};
+pub use surfaces::{ComparisonFindings, Pair, admit, by_landmarks, place_of};

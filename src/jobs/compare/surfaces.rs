@@ -23,7 +23,7 @@ use mechanics::validation::{
 };
 
 /// What a comparison found.
-pub struct Compared {
+pub struct ComparisonFindings {
     pub document: ComparisonDocument,
     /// At each point of the prediction in mm, positive outside the actual surface.
     pub signed_distance: Vec<f64>,
@@ -50,7 +50,7 @@ impl Pair<'_> {
         &self,
         spec: &CompareToDocument,
         clock: &Observed,
-    ) -> Result<Compared, JobError> {
+    ) -> Result<ComparisonFindings, JobError> {
         self.meshes.check_frames(self.prediction_frame, &self.at)?;
         let settings = self.settings(spec)?;
         let actual = surface_of(&self.meshes.actual, &self.at.key("actual").key("mesh"))?;
@@ -59,7 +59,7 @@ impl Pair<'_> {
         let mut document = ComparisonDocument::new(&comparison, spec.samples_per_mm2);
         document.acquisition = spec.acquisition.clone();
         let Comparison { signed_distance, node_errors, landmark_map, warnings, .. } = comparison;
-        Ok(Compared { document, signed_distance, node_errors, landmark_map, warnings })
+        Ok(ComparisonFindings { document, signed_distance, node_errors, landmark_map, warnings })
     }
 
     /// The settings of a spec that was checked.

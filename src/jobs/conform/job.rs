@@ -6,7 +6,7 @@ use super::input::{ConformInput, PreparedConformation};
 use super::tissue::{TissueMaps, case_of};
 use crate::jobs::clock::Observed;
 use crate::jobs::failure::JobError;
-use crate::jobs::output::{JobOutput, MadeMesh, Workplace};
+use crate::jobs::output::{JobContext, JobOutput, MadeMesh};
 use crate::jobs::predict::check_made;
 use crate::jobs::result::folder::ResultFolder;
 use crate::jobs::result::provenance::{Origin, encode_result, mesh_summary};
@@ -38,7 +38,7 @@ const WALL_S: f64 = 600.0;
 /// Brings a template to a patient, as a job.
 pub fn conform_job(
     input: &ConformInput,
-    place: &Workplace,
+    place: &JobContext,
     progress: &dyn Progress,
 ) -> Result<JobOutput, JobError> {
     let clock = Observed::start(progress, WALL_S);
@@ -126,7 +126,7 @@ impl PreparedConformation {
 }
 
 /// The case of a template on a patient, and what its own check says of it.
-struct Brought {
+struct ConformedCase {
     case: CaseDocument,
     muscles: Vec<MappedMuscleDocument>,
     check: Option<CheckDocument>,
@@ -138,8 +138,8 @@ impl PreparedConformation {
         &self,
         found: &mut Conformed,
         spec: &ConformDocument,
-        place: &Workplace,
-    ) -> Result<Brought, JobError> {
+        place: &JobContext,
+    ) -> Result<ConformedCase, JobError> {
         let volume = OutputName::VolumeVtu.file_name();
         let mut case = case_of(spec, volume, self.frame.into());
         let deformation = &found.conformation.deformation;
@@ -153,7 +153,7 @@ impl PreparedConformation {
             Err(JobError::Refused(problem)) => (None, Some(refused_case(&problem))),
             Err(error) => return Err(error),
         };
-        Ok(Brought { case, muscles, check, refused })
+        Ok(ConformedCase { case, muscles, check, refused })
     }
 }
 
@@ -193,7 +193,11 @@ fn distances(
 }
 
 impl Conformed {
-    fn document(&self, brought: Brought, prepared: &PreparedConformation) -> ConformationDocument {
+    fn document(
+        &self,
+        brought: ConformedCase,
+        prepared: &PreparedConformation,
+    ) -> ConformationDocument {
         let names = prepared.landmarks.iter().map(|landmark| landmark.name.clone());
         let [partners, points] = self.conformation.partners;
         ConformationDocument {

@@ -8,7 +8,7 @@ use crate::jobs::clock::Observed;
 use crate::jobs::failure::JobError;
 use crate::jobs::fetch::fetch;
 use crate::jobs::made::{refused_cohort, refused_virtual};
-use crate::jobs::output::Workplace;
+use crate::jobs::output::JobContext;
 use crate::jobs::predict::Prepared;
 use crate::jobs::source::StoredShape;
 use crate::schema::learn::correspondence::CorrespondenceDocument;
@@ -40,7 +40,7 @@ pub struct Gathered {
 
 pub fn gather(
     input: &LearnInput,
-    place: &Workplace,
+    place: &JobContext,
     clock: &Observed,
 ) -> Result<Gathered, JobError> {
     match &input.spec.made {
@@ -66,7 +66,11 @@ pub fn gather(
     }
 }
 
-fn of_cases(input: &LearnInput, place: &Workplace, clock: &Observed) -> Result<Gathered, JobError> {
+fn of_cases(
+    input: &LearnInput,
+    place: &JobContext,
+    clock: &Observed,
+) -> Result<Gathered, JobError> {
     let mut first: Option<Prepared> = None;
     let mut cases = Vec::new();
     let mut inputs = Vec::new();

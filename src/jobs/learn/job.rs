@@ -10,7 +10,7 @@ use super::table::{TABLE_FILE, table_csv};
 use crate::jobs::clock::Observed;
 use crate::jobs::cohort::tested_pair;
 use crate::jobs::failure::JobError;
-use crate::jobs::output::{JobOutput, Workplace};
+use crate::jobs::output::{JobContext, JobOutput};
 use crate::jobs::result::folder::ResultFolder;
 use crate::jobs::result::provenance::{Origin, encode_result};
 use crate::schema::Faults;
@@ -39,7 +39,7 @@ const MOST_STEPS: usize = 2000;
 /// Predicts the cases, learns from all but each, and keeps the model of all.
 pub fn learn_job(
     input: &LearnInput,
-    place: &Workplace,
+    place: &JobContext,
     progress: &dyn Progress,
 ) -> Result<JobOutput, JobError> {
     let clock = Observed::start(progress, input.spec.budget.wall_s);

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::case::bone_file;
 use crate::jobs::failure::JobError;
-use crate::jobs::output::Workplace;
+use crate::jobs::output::JobContext;
 use crate::jobs::predict::check_made;
 use crate::jobs::source::{StoredMesh, StoredShape};
 use crate::schema::predict::check::CheckDocument;
@@ -23,7 +23,7 @@ pub(super) struct MadeAnatomy<'a> {
 pub(super) fn check_anatomy(
     case: &CaseDocument,
     made: &MadeAnatomy,
-    place: &Workplace,
+    place: &JobContext,
 ) -> Result<Option<CheckDocument>, JobError> {
     let MadeAnatomy { anatomy, frame, told } = made;
     let volume = StoredShape::Volume(Arc::new(anatomy.volume.clone()));

@@ -9,7 +9,7 @@ use super::input::{MeshingInput, PreparedMeshing};
 use super::skin_scan::SKIN_SCAN_FILE;
 use crate::jobs::clock::Observed;
 use crate::jobs::failure::JobError;
-use crate::jobs::output::{JobOutput, MadeMesh, Workplace};
+use crate::jobs::output::{JobContext, JobOutput, MadeMesh};
 use crate::jobs::result::folder::ResultFolder;
 use crate::jobs::result::pictures::slices_picture;
 use crate::jobs::result::provenance::{Origin, encode_result, mesh_summary};
@@ -36,7 +36,7 @@ pub const SLICES_FILE: &str = "slices.svg";
 /// Meshes a scan or what lies between surfaces, and writes its files.
 pub fn meshing_job(
     input: &MeshingInput,
-    place: &Workplace,
+    place: &JobContext,
     progress: &dyn Progress,
 ) -> Result<JobOutput, JobError> {
     let clock = Observed::start(progress, input.spec.budget.wall_s);
@@ -76,7 +76,7 @@ pub fn meshing_job(
 
     // 5. Files.
     clock.phase(Phase::Write);
-    let made = Made { prepared: &prepared, anatomy: &anatomy, found, near, skin };
+    let made = MeshingOutput { prepared: &prepared, anatomy: &anatomy, found, near, skin };
     let (result, files) = made.publish(input, place, &clock)?;
     let told = result.warnings.clone();
     Ok(JobOutput { result, files, meshes: meshes_of(anatomy, prepared.frame, told) })
@@ -106,7 +106,7 @@ impl PreparedMeshing {
 }
 
 /// What a meshing has made, before it is written.
-struct Made<'a> {
+struct MeshingOutput<'a> {
     prepared: &'a PreparedMeshing,
     anatomy: &'a Anatomy,
     found: MeshingResultDocument,
@@ -116,14 +116,14 @@ struct Made<'a> {
     skin: Option<FittedScan>,
 }
 
-impl Made<'_> {
+impl MeshingOutput<'_> {
     fn publish(
         self,
         input: &MeshingInput,
-        place: &Workplace,
+        place: &JobContext,
         clock: &Observed,
     ) -> Result<(ResultDocument, Vec<FileDocument>), JobError> {
-        let Made { prepared, anatomy, found, near, skin } = self;
+        let MeshingOutput { prepared, anatomy, found, near, skin } = self;
         let frame = prepared.frame;
         let origin = Origin {
             spec_hash: prepared.spec_hash.clone(),

@@ -6,7 +6,7 @@ use super::input::OptimiseInput;
 use super::targets::PreparedOptimisation;
 use crate::jobs::clock::Observed;
 use crate::jobs::failure::JobError;
-use crate::jobs::output::{JobOutput, Workplace};
+use crate::jobs::output::{JobContext, JobOutput};
 use crate::jobs::predict::{
     PredictInput, Predicted, Prepared, bones_file, gaps_picture, statistics,
 };
@@ -47,7 +47,7 @@ struct Found {
 /// Finds a plan and writes its skin as a prediction would.
 pub fn optimise_job(
     input: &OptimiseInput,
-    place: &Workplace,
+    place: &JobContext,
     progress: &dyn Progress,
 ) -> Result<JobOutput, JobError> {
     let clock = Observed::start(progress, input.spec.budget.wall_s);
@@ -158,7 +158,7 @@ impl Found {
         input: &PredictInput,
         planned: Prepared,
         clock: &Observed,
-        place: &Workplace,
+        place: &JobContext,
     ) -> Result<JobOutput, JobError> {
         clock.phase(Phase::Surface);
         let scene = &planned.scene;

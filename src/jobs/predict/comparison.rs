@@ -2,7 +2,7 @@
 
 use super::input::{PredictInput, Prepared};
 use crate::jobs::clock::Observed;
-use crate::jobs::compare::{Compared, Pair};
+use crate::jobs::compare::{ComparisonFindings, Pair};
 use crate::jobs::failure::JobError;
 use crate::jobs::result::skin::PredictedSkin;
 use crate::schema::Pointer;
@@ -14,7 +14,7 @@ pub fn compare_skin(
     prepared: &Prepared,
     skin: &PredictedSkin,
     clock: &Observed,
-) -> Result<Option<Compared>, JobError> {
+) -> Result<Option<ComparisonFindings>, JobError> {
     let (Some(spec), Some(meshes)) = (&input.spec.compare_to, &prepared.compared) else {
         return Ok(None);
     };

@@ -5,7 +5,7 @@ use super::input::{PredictInput, Prepared};
 use super::publish::Predicted;
 use crate::jobs::clock::Observed;
 use crate::jobs::failure::JobError;
-use crate::jobs::output::{JobOutput, Workplace};
+use crate::jobs::output::{JobContext, JobOutput};
 use crate::schema::predict::adequacy::AdequacyDocument;
 use crate::schema::predict::refine::{RefineDocument, RefinementDocument};
 use crate::schema::{ErrorCode, Limits, Pointer, Problem};
@@ -17,7 +17,7 @@ use mechanics::progress::Progress;
 /// Predicts the displacement of a case under a plan, and writes its files.
 pub fn predict_job(
     input: &PredictInput,
-    place: &Workplace,
+    place: &JobContext,
     progress: &dyn Progress,
 ) -> Result<JobOutput, JobError> {
     let clock = Observed::start(progress, input.spec.budget.wall_s);

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::check::check;
 use super::input::PredictInput;
 use crate::jobs::failure::JobError;
-use crate::jobs::output::Workplace;
+use crate::jobs::output::JobContext;
 use crate::jobs::source::{MeshSource, SourceError, StoredMesh, StoredShape};
 use crate::schema::case::document::LengthUnit;
 use crate::schema::predict::check::CheckDocument;
@@ -53,7 +53,7 @@ impl StoredMesh {
 pub fn check_made(
     case: &CaseDocument,
     made: BTreeMap<String, StoredMesh>,
-    place: &Workplace,
+    place: &JobContext,
 ) -> Result<Option<CheckDocument>, JobError> {
     let sources = MadeBeside { made, stored: place.sources };
     let input = PredictInput {

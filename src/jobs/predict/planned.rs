@@ -12,7 +12,7 @@ use mechanics::prediction::{Case, Scene};
 /// Landmarks of a head lie farther apart: what does not is in metres.
 const CROWDED_MM: f64 = 1.0;
 
-type Places = BTreeMap<String, Vector>;
+type NamedPoints = BTreeMap<String, Vector>;
 
 /// The segments that move.
 pub fn movements(scene: &Scene, frame: Frame) -> Vec<MovementReportDocument> {
@@ -31,7 +31,7 @@ pub fn in_numbers(
     document: &CaseDocument,
     case: &Case,
     scene: &Scene,
-    displacement: Option<&Places>,
+    displacement: Option<&NamedPoints>,
 ) -> InNumbers {
     let landmarks = &document.bone_landmarks;
     let moved = |segment: &str, at: &Vector| {
@@ -56,7 +56,7 @@ pub fn doubtful_landmarks(document: &CaseDocument, case: &Case) -> Vec<Warning> 
 }
 
 /// Landmarks farther from the box of the mesh than half its diagonal.
-fn elsewhere(landmarks: &Places, mesh: &VolumeMesh) -> Vec<Warning> {
+fn elsewhere(landmarks: &NamedPoints, mesh: &VolumeMesh) -> Vec<Warning> {
     let [low, high] = mesh.bounds();
     let away = |at: &Vector| (at - at.sup(&low).inf(&high)).norm();
     let far = landmarks.iter().filter(|(_, at)| away(at) > 0.5 * (high - low).norm());
@@ -71,7 +71,7 @@ fn elsewhere(landmarks: &Places, mesh: &VolumeMesh) -> Vec<Warning> {
 }
 
 /// Several landmarks of bone within a millimetre.
-fn crowded(landmarks: &Places) -> Option<Warning> {
+fn crowded(landmarks: &NamedPoints) -> Option<Warning> {
     let first = landmarks.values().next().filter(|_| landmarks.len() > 1)?;
     let extent = landmarks.values().map(|at| (at - first).norm()).fold(0.0, f64::max);
     let detail = format!(
@@ -83,7 +83,7 @@ fn crowded(landmarks: &Places) -> Option<Warning> {
 }
 
 /// Landmarks where they are predicted.
-fn after(landmarks: &Places, displacement: &Places) -> Places {
+fn after(landmarks: &NamedPoints, displacement: &NamedPoints) -> NamedPoints {
     let moved = |(name, at): (&String, &Vector)| {
         displacement.get(name).map(|displacement| (name.clone(), at + displacement))
     };

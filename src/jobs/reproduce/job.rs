@@ -11,7 +11,7 @@ use crate::jobs::clock::Observed;
 use crate::jobs::compare::{by_landmarks, place_of, surface_of};
 use crate::jobs::failure::JobError;
 use crate::jobs::head::{Bone, Head, Skin};
-use crate::jobs::output::{JobOutput, Workplace};
+use crate::jobs::output::{JobContext, JobOutput};
 use crate::jobs::result::folder::ResultFolder;
 use crate::jobs::result::provenance::{Origin, encode_result};
 use crate::jobs::result::warnings::warning_documents;
@@ -42,7 +42,7 @@ const NO_TURN: f64 = 1e-9;
 /// Finds what an operation did, as a job.
 pub fn reproduce_job(
     input: &ReproduceInput,
-    place: &Workplace,
+    place: &JobContext,
     progress: &dyn Progress,
 ) -> Result<JobOutput, JobError> {
     let clock = Observed::start(progress, WALL_S);

@@ -13,7 +13,7 @@ use crate::schema::{ErrorCode, Faults};
 use mechanics::study::Variant;
 
 /// What a study is made of.
-pub(super) struct Parts {
+pub(super) struct StudyItems {
     pub scenes: Scenes,
     pub variants: Vec<Variant>,
     /// Scenes and variants that belong together, by their places; all with all where there is none.
@@ -21,10 +21,10 @@ pub(super) struct Parts {
 }
 
 impl Documents<'_> {
-    /// A scene for each case with a plan and materials, a variant for each way of modelling.
-    pub fn items(&self, faults: &mut Faults) -> Result<Parts, JobError> {
+    /// A scene for each case with a plan and materials, a variant for each model.
+    pub fn items(&self, faults: &mut Faults) -> Result<StudyItems, JobError> {
         let mut parts =
-            Parts { scenes: Scenes::default(), variants: Vec::new(), pairs: BTreeSet::new() };
+            StudyItems { scenes: Scenes::default(), variants: Vec::new(), pairs: BTreeSet::new() };
         let (mut scenes, mut ways): (Vec<[Value; 3]>, Vec<&Value>) = Default::default();
         for (index, item) in self.spec.items.iter().enumerate() {
             let at = spec_at().key("items").index(index);
@@ -37,7 +37,7 @@ impl Documents<'_> {
                     let is_taken = parts.variants.iter().any(|other| other.label == variant.label);
                     if is_taken {
                         let detail = format!(
-                            "another way of modelling is called {:?}; give one a `label`",
+                            "another model is called {:?}; give one a `label`",
                             variant.label
                         );
                         faults.add(&at.key("label"), ErrorCode::DuplicateName, detail);

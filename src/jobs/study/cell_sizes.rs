@@ -39,7 +39,7 @@ pub fn cell_sizes_csv(report: &ReportDocument) -> String {
     text
 }
 
-/// Every series and plan once, in the order of the report: each has a picture with all its ways of modelling.
+/// Every series and plan once, in the order of the report: each has a picture with all its models.
 pub fn cell_size_groups(report: &ReportDocument) -> Vec<[&str; 3]> {
     let mut groups: Vec<[&str; 3]> = Vec::new();
     for of in &report.cell_sizes {

@@ -99,7 +99,7 @@ pub fn estimates_chart(report: &ReportDocument) -> Option<String> {
     (!marks.is_empty()).then(|| svg(&picture.to_drawing(), title))
 }
 
-/// The ways of modelling of a report in the order of its rows, each once: every chart of it gives each the same symbol, whichever
+/// The models of a report in the order of its rows, each once: every chart of it gives each the same symbol, whichever
 /// of them it shows.
 fn series(report: &ReportDocument) -> Vec<MethodSeries> {
     let mut series: Vec<MethodSeries> = Vec::new();

@@ -16,7 +16,7 @@ use super::stopwatch::MachineStopwatch;
 use super::verdict::judge;
 use crate::jobs::clock::{Observed, now_rfc3339};
 use crate::jobs::failure::JobError;
-use crate::jobs::output::{JobOutput, Workplace};
+use crate::jobs::output::{JobContext, JobOutput};
 use crate::jobs::result::folder::ResultFolder;
 use crate::jobs::result::provenance::{Origin, encode_result};
 use crate::jobs::result::warnings::warning_documents;
@@ -86,7 +86,7 @@ impl Progress for Rows<'_> {
 /// Runs a study and writes its report.
 pub fn study_job(
     input: &StudyInput,
-    place: &Workplace,
+    place: &JobContext,
     progress: &dyn Progress,
 ) -> Result<JobOutput, JobError> {
     let clock = Observed::start(progress, whole_budget(input.spec.budget.wall_s));

@@ -1,4 +1,4 @@
-//! Studies: many rows of scenes, plans, materials and ways of modelling, measured and judged.
+//! Studies: many rows of scenes, plans, materials and models, measured and judged.
 
 mod batch;
 pub mod cell_sizes;

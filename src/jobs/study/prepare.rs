@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::batch::Parts;
+use super::batch::StudyItems;
 use super::documents::Documents;
 use super::input::StudyInput;
 use crate::jobs::failure::JobError;
@@ -44,11 +44,11 @@ impl StudyInput {
         faults.into_result()?;
         let documents = Documents { spec: &self.spec, cases: &self.cases, sources, limits };
         let mut faults = Faults::default();
-        let Parts { scenes, variants, pairs } = match self.spec.kind {
+        let StudyItems { scenes, variants, pairs } = match self.spec.kind {
             StudyKind::Study => {
                 let variants = documents.variants(&mut faults);
                 let scenes = documents.scenes(&mut faults)?;
-                Parts { scenes, variants, pairs: BTreeSet::new() }
+                StudyItems { scenes, variants, pairs: BTreeSet::new() }
             }
             StudyKind::Batch => documents.items(&mut faults)?,
         };

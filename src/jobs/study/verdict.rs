@@ -30,15 +30,15 @@ pub enum Baseline<'a> {
 }
 
 /// The same row in another study.
-type Place<'a> = (&'a str, &'a str, &'a str, u32, &'a str);
+type RowKey<'a> = (&'a str, &'a str, &'a str, u32, &'a str);
 
-fn place(row: &RowDocument) -> Place<'_> {
+fn place(row: &RowDocument) -> RowKey<'_> {
     (&row.scene, &row.plan, &row.material, row.level, &row.label)
 }
 
 /// Judges every row and the whole by the rules of the report.
 pub fn judge(report: &mut ReportDocument, baseline: &Baseline) {
-    let before: BTreeMap<Place, &RowDocument> = match baseline {
+    let before: BTreeMap<RowKey, &RowDocument> = match baseline {
         Baseline::Report(earlier) => earlier.rows.iter().map(|row| (place(row), row)).collect(),
         Baseline::NotAsked | Baseline::Missing(_) => BTreeMap::new(),
     };
@@ -58,9 +58,9 @@ pub fn judge(report: &mut ReportDocument, baseline: &Baseline) {
         row.verdict = verdict;
         row.reasons = found.into_iter().map(|reason| reason.words).collect();
     }
-    let now: Vec<Place> = report.rows.iter().map(place).collect();
+    let now: Vec<RowKey> = report.rows.iter().map(place).collect();
     let common = before.keys().filter(|earlier| now.contains(earlier)).count();
-    let is_lost = |(place, row): &(&Place, &&RowDocument)| {
+    let is_lost = |(place, row): &(&RowKey, &&RowDocument)| {
         !now.contains(place) && (row.status == RowStatus::Solved || !is_skipped(report, row))
     };
     let lost = before.iter().filter(is_lost).count();

@@ -10,7 +10,7 @@ use super::merged::{Merged, PlacedMaterials, merge_materials};
 use super::meshes::CaseMeshes;
 use super::muscle::{MuscleContext, doubts, to_muscles};
 use crate::schema::code::ErrorCode;
-use crate::schema::repair::{Mended, check_cells};
+use crate::schema::repair::{RepairedMesh, check_cells};
 use crate::schema::wire::fault::{Faults, Pointer};
 use crate::schema::wire::limits::Limits;
 use crate::schema::wire::names::{check_distinct, check_tags};
@@ -63,7 +63,7 @@ impl CaseDocument {
         warnings.extend(self.hounsfield.iter().flat_map(HounsfieldDocument::doubts));
         warnings.extend(doubts(&self.muscles));
         warnings.extend(unusual_size(&volume, self.units));
-        warnings.extend(mended.as_ref().and_then(Mended::warning));
+        warnings.extend(mended.as_ref().and_then(RepairedMesh::warning));
         let regions = self.to_regions(&at.key("regions"), faults);
         if let Some(known) = region_names(&regions, &volume) {
             warnings.extend(spec.serves_nothing(&own, &known));

@@ -141,7 +141,7 @@ struct Constant {
 }
 
 /// The constants that a kind needs, and those that it may have.
-struct Takes {
+struct ConstantNames {
     needed: &'static [&'static str],
     other: &'static [&'static str],
 }
@@ -163,8 +163,8 @@ impl LawKind {
         }
     }
 
-    fn takes(self) -> Takes {
-        let takes = |needed, other| Takes { needed, other };
+    fn takes(self) -> ConstantNames {
+        let takes = |needed, other| ConstantNames { needed, other };
         match self {
             LawKind::NeoHookean | LawKind::SaintVenantKirchhoff | LawKind::PolyconvexBarrier => {
                 takes(&[], &["mu_kpa", "lambda_kpa"])
@@ -246,7 +246,7 @@ impl LawDocument {
 
     /// Whether the law has what its kind needs, nothing else, and all of it in range.
     pub(super) fn check(&self, at: &Pointer, faults: &mut Faults) -> bool {
-        let Takes { needed, other } = self.kind.takes();
+        let ConstantNames { needed, other } = self.kind.takes();
         let constants = self.constants();
         let stated = constants.iter().filter(|constant| constant.value.is_some());
         let others = [("terms", self.terms.is_some()), ("volumetric", self.volumetric.is_some())]

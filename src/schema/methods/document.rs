@@ -6,7 +6,7 @@ use utoipa::ToSchema;
 use super::name::{ElementName, MethodName};
 use mechanics::prediction::MethodKind;
 
-/// A way of modelling that a spec may ask for.
+/// A model that a spec may ask for.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct MethodDocument {
     pub name: MethodName,

@@ -69,7 +69,7 @@ pub struct ResponseMethod {
     pub linear_range_mm: f64,
 }
 
-/// A way of modelling, and where it stands on the chart of speed and accuracy.
+/// A model, and where it stands on the chart of speed and accuracy.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct MeasuredMethod {
     #[serde(flatten)]

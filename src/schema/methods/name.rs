@@ -23,7 +23,7 @@ pub const WHY_ASKED: &str = "asked for by the spec";
 const NOT_BUILT: [&str; 5] =
     ["fem_corotational", "fem_neo_hookean", "fem_mooney_rivlin", "fem_ogden", "fem_rubin_bodner"];
 
-/// A way of modelling soft tissue.
+/// A model soft tissue.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum MethodName {
     #[default]
@@ -95,7 +95,7 @@ impl PartialSchema for MethodName {
     fn schema() -> RefOr<Schema> {
         ObjectBuilder::new()
             .schema_type(SchemaType::Type(Type::String))
-            .description(Some("A way of modelling soft tissue."))
+            .description(Some("A model soft tissue."))
             .enum_values(Some(MethodName::all().map(MethodName::name)))
             .into()
     }

@@ -8,7 +8,7 @@ use mechanics::mesh::Warning;
 use mechanics::study::constant_map::ConstantMap;
 use mechanics::study::sweep::{Constant, SweptAxis};
 
-/// The mean distance between predicted skin and scan for every combination of swept constants, of one way of modelling
+/// The mean distance between predicted skin and scan for every combination of swept constants, of one model
 /// on one plan: D(nu), or D(nu, E).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct ConstantMapDocument {

@@ -1,4 +1,4 @@
-//! The spec of a study: scenes, plans, ways of modelling, materials and mesh levels, each with each, against a
+//! The spec of a study: scenes, plans, models, materials and mesh levels, each with each, against a
 //! truth; and what makes its outcome good or bad.
 
 use std::collections::BTreeMap;
@@ -42,7 +42,7 @@ pub struct StudyDocument {
     pub scenes: Vec<SceneReference>,
     /// Of a batch, in place of `scenes`, `plans`, `methods`, `elements`, `materials` and `sweep`: `predict` specs without
     /// `budget`, `outputs`, `keep`, `compare_to`, `tags`, `accept_regions_mm`, `corrected` and `range_mm`, of which each is a row
-    /// at each level; `label` is what rows call its way of modelling. Items of the same case, plan and materials are one scene.
+    /// at each level; `label` is what rows call its model. Items of the same case, plan and materials are one scene.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     #[schema(value_type = Vec<PredictDocument>)]
     pub items: Vec<ItemDocument>,
@@ -113,7 +113,7 @@ pub enum MethodReference {
     Variant(VariantDocument),
 }
 
-/// A way of modelling as in a `predict` spec, with the field of its own parameters.
+/// A model as in a `predict` spec, with the field of its own parameters.
 #[derive(Clone, Debug, Serialize, ToSchema)]
 pub struct VariantDocument {
     pub method: MethodName,

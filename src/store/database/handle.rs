@@ -3,8 +3,8 @@
 use super::run::{Open, Pool, Transaction, Writer};
 use super::schema::Migrated;
 use super::{postgres, schema, sqlite};
+use crate::fair_semaphore::{FairSemaphore, Full, Permit};
 use crate::store::error::StoreError;
-use crate::turns::{Full, Turn, Turns};
 use futures::future::BoxFuture;
 use sqlx::postgres::PgConnectOptions;
 use std::path::PathBuf;
@@ -60,7 +60,7 @@ pub(in crate::store) struct Database {
     address: Address,
     writer: Arc<Pool>,
     reader: Arc<Pool>,
-    turns: Turns,
+    turns: FairSemaphore,
     /// In which line of writers this one stands.
     line: Arc<str>,
     first: Option<Arc<dyn BeforeWriting>>,
@@ -129,7 +129,7 @@ impl Database {
         (writer, reader): (Arc<Pool>, Arc<Pool>),
         what: &'static str,
     ) -> Database {
-        let turns = Turns::new(what, address.writers(), usize::MAX);
+        let turns = FairSemaphore::new(what, address.writers(), usize::MAX);
         Database { address, writer, reader, turns, line: OWN_LINE.into(), first: None }
     }
 
@@ -149,13 +149,13 @@ impl Database {
     }
 
     /// Waits until this one may write.
-    async fn turn(&self) -> Result<Turn, StoreError> {
+    async fn permit(&self) -> Result<Permit, StoreError> {
         if let Some(first) = &self.first {
             first.prepare().await?;
         }
         let late = || StoreError::from(sqlx::Error::PoolTimedOut);
-        let turn = tokio::time::timeout(self.address.patience(), self.turns.turn(&self.line));
-        turn.await.map_err(|_| late())?.map_err(|Full { .. }| late())
+        let permit = tokio::time::timeout(self.address.patience(), self.turns.acquire(&self.line));
+        permit.await.map_err(|_| late())?.map_err(|Full { .. }| late())
     }
 
     pub fn reader(&self) -> &Pool {
@@ -164,8 +164,8 @@ impl Database {
 
     /// For single statements that change something.
     pub async fn writer(&self) -> Result<Writer, StoreError> {
-        let turn = self.turn().await?;
-        Ok(Writer { pool: self.writer.clone(), _turn: turn })
+        let permit = self.permit().await?;
+        Ok(Writer { pool: self.writer.clone(), _permit: permit })
     }
 
     /// For words to other processes.
@@ -177,20 +177,20 @@ impl Database {
     }
 
     pub async fn begin(&self) -> Result<Transaction, StoreError> {
-        let turn = self.turn().await?;
+        let permit = self.permit().await?;
         let open = match &*self.writer {
             Pool::Sqlite(pool) => Open::Sqlite(sqlite::begin(pool).await?),
             Pool::Postgres(pool) => Open::Postgres(postgres::begin(pool).await?),
         };
-        Ok(Transaction::new(open, Some(turn)))
+        Ok(Transaction::new(open, Some(permit)))
     }
 
     /// A transaction whose commit does not wait for the disk. It is there before whatever is committed after it, since
     /// a log is written in its order; a crash of the server within a second may take it alone.
     pub async fn begin_unflushed(&self) -> Result<Transaction, StoreError> {
         let Pool::Postgres(pool) = &*self.writer else { return self.begin().await };
-        let turn = self.turn().await?;
-        Ok(Transaction::new(Open::Postgres(postgres::begin_unflushed(pool).await?), Some(turn)))
+        let permit = self.permit().await?;
+        Ok(Transaction::new(Open::Postgres(postgres::begin_unflushed(pool).await?), Some(permit)))
     }
 
     /// A transaction that sees everything as it is when it begins, and changes nothing. It may last.

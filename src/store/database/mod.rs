@@ -16,6 +16,6 @@ mod value;
 pub use errors::{is_duplicate, is_full, is_reference, is_refused, is_unavailable};
 pub(super) use handle::{Address, BeforeWriting, Database};
 use run::Pool;
-pub(super) use run::{Place, Transaction};
+pub(super) use run::{Executor, Transaction};
 pub use schema::{Migrated, newest as newest_step};
-pub(super) use value::{Row, Statement, Taker, Value, query, query_of};
+pub(super) use value::{Row, RowSink, Statement, Value, query, query_of};

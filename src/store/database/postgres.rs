@@ -8,7 +8,7 @@ use sqlx::pool::PoolConnectionMetadata;
 use sqlx::postgres::{PgConnectOptions, PgConnection, PgPool, PgPoolOptions, Postgres};
 use sqlx::{AssertSqlSafe, Connection, Either, Executor, SqlSafeStr};
 
-use super::{Row, Statement, Taker, Value};
+use super::{Row, RowSink, Statement, Value};
 
 /// Milliseconds since 1970 by the clock of the database, whatever the clocks of its clients show.
 pub const CLOCK: &str = "CREATE OR REPLACE VIEW clock AS \
@@ -93,7 +93,7 @@ pub async fn snapshot(pool: &PgPool) -> Result<sqlx::Transaction<'static, Postgr
 pub async fn run(
     connection: &mut PgConnection,
     statement: Statement,
-    take: Taker<'_>,
+    take: RowSink<'_>,
 ) -> Result<u64, sqlx::Error> {
     let sql = match statement.sql {
         Cow::Borrowed(text) => text.into_sql_str(),

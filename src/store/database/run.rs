@@ -1,11 +1,11 @@
 //! Statements run on a pool or within a transaction of either engine.
 
 use super::value::Row;
+use super::value::RowSink;
 use super::value::Statement;
-use super::value::Taker;
 use super::value::Value;
 use super::{postgres, sqlite};
-use crate::turns::Turn;
+use crate::fair_semaphore::Permit;
 use sqlx::postgres::{PgPool, Postgres};
 use sqlx::sqlite::{Sqlite, SqlitePool};
 use std::sync::Arc;
@@ -20,7 +20,7 @@ pub(in crate::store) enum Pool {
 pub(in crate::store) struct Transaction {
     open: Open,
     /// Of one that writes.
-    _turn: Option<Turn>,
+    _permit: Option<Permit>,
 }
 
 pub(super) enum Open {
@@ -31,12 +31,12 @@ pub(super) enum Open {
 /// For single statements that change something.
 pub(in crate::store) struct Writer {
     pub(super) pool: Arc<Pool>,
-    pub(super) _turn: Turn,
+    pub(super) _permit: Permit,
 }
 
 impl Transaction {
-    pub(super) fn new(open: Open, turn: Option<Turn>) -> Transaction {
-        Transaction { open, _turn: turn }
+    pub(super) fn new(open: Open, permit: Option<Permit>) -> Transaction {
+        Transaction { open, _permit: permit }
     }
 
     pub async fn commit(self) -> Result<(), sqlx::Error> {
@@ -60,26 +60,26 @@ impl Transaction {
 }
 
 /// Where a statement runs: on any free connection, or as a part of a transaction.
-pub(in crate::store) enum Place<'a> {
+pub(in crate::store) enum Executor<'a> {
     Pool(&'a Pool),
     Transaction(&'a mut Transaction),
 }
 
-impl<'a> From<&'a Pool> for Place<'a> {
+impl<'a> From<&'a Pool> for Executor<'a> {
     fn from(pool: &'a Pool) -> Self {
-        Place::Pool(pool)
+        Executor::Pool(pool)
     }
 }
 
-impl<'a> From<&'a Writer> for Place<'a> {
+impl<'a> From<&'a Writer> for Executor<'a> {
     fn from(writer: &'a Writer) -> Self {
-        Place::Pool(&writer.pool)
+        Executor::Pool(&writer.pool)
     }
 }
 
-impl<'a> From<&'a mut Transaction> for Place<'a> {
+impl<'a> From<&'a mut Transaction> for Executor<'a> {
     fn from(transaction: &'a mut Transaction) -> Self {
-        Place::Transaction(transaction)
+        Executor::Transaction(transaction)
     }
 }
 
@@ -96,12 +96,12 @@ impl Statement {
     }
 
     /// Hands over the rows as they come; returns how many rows were changed.
-    pub async fn run(self, place: Place<'_>, take: Taker<'_>) -> Result<u64, sqlx::Error> {
+    pub async fn run(self, place: Executor<'_>, take: RowSink<'_>) -> Result<u64, sqlx::Error> {
         match place {
-            Place::Pool(Pool::Sqlite(pool)) => {
+            Executor::Pool(Pool::Sqlite(pool)) => {
                 sqlite::run(&mut *pool.acquire().await?, self, take).await
             }
-            Place::Pool(Pool::Postgres(pool)) => {
+            Executor::Pool(Pool::Postgres(pool)) => {
                 let mut connection = pool.acquire().await?;
                 let answer = postgres::run(&mut connection, self, take).await;
                 if matches!(answer, Err(sqlx::Error::Io(_))) {
@@ -110,21 +110,21 @@ impl Statement {
                 }
                 answer
             }
-            Place::Transaction(Transaction { open: Open::Sqlite(open), .. }) => {
+            Executor::Transaction(Transaction { open: Open::Sqlite(open), .. }) => {
                 sqlite::run(&mut *open, self, take).await
             }
-            Place::Transaction(Transaction { open: Open::Postgres(open), .. }) => {
+            Executor::Transaction(Transaction { open: Open::Postgres(open), .. }) => {
                 postgres::run(&mut *open, self, take).await
             }
         }
     }
 
     /// The number of rows that it changed.
-    pub async fn execute(self, place: impl Into<Place<'_>>) -> Result<u64, sqlx::Error> {
+    pub async fn execute(self, place: impl Into<Executor<'_>>) -> Result<u64, sqlx::Error> {
         self.run(place.into(), &mut |_| Ok(())).await
     }
 
-    pub async fn fetch_all(self, place: impl Into<Place<'_>>) -> Result<Vec<Row>, sqlx::Error> {
+    pub async fn fetch_all(self, place: impl Into<Executor<'_>>) -> Result<Vec<Row>, sqlx::Error> {
         let mut rows = Vec::new();
         self.run(place.into(), &mut |row| {
             rows.push(row);
@@ -137,12 +137,12 @@ impl Statement {
     /// The first row, if there is one.
     pub async fn fetch_optional(
         self,
-        place: impl Into<Place<'_>>,
+        place: impl Into<Executor<'_>>,
     ) -> Result<Option<Row>, sqlx::Error> {
         Ok(self.fetch_all(place).await?.into_iter().next())
     }
 
-    pub async fn fetch_one(self, place: impl Into<Place<'_>>) -> Result<Row, sqlx::Error> {
+    pub async fn fetch_one(self, place: impl Into<Executor<'_>>) -> Result<Row, sqlx::Error> {
         self.fetch_optional(place).await?.ok_or(sqlx::Error::RowNotFound)
     }
 }

@@ -11,7 +11,7 @@ use sqlx::sqlite::{
 };
 use sqlx::{AssertSqlSafe, Connection, Either, Executor, SqlSafeStr};
 
-use super::{Row, Statement, Taker, Value};
+use super::{Row, RowSink, Statement, Value};
 
 /// Milliseconds since 1970 by the clock of the database, for `(SELECT now_ms FROM clock)`: leases are
 /// compared with no other clock, so it does not matter how wrong the clocks of the workers are.
@@ -85,7 +85,7 @@ pub async fn begin(pool: &SqlitePool) -> Result<sqlx::Transaction<'static, Sqlit
 pub async fn run(
     connection: &mut SqliteConnection,
     statement: Statement,
-    take: Taker<'_>,
+    take: RowSink<'_>,
 ) -> Result<u64, sqlx::Error> {
     let sql = match without_row_locks(statement.sql) {
         Cow::Borrowed(text) => text.into_sql_str(),

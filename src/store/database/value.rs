@@ -55,7 +55,7 @@ pub(in crate::store) fn query_of(sql: String) -> Statement {
 }
 
 /// Who is handed the rows, one after the other.
-pub(in crate::store) type Taker<'a> = &'a mut (dyn FnMut(Row) -> Result<(), sqlx::Error> + Send);
+pub(in crate::store) type RowSink<'a> = &'a mut (dyn FnMut(Row) -> Result<(), sqlx::Error> + Send);
 
 /// A row of either engine.
 pub(in crate::store) enum Row {

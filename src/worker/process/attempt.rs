@@ -4,8 +4,8 @@ use std::path::Path;
 
 use serde_json::{Value, json};
 
-use super::protocol::{Assignment, Effort, Made, MadeFile, MeshFile, Outcome};
-use crate::jobs::{JobError, JobInput, JobOutput, MadeMesh, MeshSource, Workplace, work};
+use super::protocol::{Assignment, Effort, MadeFile, MeshFile, Outcome, Products};
+use crate::jobs::{JobContext, JobError, JobInput, JobOutput, MadeMesh, MeshSource, work};
 use crate::library::upload::upload_made;
 use crate::schema::ErrorCode;
 use crate::schema::Limits;
@@ -23,7 +23,7 @@ pub fn attempt(
         Ok(input) => input,
         Err(reason) => return broken(&format!("the document of the job: {reason}")),
     };
-    let place = Workplace { sources, limits, out: &assignment.folder };
+    let place = JobContext { sources, limits, out: &assignment.folder };
     let done = work(&input, &place, progress).and_then(|output| {
         let meshes = write_meshes(&output.meshes, &assignment.folder)?;
         Ok((output, meshes))
@@ -69,7 +69,7 @@ fn made(output: JobOutput, meshes: Vec<MeshFile>) -> Outcome {
     let provenance = output.result.provenance;
     let solver = provenance.solver.as_ref();
     let files = output.files.into_iter();
-    Outcome::Done(Made {
+    Outcome::Done(Products {
         result,
         files: files
             .map(|file| MadeFile { name: file.name, media_type: file.media_type })

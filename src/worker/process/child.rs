@@ -95,7 +95,7 @@ impl std::fmt::Display for Death {
 }
 
 /// What came from a process within some time.
-pub enum Heard {
+pub enum Output {
     Report(Report),
     Nothing,
     /// It has ended, or closed its output.
@@ -176,11 +176,11 @@ impl Process {
         }
     }
 
-    pub fn hear(&self, wait: Duration) -> Heard {
+    pub fn hear(&self, wait: Duration) -> Output {
         match self.reports.recv_timeout(wait) {
-            Ok(report) => Heard::Report(report),
-            Err(RecvTimeoutError::Timeout) => Heard::Nothing,
-            Err(RecvTimeoutError::Disconnected) => Heard::Gone,
+            Ok(report) => Output::Report(report),
+            Err(RecvTimeoutError::Timeout) => Output::Nothing,
+            Err(RecvTimeoutError::Disconnected) => Output::Gone,
         }
     }
 
@@ -203,7 +203,7 @@ impl Process {
         // An output that is closed is the last that a dying process does: its own death is told, not ours.
         let mut ended = self.child.try_wait().ok().flatten();
         for _ in 0..50 {
-            if ended.is_some() || !matches!(self.hear(Duration::ZERO), Heard::Gone) {
+            if ended.is_some() || !matches!(self.hear(Duration::ZERO), Output::Gone) {
                 break;
             }
             std::thread::sleep(Duration::from_millis(2));

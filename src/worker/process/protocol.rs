@@ -90,7 +90,7 @@ pub enum Report {
         wall_s: f64,
     },
     Ask(Question),
-    Ended(Box<Ended>),
+    Ended(Box<AttemptReport>),
 }
 
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -106,7 +106,7 @@ pub enum Question {
 
 /// How an attempt ended, and what the process takes now.
 #[derive(Debug, Serialize, Deserialize)]
-pub struct Ended {
+pub struct AttemptReport {
     pub outcome: Outcome,
     pub memory: Option<Usage>,
 }
@@ -114,7 +114,7 @@ pub struct Ended {
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Outcome {
-    Done(Made),
+    Done(Products),
     /// The job's own fault: JSON with `type` and `detail`.
     Failed(Value),
     Cancelled,
@@ -126,7 +126,7 @@ pub enum Outcome {
 
 /// The result of an attempt; its files stand in the folder of the assignment.
 #[derive(Debug, Serialize, Deserialize)]
-pub struct Made {
+pub struct Products {
     /// The manifest, JSON.
     pub result: String,
     pub files: Vec<MadeFile>,

@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 
 use super::memory;
 use super::protocol::{
-    Answer, Assignment, Ended, Order, Outcome, Report, Settings, read_frame, read_message,
+    Answer, Assignment, AttemptReport, Order, Outcome, Report, Settings, read_frame, read_message,
 };
 use super::reports::Reports;
 use super::source::{FullAnswer, SlotSource};
@@ -54,10 +54,10 @@ pub fn serve() -> Result<(), SlotError> {
     };
     reports.tell(&Report::Ready);
     for assignment in heard.assignments {
-        let progress = Told::new(&reports, &ears, &assignment);
+        let progress = ProgressReporter::new(&reports, &ears, &assignment);
         let outcome = pool.install(|| outcome(&assignment, &source, &settings, &progress));
         let memory = memory::usage("self");
-        reports.tell(&Report::Ended(Box::new(Ended { outcome, memory })));
+        reports.tell(&Report::Ended(Box::new(AttemptReport { outcome, memory })));
     }
     Ok(())
 }
@@ -77,7 +77,7 @@ fn outcome(
     assignment: &Assignment,
     source: &SlotSource,
     settings: &Settings,
-    progress: &Told,
+    progress: &ProgressReporter,
 ) -> Outcome {
     let work = || attempt(assignment, source, &settings.limits, progress);
     catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|panic| {
@@ -90,19 +90,19 @@ fn outcome(
 }
 
 /// What arrives, sorted.
-struct Heard {
+struct Inbox {
     assignments: Receiver<Assignment>,
     answers: Receiver<FullAnswer>,
 }
 
 /// The flag that tells the work to stop.
-type Ears = Arc<AtomicBool>;
+type StopFlag = Arc<AtomicBool>;
 
 /// Reads orders on a thread of its own, so that a solver can be told to stop, and a closed pipe ends the process.
-fn listen(mut orders: BufReader<io::Stdin>) -> Result<(Ears, Heard), SlotError> {
+fn listen(mut orders: BufReader<io::Stdin>) -> Result<(StopFlag, Inbox), SlotError> {
     let (assign, assignments) = channel();
     let (answer, answers) = channel();
-    let stop = Ears::default();
+    let stop = StopFlag::default();
     let ears = stop.clone();
     std::thread::Builder::new().name("orders".into()).spawn(move || {
         while let Ok(Some(order)) = read_message(&mut orders) {
@@ -113,7 +113,7 @@ fn listen(mut orders: BufReader<io::Stdin>) -> Result<(Ears, Heard), SlotError> 
         // The worker is gone or talks nonsense: nobody will take a result.
         std::process::exit(0);
     })?;
-    Ok((ears, Heard { assignments, answers }))
+    Ok((ears, Inbox { assignments, answers }))
 }
 
 fn take(
@@ -142,16 +142,16 @@ fn take(
 }
 
 /// Progress of one attempt, told to the worker.
-struct Told<'a> {
+struct ProgressReporter<'a> {
     reports: &'a Reports,
     stop: &'a AtomicBool,
     fail_points: FailPoints,
     last: Mutex<Option<Instant>>,
 }
 
-impl<'a> Told<'a> {
+impl<'a> ProgressReporter<'a> {
     fn new(reports: &'a Reports, stop: &'a AtomicBool, assignment: &Assignment) -> Self {
-        Told {
+        ProgressReporter {
             reports,
             stop,
             fail_points: FailPoints::of(assignment.attempt, &assignment.document),
@@ -174,7 +174,7 @@ impl<'a> Told<'a> {
     }
 }
 
-impl Progress for Told<'_> {
+impl Progress for ProgressReporter<'_> {
     fn phase(&self, phase: Phase) {
         self.reports.tell(&Report::Phase(phase.name().to_owned()));
         self.pass(&format!("{}:begin", phase.name()));

@@ -8,9 +8,9 @@ use bytes::Bytes;
 use serde_json::Value;
 use tokio::runtime::Handle;
 
-use super::child::{Death, Heard, Process, Program};
+use super::child::{Death, Output, Process, Program};
 use super::memory::Usage;
-use super::protocol::{Answer, Assignment, Made, Order, Outcome, Question, Report, Settings};
+use super::protocol::{Answer, Assignment, Order, Outcome, Products, Question, Report, Settings};
 use super::spent::{MemoryBound, megabytes, out_of_memory, over_time};
 use crate::library::meshes::Library;
 use crate::metrics;
@@ -89,8 +89,8 @@ impl SlotWork {
         let started = Process::start(&self.shared.program, &self.shared.settings);
         let process = started.map_err(|error| error.to_string())?;
         match process.hear(START) {
-            Heard::Report(Report::Ready) => Ok(process),
-            Heard::Report(_) | Heard::Nothing | Heard::Gone => Err(process.end().to_string()),
+            Output::Report(Report::Ready) => Ok(process),
+            Output::Report(_) | Output::Nothing | Output::Gone => Err(process.end().to_string()),
         }
     }
 
@@ -245,13 +245,13 @@ impl Attempt<'_> {
     fn follow(&mut self) -> End {
         loop {
             match self.process.hear(LOOK) {
-                Heard::Report(Report::Ended(ended)) => {
+                Output::Report(Report::Ended(ended)) => {
                     self.usage = ended.memory.or(self.usage);
                     return End::Outcome(ended.outcome);
                 }
-                Heard::Report(report) => self.pass_on(report),
-                Heard::Nothing => self.usage = self.process.usage().or(self.usage),
-                Heard::Gone => return End::Died,
+                Output::Report(report) => self.pass_on(report),
+                Output::Nothing => self.usage = self.process.usage().or(self.usage),
+                Output::Gone => return End::Died,
             }
             if let Some(end) = self.impatience() {
                 return end;
@@ -358,7 +358,7 @@ fn worn_out(panicked: bool, jobs: usize, bytes: Option<u64>, limit: u64) -> Opti
 
 fn finished(outcome: Outcome, folder: &Path) -> Result<Finished, Failure> {
     match outcome {
-        Outcome::Done(Made { result, files, meshes, effort }) => Ok(Finished {
+        Outcome::Done(Products { result, files, meshes, effort }) => Ok(Finished {
             result,
             files: files
                 .into_iter()

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-use facies::store::{Chain, Deed, Store};
+use facies::store::{AuditedAction, Chain, Store};
 use reqwest::StatusCode;
 use serde_json::json;
 use sqlx::Connection;
@@ -18,8 +18,8 @@ use crate::support::trials::trials;
 trials! {
     on_both {
         the_audit_log_shows_what_was_changed
-        a_deed_whose_end_nobody_told_is_in_the_audit_log_as_unknown
-        a_deed_of_a_process_that_lives_is_never_unknown
+        an_audited_action_whose_end_nobody_told_is_in_the_audit_log_as_unknown
+        an_audited_action_of_a_process_that_lives_is_never_unknown
         an_end_that_the_database_did_not_take_is_told_later
     }
     alone {
@@ -27,7 +27,7 @@ trials! {
         no_end_is_lost_and_none_told_twice_where_the_database_crashes
     }
     on_shared {
-        deeds_at_the_same_time_are_noted_together
+        audited_actions_at_the_same_time_are_noted_together
     }
 }
 
@@ -53,33 +53,33 @@ async fn what_cannot_be_noted_is_not_done() {
 async fn the_audit_log_shows_what_was_changed(on: Deployment) {
     let store = on.open().await;
     assert!(matches!(store.check_audit().await.unwrap(), Chain::Whole { rows: 0, .. }));
-    let deed = |action: &str, tenant: &str| Deed {
+    let audited = |action: &str, tenant: &str| AuditedAction {
         action: action.into(),
         tenant: tenant.into(),
-        ..Deed::default()
+        ..AuditedAction::default()
     };
     let ten = |store: Store, action: &'static str| async move {
         for _ in 0..5 {
-            let begun = store.begin_deed(&deed(action, "")).await.unwrap();
-            store.end_deed(begun, "", "done").await.unwrap();
-            store.chain_deeds().await.unwrap();
+            let begun = store.begin_action(&audited(action, "")).await.unwrap();
+            store.end_action(begun, "", "done").await.unwrap();
+            store.chain_actions().await.unwrap();
         }
     };
     let both = [tokio::spawn(ten(store.clone(), "one")), tokio::spawn(ten(store.clone(), "other"))];
     for task in both {
         task.await.unwrap();
     }
-    let last = store.begin_deed(&deed("last", "a")).await.unwrap();
+    let last = store.begin_action(&audited("last", "a")).await.unwrap();
     let Chain::Whole { rows: 10, .. } = store.check_audit().await.unwrap() else {
         panic!("what goes on is not in the chain yet")
     };
-    store.end_deed(last, "made", "201").await.unwrap();
+    store.end_action(last, "made", "201").await.unwrap();
     let Chain::Whole { rows: 11, hash } = store.check_audit().await.unwrap() else {
         panic!("it is whole")
     };
     let own = store.audit(0, "a", 100).await.unwrap();
     assert_eq!((own.len(), own[0].number, &own[0].hash), (1, 11, &hash));
-    assert_eq!((own[0].deed.object.as_str(), own[0].outcome.as_str()), ("made", "201"));
+    assert_eq!((own[0].audited.object.as_str(), own[0].outcome.as_str()), ("made", "201"));
     let broken = async || match store.check_audit().await.unwrap() {
         Chain::Whole { .. } => None,
         Chain::Broken { at } => Some(at),
@@ -94,68 +94,69 @@ async fn the_audit_log_shows_what_was_changed(on: Deployment) {
     assert_eq!(broken().await, Some(7));
 }
 
-async fn a_deed_whose_end_nobody_told_is_in_the_audit_log_as_unknown(on: Deployment) {
+async fn an_audited_action_whose_end_nobody_told_is_in_the_audit_log_as_unknown(on: Deployment) {
     let store = on.open().await;
-    let deed = Deed { action: "begun".into(), ..Deed::default() };
-    let begun = store.begin_deed(&deed).await.unwrap();
+    let audited = AuditedAction { action: "begun".into(), ..AuditedAction::default() };
+    let begun = store.begin_action(&audited).await.unwrap();
     assert_eq!(store.audit(0, "", 10).await.unwrap(), []);
     on.execute(AN_HOUR_LATER).await;
-    // As another process does it: the one that began a deed says first that it goes on.
-    store.chain_deeds().await.unwrap();
+    // As another process does it: the one that began an audited action says first that it goes on.
+    store.chain_actions().await.unwrap();
     let rows = store.audit(0, "", 10).await.unwrap();
-    assert_eq!((rows.len(), &rows[0].deed, rows[0].outcome.as_str()), (1, &deed, "unknown"));
-    store.end_deed(begun, "made", "201").await.unwrap();
+    assert_eq!((rows.len(), &rows[0].audited, rows[0].outcome.as_str()), (1, &audited, "unknown"));
+    store.end_action(begun, "made", "201").await.unwrap();
     let told = store.audit(0, "", 10).await.unwrap();
     assert_eq!((told.len(), &told[0]), (2, &rows[0]), "what is in the chain stays as it is");
     let row = &told[1];
-    assert_eq!((row.outcome.as_str(), row.deed.object.as_str()), ("201", "made"));
-    assert_eq!((&row.deed.action, &row.deed.request), (&deed.action, &deed.request));
+    assert_eq!((row.outcome.as_str(), row.audited.object.as_str()), ("201", "made"));
+    assert_eq!((&row.audited.action, &row.audited.request), (&audited.action, &audited.request));
     assert!(matches!(store.check_audit().await.unwrap(), Chain::Whole { rows: 2, .. }));
 }
 
 const AN_HOUR_LATER: &str = "UPDATE deeds SET at = at - 3600001, alive = alive - 3600001";
 
-async fn a_deed_of_a_process_that_lives_is_never_unknown(on: Deployment) {
+async fn an_audited_action_of_a_process_that_lives_is_never_unknown(on: Deployment) {
     let store = on.open().await;
-    let deed = Deed { action: "upload".into(), ..Deed::default() };
-    let begun = store.begin_deed(&deed).await.unwrap();
+    let audited = AuditedAction { action: "upload".into(), ..AuditedAction::default() };
+    let begun = store.begin_action(&audited).await.unwrap();
     on.execute(AN_HOUR_LATER).await;
-    store.tell_deeds().await.unwrap();
+    store.write_outcomes().await.unwrap();
     assert_eq!(store.audit(0, "", 10).await.unwrap(), [], "it goes on");
-    store.end_deed(begun, "mesh", "201").await.unwrap();
+    store.end_action(begun, "mesh", "201").await.unwrap();
     let rows = store.audit(0, "", 10).await.unwrap();
     assert_eq!(rows.len(), 1);
-    assert_eq!((rows[0].outcome.as_str(), rows[0].deed.object.as_str()), ("201", "mesh"));
-    let forgotten = store.begin_deed(&deed).await.unwrap();
+    assert_eq!((rows[0].outcome.as_str(), rows[0].audited.object.as_str()), ("201", "mesh"));
+    let forgotten = store.begin_action(&audited).await.unwrap();
     drop(forgotten);
     on.execute(AN_HOUR_LATER).await;
-    store.tell_deeds().await.unwrap();
+    store.write_outcomes().await.unwrap();
     assert_eq!(store.audit(1, "", 10).await.unwrap()[0].outcome, "unknown", "nobody does it");
 }
 
 async fn an_end_that_the_database_did_not_take_is_told_later(on: Deployment) {
     let store = on.open().await;
-    let deed = Deed { action: "crashed".into(), ..Deed::default() };
-    let begun = store.begin_deed(&deed).await.unwrap();
+    let audited = AuditedAction { action: "crashed".into(), ..AuditedAction::default() };
+    let begun = store.begin_action(&audited).await.unwrap();
     on.execute("ALTER TABLE deeds RENAME TO lost").await;
-    store.end_deed(begun, "job", "201").await.unwrap_err();
-    store.tell_deeds().await.unwrap_err();
+    store.end_action(begun, "job", "201").await.unwrap_err();
+    store.write_outcomes().await.unwrap_err();
     on.execute("ALTER TABLE lost RENAME TO deeds").await;
-    store.tell_deeds().await.unwrap();
+    store.write_outcomes().await.unwrap();
     let rows = store.audit(0, "", 10).await.unwrap();
     assert_eq!((rows.len(), rows[0].outcome.as_str()), (1, "201"));
-    store.tell_deeds().await.unwrap();
+    store.write_outcomes().await.unwrap();
     assert_eq!(store.audit(0, "", 10).await.unwrap(), rows, "it is told once");
 }
 
-async fn deeds_at_the_same_time_are_noted_together(on: Deployment) {
+async fn audited_actions_at_the_same_time_are_noted_together(on: Deployment) {
     let store = on.open().await;
     let one = |number: usize| {
-        let deed = Deed { action: format!("number {number}"), ..Deed::default() };
+        let audited =
+            AuditedAction { action: format!("number {number}"), ..AuditedAction::default() };
         let store = store.clone();
         async move {
-            let begun = store.begin_deed(&deed).await.unwrap();
-            store.end_deed(begun, "", "done").await.unwrap();
+            let begun = store.begin_action(&audited).await.unwrap();
+            store.end_action(begun, "", "done").await.unwrap();
         }
     };
     futures::future::join_all((0..300).map(one)).await;
@@ -169,7 +170,7 @@ async fn deeds_at_the_same_time_are_noted_together(on: Deployment) {
 
 /// What PostgreSQL does not flush by itself for some hundred milliseconds is gone after a crash.
 async fn no_end_is_lost_and_none_told_twice_where_the_database_crashes() -> Result<(), Missing> {
-    const DEEDS: usize = 40;
+    const ACTIONS: usize = 40;
     let cluster = Arc::new(Cluster::start()?);
     let on = Deployment::on(&cluster.database().await);
     Store::migrate(&on.places).await.unwrap();
@@ -178,13 +179,14 @@ async fn no_end_is_lost_and_none_told_twice_where_the_database_crashes() -> Resu
         let action = format!("round {round}");
         let begin = |number: usize| {
             let request = number.to_string();
-            let deed = Deed { action: action.clone(), request, ..Deed::default() };
+            let audited =
+                AuditedAction { action: action.clone(), request, ..AuditedAction::default() };
             let store = &store;
-            async move { store.begin_deed(&deed).await.unwrap() }
+            async move { store.begin_action(&audited).await.unwrap() }
         };
-        let begun = futures::future::join_all((0..DEEDS).map(begin)).await;
+        let begun = futures::future::join_all((0..ACTIONS).map(begin)).await;
         // Some ends are taken and some are not, and of some nobody hears whether they were.
-        let ends = begun.into_iter().map(|begun| store.end_deed(begun, "", "201"));
+        let ends = begun.into_iter().map(|begun| store.end_action(begun, "", "201"));
         let ends = futures::future::join_all(ends);
         let crashes = cluster.clone();
         let crash = move || crashes.control(&["-m", "immediate", "stop"]);
@@ -196,11 +198,12 @@ async fn no_end_is_lost_and_none_told_twice_where_the_database_crashes() -> Resu
             crashed.unwrap();
         }
         cluster.control(&["start"]);
-        until("the ends are told", async || store.tell_deeds().await.ok()).await;
+        until("the ends are told", async || store.write_outcomes().await.ok()).await;
         let rows = store.audit(0, "", 1000).await.unwrap();
-        let own = rows.iter().filter(|row| row.deed.action == action && row.outcome == "201");
-        let requests: BTreeSet<&str> = own.clone().map(|row| row.deed.request.as_str()).collect();
-        assert_eq!((own.count(), requests.len()), (DEEDS, DEEDS), "round {round}");
+        let own = rows.iter().filter(|row| row.audited.action == action && row.outcome == "201");
+        let requests: BTreeSet<&str> =
+            own.clone().map(|row| row.audited.request.as_str()).collect();
+        assert_eq!((own.count(), requests.len()), (ACTIONS, ACTIONS), "round {round}");
     }
     assert!(matches!(store.check_audit().await.unwrap(), Chain::Whole { .. }));
     Ok(())

@@ -1,4 +1,4 @@
-//! Deeds, downloads and erasures over HTTP.
+//! Audited actions, downloads and erasures over HTTP.
 
 pub mod audit;
 pub mod downloads;

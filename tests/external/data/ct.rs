@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use facies::jobs::Workplace;
+use facies::jobs::JobContext;
 use facies::jobs::{JobInput, PredictInput, StoredShape, work};
 use facies::schema::Limits;
 use mechanics::format::Mesh;
@@ -115,7 +115,7 @@ fn a_real_ct_gives_a_prediction_its_materials() -> Result<(), Missing> {
             plan: serde_json::from_value(plan).unwrap(),
             spec: serde_json::from_value(spec).unwrap(),
         };
-        let place = Workplace { sources: &sources, limits: &Limits::default(), out: out.path() };
+        let place = JobContext { sources: &sources, limits: &Limits::default(), out: out.path() };
         let done = work(&JobInput::Predict(input), &place, &Unobserved).unwrap();
         let file = fs::read(out.path().join("skin.vtp")).unwrap();
         (surface(read_default(&file)).points, done.result)

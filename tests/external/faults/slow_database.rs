@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use facies::config::DatabasePlace;
+use facies::config::DatabaseLocation;
 use reqwest::StatusCode;
 use tempfile::TempDir;
 
@@ -27,7 +27,9 @@ async fn timed(request: reqwest::RequestBuilder) -> (Answer, Duration) {
 }
 
 async fn requests_to_a_slow_database_are_told_to_come_back_and_do_not_pile_up(on: Deployment) {
-    let DatabasePlace::Server { address, .. } = &on.places.database else { panic!("it is shared") };
+    let DatabaseLocation::Server { address, .. } = &on.places.database else {
+        panic!("it is shared")
+    };
     let way = Way::to(address.reveal());
     let mut command = serve_shared(&on);
     command.args(["--workers", "1", "--database", &way.address]);

@@ -5,7 +5,7 @@ use std::process::Command;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use facies::config::DatabasePlace;
+use facies::config::DatabaseLocation;
 use facies::store::{AddedCase, JobFilter, NewCase};
 use tracing::field::{Field, Visit};
 use tracing::instrument::WithSubscriber;
@@ -88,8 +88,8 @@ async fn the_command_prints_every_key_of_a_tenant(on: Deployment) {
     let mut command = Command::new(env!("CARGO_BIN_EXE_facies"));
     command.args(["admin", "key", "list", "--tenant", "ward"]);
     match on.places.database {
-        DatabasePlace::Embedded => drop(command.arg("--data").arg(&on.places.data)),
-        DatabasePlace::Server { .. } => on.bring(&mut command),
+        DatabaseLocation::Embedded => drop(command.arg("--data").arg(&on.places.data)),
+        DatabaseLocation::Server { .. } => on.bring(&mut command),
     }
     let output = command.output().unwrap();
     assert!(output.status.success(), "{output:?}");

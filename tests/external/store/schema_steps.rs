@@ -34,8 +34,8 @@ async fn a_program_older_than_its_database_refuses_to_start(on: Deployment) {
 /// The third step makes `blobs` before `discarded_blobs`, which is in its way here.
 async fn a_step_that_breaks_off_leaves_the_step_before(shared: Deployment) {
     let on = match shared.places.database {
-        facies::config::DatabasePlace::Embedded => shared,
-        facies::config::DatabasePlace::Server { .. } => Deployment::empty().await.unwrap(),
+        facies::config::DatabaseLocation::Embedded => shared,
+        facies::config::DatabaseLocation::Server { .. } => Deployment::empty().await.unwrap(),
     };
     on.execute("CREATE TABLE discarded_blobs (in_the_way BIGINT)").await;
     let error = Store::migrate(&on.places).await.unwrap_err();

@@ -3,10 +3,11 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-use facies::config::DatabasePlace;
+use facies::config::DatabaseLocation;
 use facies::schema::key::{KeyDocument, Scope};
 use facies::store::{
-    AddedCase, Deed, Dismissal, MemberRow, NewCase, NewCohort, Published, Store, StoreError,
+    AddedCase, AuditedAction, Dismissal, MemberRow, NewCase, NewCohort, Published, Store,
+    StoreError,
 };
 
 use crate::deployments::Deployment;
@@ -44,11 +45,11 @@ async fn fill(store: &Store) {
     store.delete_plan((&case.id, &erased), None).await.unwrap();
     let key = KeyDocument { label: "a".into(), scopes: [Scope::Read].into(), days: None };
     store.make_key(&key).await.unwrap();
-    let deed = Deed { action: "a deed".into(), ..Deed::default() };
-    let begun = store.begin_deed(&deed).await.unwrap();
-    store.end_deed(begun, "", "done").await.unwrap();
-    store.chain_deeds().await.unwrap();
-    store.begin_deed(&deed).await.unwrap();
+    let audited = AuditedAction { action: "a deed".into(), ..AuditedAction::default() };
+    let begun = store.begin_action(&audited).await.unwrap();
+    store.end_action(begun, "", "done").await.unwrap();
+    store.chain_actions().await.unwrap();
+    store.begin_action(&audited).await.unwrap();
     store.reserve("a key", "a request", &case.id).await.unwrap();
     let done = enqueue(store, "done").await;
     let lease = store.claim(LEASE).await.unwrap().unwrap().lease;
@@ -115,8 +116,8 @@ async fn a_deployment_moves_to_postgresql_and_back(shared: Deployment) {
 async fn an_export_has_every_table(on: Deployment) {
     let store = on.open().await;
     let tables = match on.places.database {
-        DatabasePlace::Embedded => "SELECT name FROM sqlite_master WHERE type = 'table'",
-        DatabasePlace::Server { .. } => {
+        DatabaseLocation::Embedded => "SELECT name FROM sqlite_master WHERE type = 'table'",
+        DatabaseLocation::Server { .. } => {
             "SELECT tablename::text FROM pg_tables WHERE schemaname = 'public'"
         }
     };

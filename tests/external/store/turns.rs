@@ -1,6 +1,6 @@
 //! Who is served next, and by which program.
 
-use facies::config::DatabasePlace;
+use facies::config::DatabaseLocation;
 use facies::schema::engine::EngineDocument;
 use facies::store::Enqueued;
 use serde_json::json;
@@ -26,7 +26,9 @@ async fn rows_of_one_tenant_that_somebody_holds_keep_no_other_waiting(on: Deploy
     let (alpha, beta) = (store.of_tenant("alpha"), store.of_tenant("beta"));
     enqueue(&alpha, "held").await;
     let other = enqueue(&beta, "free").await;
-    let DatabasePlace::Server { address, .. } = &on.places.database else { panic!("it is shared") };
+    let DatabaseLocation::Server { address, .. } = &on.places.database else {
+        panic!("it is shared")
+    };
     let mut holder = PgConnection::connect(address.reveal()).await.unwrap();
     let mut held = holder.begin().await.unwrap();
     let lock = "SELECT 1 FROM jobs, tenants WHERE tenants.name = jobs.tenant AND tenant = 'alpha' FOR UPDATE";

@@ -4,7 +4,7 @@ use std::io::BufRead;
 use std::process::{Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
-use facies::config::DatabasePlace;
+use facies::config::DatabaseLocation;
 use facies::store::Store;
 use reqwest::StatusCode;
 use serde_json::json;
@@ -118,7 +118,9 @@ async fn a_job_whose_host_is_killed_is_solved_by_another(on: Deployment) {
 async fn a_worker_cut_off_from_the_database_loses_its_job_to_another_and_changes_nothing(
     on: Deployment,
 ) {
-    let DatabasePlace::Server { address, .. } = &on.places.database else { panic!("it is shared") };
+    let DatabaseLocation::Server { address, .. } = &on.places.database else {
+        panic!("it is shared")
+    };
     let way = Way::to(address.reveal());
     let api = api(&on);
     let case = api.case(&SMALL).await;

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
-use facies::jobs::{JobInput, PredictInput, StoredMesh, StoredShape, StudyInput, Workplace, work};
+use facies::jobs::{JobContext, JobInput, PredictInput, StoredMesh, StoredShape, StudyInput, work};
 use facies::schema::study::report::ReportDocument;
 use facies::schema::{CaseDocument, Limits};
 use mechanics::mesh::sample::block;
@@ -65,7 +65,7 @@ fn study(spec: Value, out: &Path) -> Result<ReportDocument, String> {
         spec: serde_json::from_value(spec).unwrap(),
     };
     let (sources, limits) = (sources(), Limits::default());
-    let place = Workplace { sources: &sources, limits: &limits, out };
+    let place = JobContext { sources: &sources, limits: &limits, out };
     work(&JobInput::Study(input), &place, &Unobserved).map_err(|error| format!("{error:?}"))?;
     Ok(serde_json::from_slice(&fs::read(out.join("report.json")).unwrap()).unwrap())
 }
@@ -153,7 +153,7 @@ fn a_result_repeats_how_its_scan_was_taken() {
                 .unwrap(),
         };
         let (sources, limits) = (sources(), Limits::default());
-        let place = Workplace { sources: &sources, limits: &limits, out: folder.path() };
+        let place = JobContext { sources: &sources, limits: &limits, out: folder.path() };
         let done = work(&JobInput::Predict(input), &place, &Unobserved);
         done.map(|done| done.result).map_err(|error| format!("{error:?}"))
     };

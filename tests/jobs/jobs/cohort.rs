@@ -4,7 +4,9 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
-use facies::jobs::{CohortInput, CompareInput, JobInput, StoredMesh, StoredShape, Workplace, work};
+use facies::jobs::{
+    CohortInput, CompareInput, JobContext, JobInput, StoredMesh, StoredShape, work,
+};
 use facies::schema::Limits;
 use facies::schema::cohort::result::{CohortPairDocument, CohortResultDocument};
 use facies::schema::compare::result::ComparisonDocument;
@@ -38,7 +40,7 @@ fn comparison(error: f64) -> ComparisonDocument {
     let spec = serde_json::from_value(spec).unwrap();
     let input = JobInput::Compare(CompareInput { job: None, queue_s: None, spec });
     let out = tempfile::tempdir().unwrap();
-    let place = Workplace { sources: &sources, limits: &Limits::default(), out: out.path() };
+    let place = JobContext { sources: &sources, limits: &Limits::default(), out: out.path() };
     work(&input, &place, &Unobserved).unwrap().result.comparison.unwrap()
 }
 
@@ -60,7 +62,7 @@ fn cohort_in(
     let input = CohortInput { job: None, queue_s: None, spec, cohort: None, comparisons, actuals };
     let input = JobInput::Cohort(input);
     let sources = Meshes(BTreeMap::new());
-    let place = Workplace { sources: &sources, limits: &Limits::default(), out };
+    let place = JobContext { sources: &sources, limits: &Limits::default(), out };
     let done = work(&input, &place, &Unobserved).map_err(|error| format!("{error:?}"))?;
     Ok(done.result.cohort.unwrap())
 }
@@ -77,7 +79,7 @@ fn lists_in_another_order_and_a_patient_who_stands_twice_are_told() {
         let input =
             CohortInput { job: None, queue_s: None, spec, cohort: None, comparisons, actuals };
         let (out, sources) = (tempfile::tempdir().unwrap(), Meshes(BTreeMap::new()));
-        let place = Workplace { sources: &sources, limits: &Limits::default(), out: out.path() };
+        let place = JobContext { sources: &sources, limits: &Limits::default(), out: out.path() };
         let done = work(&JobInput::Cohort(input), &place, &Unobserved).unwrap();
         done.result.warnings.into_iter().map(|warning| warning.code).collect()
     };

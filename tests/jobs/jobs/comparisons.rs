@@ -5,7 +5,7 @@ use std::fs;
 use std::path::Path;
 
 use facies::jobs::{
-    CompareInput, JobError, JobInput, JobOutput, PredictInput, StoredMesh, StoredShape, Workplace,
+    CompareInput, JobContext, JobError, JobInput, JobOutput, PredictInput, StoredMesh, StoredShape,
     work,
 };
 use facies::schema::compare::result::ComparisonDocument;
@@ -78,7 +78,7 @@ fn predicted(sources: &Meshes, folder: &Path) -> (StoredMesh, TriangleSurface) {
 }
 
 fn run(sources: &Meshes, input: &JobInput, out: &Path) -> Result<JobOutput, JobError> {
-    work(input, &Workplace { sources, limits: &Limits::default(), out }, &Unobserved)
+    work(input, &JobContext { sources, limits: &Limits::default(), out }, &Unobserved)
 }
 
 fn compared(sources: &Meshes, spec: &Value, out: &Path) -> Result<JobOutput, JobError> {

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::f64::consts::PI;
 use std::fs;
 
-use facies::jobs::{JobInput, MeshingInput, StoredMesh, Workplace, work};
+use facies::jobs::{JobContext, JobInput, MeshingInput, StoredMesh, work};
 use facies::schema::Limits;
 use facies::schema::meshing::cuts::CutPathDocument;
 use facies::schema::predict::result::ResultDocument;
@@ -39,7 +39,7 @@ fn meshed_finely(osteotomy: Value, fine: Value) -> Result<(ResultDocument, TempD
     let spec = serde_json::from_value(spec).unwrap();
     let input = JobInput::Meshing(MeshingInput { job: None, queue_s: None, spec, case: None });
     let folder = tempfile::tempdir().unwrap();
-    let place = Workplace { sources: &sources, limits: &Limits::default(), out: folder.path() };
+    let place = JobContext { sources: &sources, limits: &Limits::default(), out: folder.path() };
     let done = work(&input, &place, &Unobserved).map_err(|error| format!("{error:?}"))?;
     Ok((done.result, folder))
 }

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use facies::jobs::{
-    JobError, JobInput, JobOutput, PredictInput, StoredShape, Workplace, check, work,
+    JobContext, JobError, JobInput, JobOutput, PredictInput, StoredShape, check, work,
 };
 use facies::schema::Limits;
 use mechanics::image::{ImageVolume, Placement, Voxels};
@@ -69,7 +69,7 @@ fn input(case: &Value, spec: &Value) -> PredictInput {
 
 fn run(sources: &Meshes, case: &Value, out: &Path) -> JobOutput {
     let spec = json!({"outputs": ["skin.vtp", "volume.vtu"]});
-    let place = Workplace { sources, limits: &Limits::default(), out };
+    let place = JobContext { sources, limits: &Limits::default(), out };
     work(&JobInput::Predict(input(case, &spec)), &place, &Unobserved).unwrap()
 }
 

@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 
 use facies::jobs::{
-    JobError, JobInput, JobOutput, LearnInput, LearnedCase, MeshSource, PredictInput, SourceError,
-    StoredMesh, StoredShape, Workplace, work,
+    JobContext, JobError, JobInput, JobOutput, LearnInput, LearnedCase, MeshSource, PredictInput,
+    SourceError, StoredMesh, StoredShape, work,
 };
 use facies::schema::Limits;
 use mechanics::mesh::{CellShape, Vector, VolumeMesh, sample};
@@ -93,7 +93,7 @@ fn operated_beside(missed: &dyn Fn(usize, usize) -> Vector) -> (Sources, LearnIn
 
 fn done(input: JobInput, sources: &Sources) -> Result<(JobOutput, tempfile::TempDir), JobError> {
     let out = tempfile::tempdir().unwrap();
-    let place = Workplace { sources, limits: &Limits::default(), out: out.path() };
+    let place = JobContext { sources, limits: &Limits::default(), out: out.path() };
     work(&input, &place, &Unobserved).map(|done| (done, out))
 }
 

@@ -4,8 +4,8 @@ use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use facies::jobs::{
-    JobError, JobInput, JobOutput, MeshSource, OptimiseInput, SourceError, StoredMesh, StoredShape,
-    Workplace, work,
+    JobContext, JobError, JobInput, JobOutput, MeshSource, OptimiseInput, SourceError, StoredMesh,
+    StoredShape, work,
 };
 use facies::schema::Limits;
 use facies::schema::case::document::LengthUnit;
@@ -51,7 +51,7 @@ fn input() -> OptimiseInput {
 
 fn run(out: &Path, progress: &dyn Progress) -> Result<JobOutput, JobError> {
     let limits = Limits::default();
-    let place = Workplace { sources: &Block, limits: &limits, out };
+    let place = JobContext { sources: &Block, limits: &limits, out };
     work(&JobInput::Optimise(input()), &place, progress)
 }
 

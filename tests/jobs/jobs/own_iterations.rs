@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use facies::jobs::{JobInput, PredictInput, StoredMesh, StoredShape, Workplace, work};
+use facies::jobs::{JobContext, JobInput, PredictInput, StoredMesh, StoredShape, work};
 use facies::schema::Limits;
 use facies::schema::predict::result::ResultDocument;
 use mechanics::mesh::sample::block;
@@ -36,7 +36,7 @@ fn predicted(iterations: &str) -> Result<ResultDocument, String> {
     let (limits, out) = (Limits::default(), folder.path());
     let done = work(
         &JobInput::Predict(input),
-        &Workplace { sources: &sources, limits: &limits, out },
+        &JobContext { sources: &sources, limits: &limits, out },
         &Unobserved,
     );
     done.map(|done| done.result).map_err(|error| format!("{error:?}"))

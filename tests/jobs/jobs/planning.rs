@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use facies::jobs::{
-    JobInput, PredictInput, ReproduceInput, StoredMesh, StoredShape, Workplace, check, work,
+    JobContext, JobInput, PredictInput, ReproduceInput, StoredMesh, StoredShape, check, work,
 };
 use facies::schema::case::norm::{NormDocuments, check_norms};
 use facies::schema::predict::check::CheckDocument;
@@ -65,7 +65,7 @@ pub fn result_of(sources: &Meshes, spec: Value) -> Result<ResultDocument, String
     let folder = tempfile::tempdir().unwrap();
     let spec = serde_json::from_value(spec).unwrap();
     let input = JobInput::Reproduce(ReproduceInput { job: None, queue_s: None, spec });
-    let place = Workplace { sources, limits: &Limits::default(), out: folder.path() };
+    let place = JobContext { sources, limits: &Limits::default(), out: folder.path() };
     let done = work(&input, &place, &Unobserved).map_err(|error| format!("{error:?}"))?;
     Ok(done.result)
 }
@@ -214,7 +214,8 @@ fn a_picture_shows_how_bones_meet_before_and_as_planned() {
     let drawn = |plan: Value| {
         let spec = json!({"method": "thickness_warp", "outputs": ["skin.vtp", "gaps.svg"]});
         let (sources, input) = cubes(json!({}), plan, spec);
-        let place = Workplace { sources: &sources, limits: &Limits::default(), out: folder.path() };
+        let place =
+            JobContext { sources: &sources, limits: &Limits::default(), out: folder.path() };
         let done = work(&JobInput::Predict(input), &place, &Unobserved).unwrap();
         let is_there = done.result.files.iter().any(|file| file.name == "gaps.svg");
         is_there.then(|| std::fs::read_to_string(folder.path().join("gaps.svg")).unwrap())

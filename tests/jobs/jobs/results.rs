@@ -5,8 +5,8 @@ use std::fs;
 use std::path::Path;
 
 use facies::jobs::{
-    CompareInput, JobError, JobInput, JobOutput, MeshSource, PredictInput, SourceError, StoredMesh,
-    StoredShape, Workplace, work,
+    CompareInput, JobContext, JobError, JobInput, JobOutput, MeshSource, PredictInput, SourceError,
+    StoredMesh, StoredShape, work,
 };
 use facies::schema::case::document::LengthUnit;
 use facies::schema::job::ErrorClass;
@@ -100,7 +100,7 @@ pub fn predict_input(case: &str, plan: &str, spec: &str) -> PredictInput {
 
 fn run(input: JobInput, out: &Path, progress: &dyn Progress) -> Result<JobOutput, JobError> {
     let (sources, limits) = (meshes(), Limits::default());
-    work(&input, &Workplace { sources: &sources, limits: &limits, out }, progress)
+    work(&input, &JobContext { sources: &sources, limits: &limits, out }, progress)
 }
 
 pub fn predict(case: &str, plan: &str, spec: &str, out: &Path) -> Result<JobOutput, JobError> {
@@ -336,7 +336,7 @@ fn a_skin_is_compared_within_its_own_job() {
     let input = JobInput::Predict(predict_input(CASE, TURN, spec));
     let second = out.path().join("second");
     let limits = Limits::default();
-    let place = Workplace { sources: &sources, limits: &limits, out: &second };
+    let place = JobContext { sources: &sources, limits: &limits, out: &second };
     let done = work(&input, &place, &Unobserved).unwrap();
     let comparison = done.result.comparison.unwrap();
     // The scan is the prediction itself.
@@ -351,7 +351,7 @@ fn compare(sources: &Meshes, text: &str, out: &Path) -> Result<JobOutput, JobErr
     let spec: CompareDocument = serde_json::from_str(text).unwrap();
     let input = JobInput::Compare(CompareInput { job: None, queue_s: None, spec });
     let limits = Limits::default();
-    work(&input, &Workplace { sources, limits: &limits, out }, &Unobserved)
+    work(&input, &JobContext { sources, limits: &limits, out }, &Unobserved)
 }
 
 #[test]

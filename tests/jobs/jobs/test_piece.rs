@@ -5,7 +5,7 @@ use std::fs;
 use std::path::Path;
 
 use facies::jobs::{
-    CompareInput, JobInput, PredictInput, StoredMesh, StoredShape, Workplace, work,
+    CompareInput, JobContext, JobInput, PredictInput, StoredMesh, StoredShape, work,
 };
 use facies::schema::Limits;
 use facies::schema::predict::result::ResultDocument;
@@ -19,7 +19,7 @@ use serde_json::{Value, json};
 use crate::sources::{Meshes, stored};
 
 fn run(sources: &Meshes, input: &JobInput, out: &Path) -> ResultDocument {
-    let place = Workplace { sources, limits: &Limits::default(), out };
+    let place = JobContext { sources, limits: &Limits::default(), out };
     work(input, &place, &Unobserved).unwrap().result
 }
 

@@ -5,7 +5,7 @@
 
 use std::fs;
 
-use facies::jobs::{JobInput, PredictInput, StoredMesh, StudyInput, Workplace, work};
+use facies::jobs::{JobContext, JobInput, PredictInput, StoredMesh, StudyInput, work};
 use facies::schema::reproduce::result::ReproductionDocument;
 use facies::schema::{Faults, Limits, Matrix4x4, ReportDocument, StudyDocument};
 use mechanics::format::{self, ReadLimits};
@@ -104,7 +104,7 @@ fn predicted_of(case: Value, sources: &Meshes, plan: &Value) -> StoredMesh {
         )
         .unwrap(),
     };
-    let place = Workplace { sources, limits: &Limits::default(), out: folder.path() };
+    let place = JobContext { sources, limits: &Limits::default(), out: folder.path() };
     work(&JobInput::Predict(input), &place, &Unobserved).unwrap();
     let bytes = fs::read(folder.path().join("skin.vtp")).unwrap();
     let read = format::read(&bytes, &ReadLimits::default()).unwrap();
@@ -168,7 +168,7 @@ fn swept(
         earlier: None,
         spec: serde_json::from_value(spec).unwrap(),
     };
-    let place = Workplace { sources, limits: &Limits::default(), out: folder.path() };
+    let place = JobContext { sources, limits: &Limits::default(), out: folder.path() };
     let done = work(&JobInput::Study(input), &place, &Unobserved);
     let done = done.map_err(|error| format!("{error:?}"))?;
     let report = fs::read(folder.path().join("report.json")).unwrap();

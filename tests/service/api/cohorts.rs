@@ -416,7 +416,7 @@ async fn a_cohort_is_its_tenants_and_what_is_done_to_it_is_noted() {
     assert_eq!(delete(&ours).await.status, StatusCode::NO_CONTENT);
 
     let log = hospital.get(&ours, "/v1/audit?limit=200").await.expect(StatusCode::OK);
-    let deeds: Vec<[&str; 3]> = log["items"]
+    let actions: Vec<[&str; 3]> = log["items"]
         .as_array()
         .unwrap()
         .iter()
@@ -427,6 +427,6 @@ async fn a_cohort_is_its_tenants_and_what_is_done_to_it_is_noted() {
         ["POST /v1/cohorts", cohort.as_str(), "201"],
         ["DELETE /v1/cohorts/{id}", cohort.as_str(), "204"],
     ] {
-        assert!(deeds.contains(&wanted), "{wanted:?} is not in {deeds:?}");
+        assert!(actions.contains(&wanted), "{wanted:?} is not in {actions:?}");
     }
 }

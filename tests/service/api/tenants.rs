@@ -270,7 +270,7 @@ async fn who_runs_the_service_sees_what_was_done() {
     let runner = hospital.key("a", &["run"]).await;
     hospital.get(&runner, "/v1/cases").await.problem(403, "forbidden-scope");
     let log = hospital.get(&key, "/v1/audit?limit=200").await.expect(StatusCode::OK);
-    let deeds: Vec<(String, String, String)> = log["items"]
+    let actions: Vec<(String, String, String)> = log["items"]
         .as_array()
         .unwrap()
         .iter()
@@ -288,7 +288,7 @@ async fn who_runs_the_service_sees_what_was_done() {
         ("GET /v1/cases", "", "403"),
     ] {
         let wanted = (action.to_owned(), object.to_owned(), outcome.to_owned());
-        assert!(deeds.contains(&wanted), "{wanted:?} is not in {deeds:?}");
+        assert!(actions.contains(&wanted), "{wanted:?} is not in {actions:?}");
     }
     let check = ask(hospital.admin(Method::GET, "/audit/check")).await.expect(StatusCode::OK);
     assert_eq!(check["status"], "whole");

@@ -32,7 +32,7 @@ async function told(app: App, job: Job): Promise<Record<string, HTMLElement[]>> 
   };
 }
 
-/** What a study comes to: its verdict, how many of its rows were solved, and the ways of modelling that none beats. */
+/** What a study comes to: its verdict, how many of its rows were solved, and the models that none beats. */
 function verdictFacts(words: Words, { verdict, on_front }: Documents["StudySummaryDocument"]): HTMLElement {
   const others = Object.entries(words.rowStates).map(([state, name]) => [name, Number((verdict as unknown as Record<string, unknown>)[state] ?? 0)] as const).filter(([, rows]) => rows > 0);
   return card(words.verdict, make("p", {}, make("strong", {}, words.outcomes[verdict.outcome] ?? verdict.outcome),

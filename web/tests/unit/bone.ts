@@ -112,7 +112,7 @@ test("a stored plan turns about the points that it names, and others keep theirs
   assert.equal(fromDocument(stored, { upper: [7, 7, 7], ...own }, "LPS")?.segments.jaw?.forward, 1);
 });
 
-test("a mark is of the way of modelling and mesh level that its data say, and what has none is no mark", () => {
+test("a mark is of the model and mesh level that its data say, and what has none is no mark", () => {
   assert.deepEqual(markOf({ label: "fem: corrected", method: "fem_linear", level: "1" }), { label: "fem: corrected", level: 1 });
   assert.equal(markOf({ label: "fem", method: "fem_linear" }), undefined);
   assert.equal(markOf({}), undefined);

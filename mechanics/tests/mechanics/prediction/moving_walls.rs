@@ -17,7 +17,7 @@ use mechanics::validation::Statistics;
 use crate::scenes::{case_of, exact, largest_error, material, set, solve};
 use crate::support::responses::{at_rest, direct};
 
-/// Every way of modelling that slides, with the cells it takes.
+/// Every model that slides, with the cells it takes.
 fn models() -> Vec<(CellShape, Settings)> {
     let with = |shape, element, method| (shape, Settings { method, element, ..exact() });
     let fem = |shape, element| with(shape, element, Method::FemLinear);

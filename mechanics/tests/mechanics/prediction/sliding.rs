@@ -14,7 +14,7 @@ use nalgebra::Rotation3;
 
 use crate::scenes::{case_of, exact, largest_error, material, set};
 
-/// Every way of modelling that slides, with the cells it takes.
+/// Every model that slides, with the cells it takes.
 const MODELS: [(CellShape, ElementChoice, Method); 8] = [
     (CellShape::Tet4, ElementChoice::Plain, Method::FemLinear),
     (CellShape::Tet4, ElementChoice::Stabilised, Method::FemLinear),

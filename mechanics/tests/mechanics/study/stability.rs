@@ -20,7 +20,7 @@ use mechanics::validation::{Statistics, StatisticsError};
 
 use crate::scenes::{case_of, exact, material, set};
 
-/// Every way of modelling that these facts are held against; a further one adds its line.
+/// Every model that these facts are held against; a further one adds its line.
 fn variants() -> Vec<Variant> {
     let element = |name: &str, element| Variant {
         method: "fem_linear".to_owned(),

@@ -1,10 +1,10 @@
-//! A deed: something that is done and noted in the audit log.
+//! An audited action: something that is done and noted in the audit log.
 
 use super::database::Row;
 
 /// What somebody does.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Deed {
+pub struct AuditedAction {
     pub tenant: String,
     /// The id of a key, `command`, or `retention`.
     pub actor: String,
@@ -16,9 +16,9 @@ pub struct Deed {
     pub request: String,
 }
 
-impl Deed {
-    pub(super) fn of_row(row: &Row) -> Result<Deed, sqlx::Error> {
-        Ok(Deed {
+impl AuditedAction {
+    pub(super) fn of_row(row: &Row) -> Result<AuditedAction, sqlx::Error> {
+        Ok(AuditedAction {
             tenant: row.try_get("tenant")?,
             actor: row.try_get("actor")?,
             action: row.try_get("action")?,

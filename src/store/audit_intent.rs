@@ -6,18 +6,18 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use futures::future::BoxFuture;
 use tokio::sync::watch;
 
+use super::audited_action::AuditedAction;
 use super::database::BeforeWriting;
-use super::deed::Deed;
-use super::open_deeds::Begun;
+use super::open_actions::OpenAction;
 use super::{Store, StoreError};
 
 /// What a request may do, and how far it is.
 #[derive(Clone)]
-pub struct Noting(Arc<Inner>);
+pub struct AuditIntent(Arc<Inner>);
 
 struct Inner {
     store: Store,
-    deed: Deed,
+    audited: AuditedAction,
     stage: Mutex<Stage>,
     /// Of several that want to write first, one notes it.
     alone: tokio::sync::Mutex<()>,
@@ -28,7 +28,7 @@ enum Stage {
     NothingDone,
     /// Its note is written at this moment.
     Noted,
-    Begun(Begun),
+    Begun(OpenAction),
     Ended,
     /// Its client left before anything was done.
     Left,
@@ -36,35 +36,35 @@ enum Stage {
 
 impl Store {
     /// A request that may change something.
-    pub fn noting(&self, deed: Deed) -> Noting {
-        Noting(Arc::new(Inner {
+    pub fn audit_intent(&self, audited: AuditedAction) -> AuditIntent {
+        AuditIntent(Arc::new(Inner {
             store: self.clone(),
-            deed,
+            audited,
             stage: Mutex::new(Stage::NothingDone),
             alone: tokio::sync::Mutex::default(),
             has_left: watch::Sender::new(false),
         }))
     }
 
-    /// The same store in the hand of a tenant that asks: it takes its turns with other tenants when it writes, after what
+    /// The same store scoped to a tenant that asks: it takes its turns with other tenants when it writes, after what
     /// it does was noted, where it is to be.
-    pub fn asked_by(&self, tenant: &str, noting: Option<&Noting>) -> Store {
+    pub fn asked_by(&self, tenant: &str, intent: Option<&AuditIntent>) -> Store {
         let database = self.database.plainly(tenant);
-        let database = match noting {
-            Some(noting) => database.after(Arc::new(noting.clone())),
+        let database = match intent {
+            Some(intent) => database.after(Arc::new(intent.clone())),
             None => database,
         };
         Store { database, ..self.of_tenant(tenant) }
     }
 }
 
-impl BeforeWriting for Noting {
+impl BeforeWriting for AuditIntent {
     fn prepare(&self) -> BoxFuture<'_, Result<(), StoreError>> {
         Box::pin(self.begin())
     }
 }
 
-impl Noting {
+impl AuditIntent {
     /// Notes that it begins, unless that was noted.
     pub async fn begin(&self) -> Result<(), StoreError> {
         let _alone = self.0.alone.lock().await;
@@ -74,7 +74,7 @@ impl Noting {
         self.0.refuse_too_many()?;
         let own = self.0.clone();
         let is_wanted = Box::new(move || own.is_noted_now());
-        let begun = self.0.store.begin_wanted(&self.0.deed, is_wanted).await;
+        let begun = self.0.store.begin_wanted(&self.0.audited, is_wanted).await;
         let mut stage = self.0.lock();
         match begun {
             Ok(begun) => {
@@ -110,14 +110,14 @@ impl Noting {
         let stage = std::mem::replace(&mut *self.0.lock(), Stage::Ended);
         match stage {
             Stage::Begun(begun) => {
-                if let Err(error) = self.0.store.end_deed(begun, object, outcome).await {
+                if let Err(error) = self.0.store.end_action(begun, object, outcome).await {
                     tracing::error!(%error, "the audit log is told later how a request ended");
                 }
                 Ok(())
             }
             Stage::NothingDone if is_told => {
-                let deed = Deed { object: object.to_owned(), ..self.0.deed.clone() };
-                self.0.store.deed_without_effect(deed, outcome)
+                let audited = AuditedAction { object: object.to_owned(), ..self.0.audited.clone() };
+                self.0.store.action_without_effect(audited, outcome)
             }
             Stage::NothingDone | Stage::Noted | Stage::Ended | Stage::Left => Ok(()),
         }
@@ -125,13 +125,13 @@ impl Noting {
 
     /// What it is done to, as far as its address says so.
     pub fn object(&self) -> &str {
-        &self.0.deed.object
+        &self.0.audited.object
     }
 }
 
 impl Inner {
     fn refuse_too_many(&self) -> Result<(), StoreError> {
-        let (most, tenant) = (self.store.most_waiting, &self.deed.tenant);
+        let (most, tenant) = (self.store.most_waiting, &self.audited.tenant);
         let writing = self.store.database.plainly(tenant).waiting();
         match self.store.notes.waiting(tenant) + writing >= most {
             true => Err(StoreError::Busy { most }),

@@ -2,13 +2,13 @@
 //! ended.
 
 use super::audit::AuditRow;
+use super::audited_action::AuditedAction;
 use super::database::{Database, Row, query};
-use super::deed::Deed;
-use super::notes::{Note, Told, Wanted};
-use super::open_deeds::{Begun, End};
+use super::notes::{Acknowledgement, Note, StartCondition};
+use super::open_actions::{End, OpenAction};
 use super::{Store, StoreError};
 
-/// How a deed ended of which nobody said so: whoever did it died, or lost the database for an hour.
+/// How an audited action ended of which nobody said so: whoever did it died, or lost the database for an hour.
 const UNKNOWN: &str = "unknown";
 
 /// Whoever does it says every minute that he lives.
@@ -28,7 +28,7 @@ const APPEND: &str = "INSERT INTO audit \
      VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9)";
 const MOVE_END: &str = "UPDATE audit_end SET number = $1, hash = $2 WHERE one = 1";
 
-/// Deeds that are taken into the chain in one transaction, for whose end others wait.
+/// Audited actions that are taken into the chain in one transaction, for whose end others wait.
 const AT_ONCE: i64 = 100;
 
 /// The line of writers in which the audit log stands. No tenant has such a name.
@@ -37,52 +37,56 @@ const LINE: &str = "the audit log";
 impl Store {
     /// Notes what is about to be done. Whoever cannot note it must not do it. The note reaches the disk no later than
     /// what is done.
-    pub async fn begin_deed(&self, deed: &Deed) -> Result<Begun, StoreError> {
-        self.begin_wanted(deed, Box::new(|| true)).await
+    pub async fn begin_action(&self, audited: &AuditedAction) -> Result<OpenAction, StoreError> {
+        self.begin_wanted(audited, Box::new(|| true)).await
     }
 
     /// The same where it is still wanted when its turn has come.
     pub(super) async fn begin_wanted(
         &self,
-        deed: &Deed,
-        is_wanted: Wanted,
-    ) -> Result<Begun, StoreError> {
+        audited: &AuditedAction,
+        is_wanted: StartCondition,
+    ) -> Result<OpenAction, StoreError> {
         let id = uuid::Uuid::now_v7().to_string();
-        let begun = self.open_deeds.begin(&id, deed);
-        let note = Note::Begin { id, deed: deed.clone() };
+        let begun = self.open_actions.begin(&id, audited);
+        let note = Note::Begin { id, audited: audited.clone() };
         heard(self.notes.note(&self.of_audit(), note, is_wanted)).await?;
         Ok(begun)
     }
 
     /// Notes how it ended, and the id of what it was done to, which may not have been there before. What the database does
-    /// not take is kept for `tell_deeds`; what it has taken is on its disk.
-    pub async fn end_deed(
+    /// not take is kept for `write_outcomes`; what it has taken is on its disk.
+    pub async fn end_action(
         &self,
-        begun: Begun,
+        begun: OpenAction,
         object: &str,
         outcome: &str,
     ) -> Result<(), StoreError> {
         let end = End { object: object.to_owned(), outcome: outcome.to_owned() };
-        let id = self.open_deeds.end(begun, end);
+        let id = self.open_actions.end(begun, end);
         heard(self.note_end(id)).await
     }
 
-    /// Keeps for `tell_deeds` what was asked for and changed nothing. Nobody waits for its row, and nobody else does who
+    /// Keeps for `write_outcomes` what was asked for and changed nothing. Nobody waits for its row, and nobody else does who
     /// writes.
-    pub fn deed_without_effect(&self, deed: Deed, outcome: &str) -> Result<(), StoreError> {
-        let end = End { object: deed.object.clone(), outcome: outcome.to_owned() };
-        self.open_deeds.over(deed, end)
+    pub fn action_without_effect(
+        &self,
+        audited: AuditedAction,
+        outcome: &str,
+    ) -> Result<(), StoreError> {
+        let end = End { object: audited.object.clone(), outcome: outcome.to_owned() };
+        self.open_actions.over(audited, end)
     }
 
-    /// Says of the deeds of this process that go on that it lives, and of those that have ended how, where the database did
+    /// Says of the audited actions of this process that go on that it lives, and of those that have ended how, where the database did
     /// not take it before.
-    pub async fn tell_deeds(&self) -> Result<(), StoreError> {
+    pub async fn write_outcomes(&self) -> Result<(), StoreError> {
         let audit = self.of_audit();
-        let ended = self.open_deeds.ids(true).into_iter();
+        let ended = self.open_actions.ids(true).into_iter();
         for told in ended.map(|id| self.note_end(id)).collect::<Vec<_>>() {
             heard(told).await?;
         }
-        let own = self.open_deeds.ids(false);
+        let own = self.open_actions.ids(false);
         let silent = query(LIVED).fetch_all(audit.reader()).await?;
         let silent = silent.iter().map(|row| row.try_get(0)).collect::<Result<Vec<String>, _>>()?;
         for id in silent.iter().filter(|id| own.contains(id)) {
@@ -91,7 +95,7 @@ impl Store {
         Ok(())
     }
 
-    fn note_end(&self, id: String) -> Told {
+    fn note_end(&self, id: String) -> Acknowledgement {
         self.notes.note(&self.of_audit(), Note::End { id }, Box::new(|| true))
     }
 
@@ -101,8 +105,8 @@ impl Store {
     }
 
     /// Something that no request asks for.
-    pub fn deed(&self, actor: &str, action: &str, object: &str) -> Deed {
-        Deed {
+    pub fn audited_action(&self, actor: &str, action: &str, object: &str) -> AuditedAction {
+        AuditedAction {
             tenant: self.tenant().to_owned(),
             actor: actor.to_owned(),
             action: action.to_owned(),
@@ -114,20 +118,20 @@ impl Store {
     /// Does it, noted before and after; the object is what it is done to, or what it makes.
     pub async fn noted<T>(
         &self,
-        deed: Deed,
+        audited: AuditedAction,
         work: impl Future<Output = Result<T, StoreError>>,
         made: impl Fn(&T) -> Option<&String>,
     ) -> Result<T, StoreError> {
-        let begun = self.begin_deed(&deed).await?;
+        let begun = self.begin_action(&audited).await?;
         let done = work.await;
         let outcome = if done.is_ok() { "done" } else { "failed" };
-        let object = done.as_ref().ok().and_then(made).unwrap_or(&deed.object);
-        self.end_deed(begun, object, outcome).await?;
+        let object = done.as_ref().ok().and_then(made).unwrap_or(&audited.object);
+        self.end_action(begun, object, outcome).await?;
         done
     }
 
-    /// Takes the deeds that have ended into the chain; returns how many.
-    pub async fn chain_deeds(&self) -> Result<usize, StoreError> {
+    /// Takes the audited actions that have ended into the chain; returns how many.
+    pub async fn chain_actions(&self) -> Result<usize, StoreError> {
         let mut chained = 0;
         // Most often there is nothing, and nobody has to be kept from writing to see that.
         while !query(ENDED).bind(1).fetch_all(self.database.reader()).await?.is_empty() {
@@ -148,12 +152,12 @@ impl Store {
             query(APPEND)
                 .bind(row_of_log.number)
                 .bind(row_of_log.at)
-                .bind(&row_of_log.deed.tenant)
-                .bind(&row_of_log.deed.actor)
-                .bind(&row_of_log.deed.action)
-                .bind(&row_of_log.deed.object)
+                .bind(&row_of_log.audited.tenant)
+                .bind(&row_of_log.audited.actor)
+                .bind(&row_of_log.audited.action)
+                .bind(&row_of_log.audited.object)
                 .bind(&row_of_log.outcome)
-                .bind(&row_of_log.deed.request)
+                .bind(&row_of_log.audited.request)
                 .bind(&row_of_log.hash)
                 .execute(&mut transaction)
                 .await?;
@@ -167,17 +171,17 @@ impl Store {
 }
 
 /// What became of a note.
-async fn heard(told: Told) -> Result<(), StoreError> {
+async fn heard(told: Acknowledgement) -> Result<(), StoreError> {
     told.await.unwrap_or(Err(StoreError::Interrupted))
 }
 
-/// The row of the log for a deed that has ended.
-fn next_row(deed: &Row, number: i64, hash_before: &str) -> Result<AuditRow, sqlx::Error> {
-    let outcome: Option<String> = deed.try_get("outcome")?;
+/// The row of the log for an audited action that has ended.
+fn next_row(audited: &Row, number: i64, hash_before: &str) -> Result<AuditRow, sqlx::Error> {
+    let outcome: Option<String> = audited.try_get("outcome")?;
     let mut row = AuditRow {
         number,
-        at: deed.try_get("at")?,
-        deed: Deed::of_row(deed)?,
+        at: audited.try_get("at")?,
+        audited: AuditedAction::of_row(audited)?,
         outcome: outcome.unwrap_or_else(|| UNKNOWN.to_owned()),
         hash: String::new(),
     };

@@ -1,17 +1,17 @@
-//! Deeds of this process that are not told to the audit log to their end: those that go on, and those whose end the database
+//! Audited actions of this process that are not told to the audit log to their end: those that go on, and those whose end the database
 //! has not taken for good.
 
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use super::StoreError;
-use super::deed::Deed;
+use super::audited_action::AuditedAction;
 
 /// Ends that may wait to be told, some megabytes. Where the database takes none for long, nothing more is answered that
 /// would have to be noted.
 const MOST_ENDS: usize = 10_000;
 
-/// How a deed ended, and what it was done to.
+/// How an audited action ended, and what it was done to.
 #[derive(Clone, Debug)]
 pub(super) struct End {
     pub object: String,
@@ -20,11 +20,11 @@ pub(super) struct End {
 
 /// All of them, by the ids of their rows.
 #[derive(Clone, Default)]
-pub(super) struct OpenDeeds(Arc<Mutex<HashMap<String, Open>>>);
+pub(super) struct OpenActions(Arc<Mutex<HashMap<String, Open>>>);
 
 #[derive(Clone, Debug)]
 pub(super) struct Open {
-    pub deed: Deed,
+    pub audited: AuditedAction,
     /// When it began, ms since 1970 by the clock of the database; `None` where no row was made before it.
     pub at: Option<i64>,
     /// Where it has ended.
@@ -33,29 +33,29 @@ pub(super) struct Open {
     pub was_told: bool,
 }
 
-/// A deed that was begun, to be told how it ended.
-pub struct Begun {
+/// An audited action that was begun, to be told how it ended.
+pub struct OpenAction {
     pub(super) id: String,
-    deeds: OpenDeeds,
+    open_actions: OpenActions,
     ended: bool,
 }
 
-impl OpenDeeds {
-    pub fn begin(&self, id: &str, deed: &Deed) -> Begun {
-        let open = Open { deed: deed.clone(), at: None, end: None, was_told: false };
+impl OpenActions {
+    pub fn begin(&self, id: &str, audited: &AuditedAction) -> OpenAction {
+        let open = Open { audited: audited.clone(), at: None, end: None, was_told: false };
         self.lock().insert(id.to_owned(), open);
-        Begun { id: id.to_owned(), deeds: self.clone(), ended: false }
+        OpenAction { id: id.to_owned(), open_actions: self.clone(), ended: false }
     }
 
-    /// Remembers when the row of a deed was made.
+    /// Remembers when the row of an audited action was made.
     pub fn began(&self, id: &str, at: i64) {
         if let Some(open) = self.lock().get_mut(id) {
             open.at = Some(at);
         }
     }
 
-    /// Remembers how a deed ended until its row tells it.
-    pub fn end(&self, mut begun: Begun, end: End) -> String {
+    /// Remembers how an audited action ended until its row tells it.
+    pub fn end(&self, mut begun: OpenAction, end: End) -> String {
         begun.ended = true;
         if let Some(open) = self.lock().get_mut(&begun.id) {
             open.end = Some(end);
@@ -63,21 +63,21 @@ impl OpenDeeds {
         begun.id.clone()
     }
 
-    /// Remembers a deed that was over before anything of it was noted.
-    pub fn over(&self, deed: Deed, end: End) -> Result<(), StoreError> {
-        let mut deeds = self.lock();
-        if deeds.values().filter(|open| open.end.is_some()).count() >= MOST_ENDS {
+    /// Remembers an audited action that was over before anything of it was noted.
+    pub fn over(&self, audited: AuditedAction, end: End) -> Result<(), StoreError> {
+        let mut open_actions = self.lock();
+        if open_actions.values().filter(|open| open.end.is_some()).count() >= MOST_ENDS {
             return Err(StoreError::Busy { most: MOST_ENDS });
         }
-        let open = Open { deed, at: None, end: Some(end), was_told: false };
-        deeds.insert(uuid::Uuid::now_v7().to_string(), open);
+        let open = Open { audited, at: None, end: Some(end), was_told: false };
+        open_actions.insert(uuid::Uuid::now_v7().to_string(), open);
         Ok(())
     }
 
-    /// A deed whose end is about to be told; how it was before.
+    /// An audited action whose end is about to be told; how it was before.
     pub fn tell(&self, id: &str) -> Option<Open> {
-        let mut deeds = self.lock();
-        let open = deeds.get_mut(id)?;
+        let mut open_actions = self.lock();
+        let open = open_actions.get_mut(id)?;
         let before = open.clone();
         open.was_told = true;
         Some(before)
@@ -89,8 +89,8 @@ impl OpenDeeds {
 
     /// The ids of those that have ended, or of those that go on.
     pub fn ids(&self, ended: bool) -> Vec<String> {
-        let deeds = self.lock();
-        let wanted = deeds.iter().filter(|(_, open)| open.end.is_some() == ended);
+        let open_actions = self.lock();
+        let wanted = open_actions.iter().filter(|(_, open)| open.end.is_some() == ended);
         wanted.map(|(id, _)| id.clone()).collect()
     }
 
@@ -99,11 +99,11 @@ impl OpenDeeds {
     }
 }
 
-impl Drop for Begun {
+impl Drop for OpenAction {
     /// Where nobody says how it ended, its row says so by itself after an hour.
     fn drop(&mut self) {
         if !self.ended {
-            self.deeds.forget(&self.id);
+            self.open_actions.forget(&self.id);
         }
     }
 }

@@ -1,5 +1,5 @@
-//! A fair queue for what only a few may do at a time: those who ask take turns (round robin), and of one of them who came
-//! first goes first. A tenant that sends a hundred requests holds up nobody but itself.
+//! A fair counting semaphore: permits go round robin between tenants, and within a tenant in the order of its
+//! requests. A tenant that sends a hundred requests holds up nobody but itself.
 
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -8,9 +8,9 @@ use tokio::sync::oneshot;
 
 use crate::metrics::http;
 
-/// Places of one kind, and the queue for them.
+/// A semaphore whose permits go round robin between tenants.
 #[derive(Clone)]
-pub struct Turns {
+pub struct FairSemaphore {
     what: &'static str,
     queue: Arc<Mutex<Queue>>,
 }
@@ -25,18 +25,18 @@ struct Queue {
 
 struct Line {
     name: String,
-    waiting: VecDeque<oneshot::Sender<Turn>>,
+    waiting: VecDeque<oneshot::Sender<Permit>>,
 }
 
-/// A place that is taken, until the last clone is dropped.
+/// A permit, held until the last clone is dropped.
 #[derive(Clone)]
-pub struct Turn {
-    _place: Arc<Place>,
+pub struct Permit {
+    _slot: Arc<Slot>,
 }
 
 /// Handed on when it is dropped.
-struct Place {
-    turns: Option<Turns>,
+struct Slot {
+    semaphore: Option<FairSemaphore>,
 }
 
 /// As many wait in this line already as may.
@@ -47,24 +47,24 @@ pub struct Full {
 
 enum Entered {
     Now,
-    Later(oneshot::Receiver<Turn>),
+    Later(oneshot::Receiver<Permit>),
 }
 
-impl Turns {
+impl FairSemaphore {
     /// `what` is what the places are for, in the words of the metrics; at most `most` wait in one line.
-    pub fn new(what: &'static str, places: usize, most: usize) -> Turns {
+    pub fn new(what: &'static str, places: usize, most: usize) -> FairSemaphore {
         let queue = Queue { free: places, most, lines: VecDeque::new() };
-        Turns { what, queue: Arc::new(Mutex::new(queue)) }
+        FairSemaphore { what, queue: Arc::new(Mutex::new(queue)) }
     }
 
-    /// Waits for a turn. Who does not wait any more leaves the line.
-    pub async fn turn(&self, line: &str) -> Result<Turn, Full> {
+    /// Waits for a permit. A future that is dropped leaves the queue.
+    pub async fn acquire(&self, line: &str) -> Result<Permit, Full> {
         loop {
             match self.enter(line)? {
                 Entered::Now => return Ok(self.taken()),
-                Entered::Later(turn) => {
-                    if let Ok(turn) = turn.await {
-                        return Ok(turn);
+                Entered::Later(permit) => {
+                    if let Ok(permit) = permit.await {
+                        return Ok(permit);
                     }
                 }
             }
@@ -89,8 +89,8 @@ impl Turns {
         later.map(Entered::Later)
     }
 
-    fn taken(&self) -> Turn {
-        Turn { _place: Arc::new(Place { turns: Some(self.clone()) }) }
+    fn taken(&self) -> Permit {
+        Permit { _slot: Arc::new(Slot { semaphore: Some(self.clone()) }) }
     }
 
     /// Gives a free place to the next who still waits.
@@ -104,10 +104,10 @@ impl Turns {
                 return;
             };
             drop(queue);
-            let Err(turn) = next.send(self.taken()) else { return };
+            let Err(permit) = next.send(self.taken()) else { return };
             // Whoever waited has gone: the place is not given back, but to the next.
-            if let Some(mut place) = Arc::into_inner(turn._place) {
-                place.turns = None;
+            if let Some(mut slot) = Arc::into_inner(permit._slot) {
+                slot.semaphore = None;
             }
         }
     }
@@ -119,7 +119,7 @@ impl Turns {
 
 impl Queue {
     /// A place at the end of a line.
-    fn wait(&mut self, name: &str) -> Result<oneshot::Receiver<Turn>, Full> {
+    fn wait(&mut self, name: &str) -> Result<oneshot::Receiver<Permit>, Full> {
         let most = self.most;
         let known = self.lines.iter().position(|line| line.name == name);
         let at = known.unwrap_or_else(|| {
@@ -132,13 +132,13 @@ impl Queue {
         if waiting.len() >= most {
             return Err(Full { most });
         }
-        let (turn, later) = oneshot::channel();
-        waiting.push_back(turn);
+        let (permit, later) = oneshot::channel();
+        waiting.push_back(permit);
         Ok(later)
     }
 
     /// The first of the line whose turn it is.
-    fn next(&mut self) -> Option<oneshot::Sender<Turn>> {
+    fn next(&mut self) -> Option<oneshot::Sender<Permit>> {
         loop {
             let mut line = self.lines.pop_front()?;
             let Some(first) = line.waiting.pop_front() else { continue };
@@ -154,10 +154,10 @@ impl Queue {
     }
 }
 
-impl Drop for Place {
+impl Drop for Slot {
     fn drop(&mut self) {
-        if let Some(turns) = self.turns.take() {
-            turns.pass_on();
+        if let Some(semaphore) = self.semaphore.take() {
+            semaphore.pass_on();
         }
     }
 }
@@ -170,50 +170,53 @@ mod tests {
     use super::*;
 
     /// One who has asked for a turn.
-    fn asked<'a>(turns: &'a Turns, line: &'a str) -> BoxFuture<'a, Result<Turn, Full>> {
-        let mut turn = turns.turn(line).boxed();
-        assert!((&mut turn).now_or_never().is_none(), "it waits");
-        turn
+    fn asked<'a>(
+        semaphore: &'a FairSemaphore,
+        line: &'a str,
+    ) -> BoxFuture<'a, Result<Permit, Full>> {
+        let mut permit = semaphore.acquire(line).boxed();
+        assert!((&mut permit).now_or_never().is_none(), "it waits");
+        permit
     }
 
     #[tokio::test]
     async fn a_tenant_that_comes_late_waits_for_one_turn_of_another_and_not_for_all() {
-        let turns = Turns::new("test", 1, 100);
-        let running = turns.turn("greedy").await.unwrap();
-        let mut greedy: Vec<_> = (0..20).map(|_| asked(&turns, "greedy")).collect();
-        let mut modest = asked(&turns, "modest");
+        let semaphore = FairSemaphore::new("test", 1, 100);
+        let running = semaphore.acquire("greedy").await.unwrap();
+        let mut greedy: Vec<_> = (0..20).map(|_| asked(&semaphore, "greedy")).collect();
+        let mut modest = asked(&semaphore, "modest");
         drop(running);
         assert!((&mut modest).now_or_never().is_none());
         let first = (&mut greedy[0]).now_or_never().expect("the first of the greedy is first");
         drop(first.unwrap());
         let second = (&mut modest).now_or_never().expect("then it is the turn of the other");
-        assert!(greedy[1..].iter_mut().all(|turn| turn.now_or_never().is_none()));
+        assert!(greedy[1..].iter_mut().all(|permit| permit.now_or_never().is_none()));
         drop(second.unwrap());
         assert!((&mut greedy[1]).now_or_never().is_some());
     }
 
     #[tokio::test]
     async fn more_than_may_wait_are_refused_and_who_leaves_makes_room() {
-        let turns = Turns::new("test", 1, 2);
-        let running = turns.turn("a").await.unwrap();
-        let (one, two) = (asked(&turns, "a"), asked(&turns, "a"));
-        let third = turns.turn("a").now_or_never().expect("it is told at once");
+        let semaphore = FairSemaphore::new("test", 1, 2);
+        let running = semaphore.acquire("a").await.unwrap();
+        let (one, two) = (asked(&semaphore, "a"), asked(&semaphore, "a"));
+        let third = semaphore.acquire("a").now_or_never().expect("it is told at once");
         assert_eq!(third.err(), Some(Full { most: 2 }));
-        assert_eq!((turns.waiting("a"), turns.waiting("b")), (2, 0));
-        let mut other = asked(&turns, "b");
+        assert_eq!((semaphore.waiting("a"), semaphore.waiting("b")), (2, 0));
+        let mut other = asked(&semaphore, "b");
         drop((one, two));
-        assert_eq!(turns.waiting("a"), 0);
-        let mut third = asked(&turns, "a");
+        assert_eq!(semaphore.waiting("a"), 0);
+        let mut third = asked(&semaphore, "a");
         drop(running);
-        let turn = (&mut third).now_or_never().or_else(|| (&mut other).now_or_never());
-        assert!(turn.is_some(), "places of those who left are not lost");
+        let permit = (&mut third).now_or_never().or_else(|| (&mut other).now_or_never());
+        assert!(permit.is_some(), "places of those who left are not lost");
     }
 
     #[tokio::test]
     async fn a_place_that_comes_to_one_who_has_left_goes_to_the_next() {
-        let turns = Turns::new("test", 1, 2);
-        let running = turns.turn("a").await.unwrap();
-        let (one, mut other) = (asked(&turns, "a"), asked(&turns, "b"));
+        let semaphore = FairSemaphore::new("test", 1, 2);
+        let running = semaphore.acquire("a").await.unwrap();
+        let (one, mut other) = (asked(&semaphore, "a"), asked(&semaphore, "b"));
         drop(one);
         drop(running);
         assert!((&mut other).now_or_never().is_some());

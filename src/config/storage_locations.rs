@@ -6,15 +6,15 @@ use super::secret::{ConfigError, Secret};
 
 /// The folder of this process, the database and the blobs.
 #[derive(Clone, Debug)]
-pub struct Places {
+pub struct StorageLocations {
     /// For this process alone: files under way, and whatever has no other place.
     pub data: PathBuf,
-    pub database: DatabasePlace,
-    pub blobs: BlobsPlace,
+    pub database: DatabaseLocation,
+    pub blobs: BlobLocation,
 }
 
 #[derive(Clone, Debug)]
-pub enum DatabasePlace {
+pub enum DatabaseLocation {
     /// SQLite in the data folder, for one process.
     Embedded,
     /// PostgreSQL, for any number of processes.
@@ -22,7 +22,7 @@ pub enum DatabasePlace {
 }
 
 #[derive(Clone, Debug, PartialEq)]
-pub enum BlobsPlace {
+pub enum BlobLocation {
     /// In the data folder, for one process.
     InData,
     /// In a folder that several processes may share.
@@ -31,55 +31,55 @@ pub enum BlobsPlace {
     Bucket { bucket: String, prefix: String, settings: Vec<(String, Secret)> },
 }
 
-impl Places {
+impl StorageLocations {
     /// Everything in one folder.
-    pub fn in_folder(data: &Path) -> Places {
-        Places {
+    pub fn in_folder(data: &Path) -> StorageLocations {
+        StorageLocations {
             data: data.to_owned(),
-            database: DatabasePlace::Embedded,
-            blobs: BlobsPlace::InData,
+            database: DatabaseLocation::Embedded,
+            blobs: BlobLocation::InData,
         }
     }
 
     /// What keeps another process from working on the same jobs.
     pub fn check_shared(&self) -> Result<(), ConfigError> {
         match (&self.database, &self.blobs) {
-            (DatabasePlace::Embedded, _) => Err(ConfigError::NotShared { name: "database" }),
-            (_, BlobsPlace::InData) => Err(ConfigError::NotShared { name: "blobs" }),
+            (DatabaseLocation::Embedded, _) => Err(ConfigError::NotShared { name: "database" }),
+            (_, BlobLocation::InData) => Err(ConfigError::NotShared { name: "blobs" }),
             _ => Ok(()),
         }
     }
 }
 
 /// The address of a PostgreSQL, or nothing.
-pub(super) fn database(address: String, connections: u32) -> Result<DatabasePlace, ConfigError> {
+pub(super) fn database(address: String, connections: u32) -> Result<DatabaseLocation, ConfigError> {
     if address.is_empty() {
-        return Ok(DatabasePlace::Embedded);
+        return Ok(DatabaseLocation::Embedded);
     }
     if !["postgres://", "postgresql://"].iter().any(|scheme| address.starts_with(scheme)) {
         return Err(ConfigError::Database);
     }
-    Ok(DatabasePlace::Server { address: Secret::new(address), connections })
+    Ok(DatabaseLocation::Server { address: Secret::new(address), connections })
 }
 
 /// `s3://bucket/prefix`, a folder, or nothing.
-pub(super) fn blobs(place: &str) -> Result<BlobsPlace, ConfigError> {
+pub(super) fn blobs(place: &str) -> Result<BlobLocation, ConfigError> {
     let refused = || ConfigError::Value {
         name: "blobs",
         value: place.to_owned(),
         wanted: "s3://bucket, s3://bucket/prefix or a folder",
     };
     if place.is_empty() {
-        return Ok(BlobsPlace::InData);
+        return Ok(BlobLocation::InData);
     }
     let Some((scheme, rest)) = place.split_once("://") else {
-        return Ok(BlobsPlace::Folder(place.into()));
+        return Ok(BlobLocation::Folder(place.into()));
     };
     let (bucket, prefix) = rest.split_once('/').unwrap_or((rest, ""));
     if scheme != "s3" || bucket.is_empty() {
         return Err(refused());
     }
-    Ok(BlobsPlace::Bucket {
+    Ok(BlobLocation::Bucket {
         bucket: bucket.to_owned(),
         prefix: prefix.trim_matches('/').to_owned(),
         settings: aws_variables(),
@@ -147,13 +147,13 @@ mod tests {
 
     #[test]
     fn a_bucket_and_a_folder_are_told_apart() {
-        let bucket = |bucket: &str, prefix: &str| BlobsPlace::Bucket {
+        let bucket = |bucket: &str, prefix: &str| BlobLocation::Bucket {
             bucket: bucket.into(),
             prefix: prefix.into(),
             settings: aws_variables(),
         };
-        assert_eq!(blobs("").unwrap(), BlobsPlace::InData);
-        assert_eq!(blobs("/srv/blobs").unwrap(), BlobsPlace::Folder("/srv/blobs".into()));
+        assert_eq!(blobs("").unwrap(), BlobLocation::InData);
+        assert_eq!(blobs("/srv/blobs").unwrap(), BlobLocation::Folder("/srv/blobs".into()));
         assert_eq!(blobs("s3://faces").unwrap(), bucket("faces", ""));
         assert_eq!(blobs("s3://faces/of/ward/").unwrap(), bucket("faces", "of/ward"));
         for wrong in ["s3://", "s3:///x", "http://x/y"] {

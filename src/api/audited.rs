@@ -6,15 +6,15 @@ use axum::response::{IntoResponse, Response};
 use tokio::task::AbortHandle;
 use tracing::Instrument;
 
-use super::body::Coming;
+use super::body::BodyState;
 use super::caller::Caller;
 use super::error::ApiError;
-use crate::store::{Deed, Noting, Store};
+use crate::store::{AuditIntent, AuditedAction, Store};
 
 /// What a caller's request is about to do; none where no route is asked.
-pub fn deed_of(caller: &Caller, request: &Request, id: &str) -> Option<Deed> {
+pub fn audited_action_of(caller: &Caller, request: &Request, id: &str) -> Option<AuditedAction> {
     let route = request.extensions().get::<MatchedPath>()?.as_str();
-    Some(Deed {
+    Some(AuditedAction {
         tenant: caller.tenant.to_string(),
         actor: caller.key.to_string(),
         action: format!("{} {route}", request.method()),
@@ -24,11 +24,11 @@ pub fn deed_of(caller: &Caller, request: &Request, id: &str) -> Option<Deed> {
 }
 
 /// The same for a request on the admin listener.
-pub fn deed_of_admin(request: &Request, id: &str) -> Option<Deed> {
+pub fn audited_admin_action(request: &Request, id: &str) -> Option<AuditedAction> {
     let route = request.extensions().get::<MatchedPath>()?.as_str();
     let path = request.uri().path();
     let tenant = ids(route, path).find(|(pattern, _)| *pattern == "{tenant}");
-    Some(Deed {
+    Some(AuditedAction {
         tenant: tenant.map(|(_, tenant)| tenant).unwrap_or_default(),
         actor: "admin".to_owned(),
         action: format!("{} {route}", request.method()),
@@ -41,11 +41,11 @@ pub fn deed_of_admin(request: &Request, id: &str) -> Option<Deed> {
 /// its client goes away meanwhile; as long as it has changed nothing it ends with its client. How it was answered is noted
 /// as well, but not where its body never came.
 pub async fn carry_out(
-    noting: Noting,
-    coming: Coming,
+    intent: AuditIntent,
+    coming: BodyState,
     run: impl Future<Output = Response> + Send + 'static,
 ) -> Response {
-    let own = noting.clone();
+    let own = intent.clone();
     let work = async move {
         let response = run.await;
         let object = made(&response).unwrap_or(own.object());
@@ -57,7 +57,7 @@ pub async fn carry_out(
         }
     };
     let task = tokio::spawn(work.in_current_span());
-    let _client = Client { noting, task: task.abort_handle() };
+    let _client = Client { intent, task: task.abort_handle() };
     task.await.unwrap_or_else(|error| ApiError::internal(error).into_response())
 }
 
@@ -77,13 +77,13 @@ fn is_told(status: StatusCode) -> bool {
 
 /// Who waits for an answer; dropped when it has come, or when he goes away.
 struct Client {
-    noting: Noting,
+    intent: AuditIntent,
     task: AbortHandle,
 }
 
 impl Drop for Client {
     fn drop(&mut self) {
-        if self.noting.leave() {
+        if self.intent.leave() {
             self.task.abort();
         }
     }
@@ -129,8 +129,8 @@ mod tests {
             let _held = held;
             std::future::pending::<Response>().await
         };
-        let noting = store.noting(Deed::default());
-        let mut request = Box::pin(carry_out(noting, Coming::default(), run));
+        let intent = store.audit_intent(AuditedAction::default());
+        let mut request = Box::pin(carry_out(intent, BodyState::default(), run));
         assert!((&mut request).now_or_never().is_none(), "it is at work");
         drop(request);
         let ended = tokio::time::timeout(Duration::from_secs(60), ended).await;
@@ -138,7 +138,7 @@ mod tests {
     }
 
     #[test]
-    fn a_deed_names_the_innermost_thing_of_its_path() {
+    fn an_audited_action_names_the_innermost_thing_of_its_path() {
         assert_eq!(innermost("/v1/cases/{case}/plans/{id}", "/v1/cases/a/plans/b"), "b");
         assert_eq!(innermost("/v1/cases", "/v1/cases"), "");
     }
