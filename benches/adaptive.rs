@@ -19,7 +19,8 @@ use mechanics::mesh::quality::DihedralAngles;
 use mechanics::mesh::refinement::refine;
 use mechanics::plan::{PlannedSegment, RigidMovement};
 use mechanics::prediction::{
-    Adapted, Case, ElementChoice, Plan, Scene, Settings, Wanted, predict, predict_adaptively,
+    AdaptivePrediction, Case, ElementChoice, Plan, RefinementGoal, Scene, Settings, predict,
+    predict_adaptively,
 };
 use mechanics::progress::Unobserved;
 use mechanics::study::scenes::{half_head, slab};
@@ -128,7 +129,7 @@ fn uniform_rows(task: &Task, skin: &Moving) -> Vec<Row> {
     rows
 }
 
-fn adaptive_row(scene: &Scene, cells: usize) -> (Row, Adapted) {
+fn adaptive_row(scene: &Scene, cells: usize) -> (Row, AdaptivePrediction) {
     let begun = process::cpu_seconds();
     let adapted = adapted(scene, cells);
     let level = adapted.levels.last().expect("a mesh is solved on");
@@ -143,9 +144,9 @@ fn adaptive_row(scene: &Scene, cells: usize) -> (Row, Adapted) {
     (row, adapted)
 }
 
-fn adapted(scene: &Scene, cells: usize) -> Adapted {
+fn adapted(scene: &Scene, cells: usize) -> AdaptivePrediction {
     let wanted =
-        Wanted { skin_mm: 1e-6, regions_mm: BTreeMap::new(), cells, time_s: f64::INFINITY };
+        RefinementGoal { skin_mm: 1e-6, regions_mm: BTreeMap::new(), cells, time_s: f64::INFINITY };
     predict_adaptively(scene, &wanted, &|| 0.0, &Unobserved).expect("it is solved")
 }
 

@@ -20,8 +20,8 @@ use mechanics::mesh::refinement::refine;
 use mechanics::mesh::{Vector, sample};
 use mechanics::plan::{PlannedSegment, RigidMovement};
 use mechanics::prediction::{
-    Accepted, Case, CaseSegment, Method, Plan, Prediction, Rung, Scene, Settings, Watched, predict,
-    predict_adequately,
+    Accepted, Case, CaseSegment, Method, Plan, Prediction, Rung, Scene, Settings, TimedProgress,
+    predict, predict_adequately,
 };
 use mechanics::progress::Unobserved;
 use mechanics::study::scenes::half_head;
@@ -130,7 +130,7 @@ fn measure_plan(entry: &Entry, question: &Question, summary: &mut Summary) {
     };
     let begin = process::cpu_seconds();
     let accepted = Accepted { skin_mm: *accepted_mm, time_s: 1e6, ..Accepted::default() };
-    let watched = Watched { stopwatch: &process::cpu_seconds, progress: &Unobserved };
+    let watched = TimedProgress { stopwatch: &process::cpu_seconds, progress: &Unobserved };
     let found = predict_adequately(&entry.case, &question.plan, &scene, &accepted, watched)
         .expect("linear elements have an answer");
     let cpu_s = process::cpu_seconds() - begin;

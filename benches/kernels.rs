@@ -10,7 +10,7 @@ mod measure;
 use measure::yardstick::{PlainBlocks, triad_gb_per_s};
 use measure::{on_threads, process, seconds, shell};
 use mechanics::boundary::NodeClass;
-use mechanics::model::dofs::{Numbering, partly_held};
+use mechanics::model::dofs::{DofMap, partly_held};
 use mechanics::model::fem::displacement::Problem;
 use mechanics::prediction::{ElementChoice, Scene, Settings};
 use mechanics::progress::Unobserved;
@@ -45,7 +45,7 @@ fn main() {
 fn system(scene: &Scene) -> System {
     let held: Vec<bool> =
         scene.conditions.classes.iter().map(|class| *class != NodeClass::Free).collect();
-    let numbering = Numbering::new(&scene.mesh, &held);
+    let numbering = DofMap::new(&scene.mesh, &held);
     let matrix = scene.tissue().assemble(&numbering, &Unobserved);
     let matrix = matrix.expect("no cell is inverted").expect("nobody stops it");
     let mut positions = scene.mesh.nodes.clone();
@@ -95,10 +95,10 @@ impl<'a> Table<'a> {
     fn assembly(&self, scene: &Scene) {
         let held: Vec<bool> =
             scene.conditions.classes.iter().map(|class| *class != NodeClass::Free).collect();
-        let numbering = Numbering::new(&scene.mesh, &held);
+        let numbering = DofMap::new(&scene.mesh, &held);
         let tissue = scene.tissue();
         for threads in THREADS {
-            let number = || drop(Numbering::new(&scene.mesh, &held));
+            let number = || drop(DofMap::new(&scene.mesh, &held));
             let fill = || drop(tissue.assemble(&numbering, &Unobserved));
             self.row(
                 "numbering and pattern",

@@ -26,7 +26,7 @@ use mechanics::format::SurfaceOutput;
 use mechanics::format::vtk::vtp;
 use mechanics::progress::{Phase, Progress};
 use mechanics::response::{
-    Asked, COLUMNS_PER_SEGMENT, Columns, InnerLoad, QuadraticForm, ResponseError, build_of,
+    COLUMNS_PER_SEGMENT, ColumnRequest, Columns, InnerLoad, QuadraticForm, ResponseError, build_of,
     check_order, chosen,
 };
 
@@ -121,7 +121,7 @@ pub fn response_job(
 
     // 2. The columns.
     let order = input.spec.response_order();
-    let asked = Asked { segments: &input.spec.segments, order, inner: &inner };
+    let asked = ColumnRequest { segments: &input.spec.segments, order, inner: &inner };
     let built = build_of(&prepared.scene, &asked, &clock);
     let columns = built.map_err(|error| match error {
         ResponseError::Prediction(error) => clock.judge(error),

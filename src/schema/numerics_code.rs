@@ -161,7 +161,7 @@ impl From<&AnatomyError> for ErrorCode {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use mechanics::format::Place;
+    use mechanics::format::FilePosition;
     use mechanics::prediction::InvertedCell;
     use mechanics::registration::AlignmentError;
     use mechanics::validation::StatisticsError;
@@ -208,7 +208,11 @@ mod tests {
     fn every_word_of_a_reader_is_that_of_its_code() {
         let (count, limit) = (2, 1);
         for error in [
-            FormatError::Parse { format: "OBJ", place: Place::Line(1), detail: String::new() },
+            FormatError::Parse {
+                format: "OBJ",
+                place: FilePosition::Line(1),
+                detail: String::new(),
+            },
             FormatError::UnsupportedCells { types: Vec::new() },
             FormatError::Name { detail: String::new() },
             FormatError::Limits { what: "nodes", declared: count, limit },

@@ -17,7 +17,7 @@ use crate::osteotomy::{Osteotomy, SegmentRule};
 use crate::progress::Progress;
 use crate::registration::mirror::check_mirror;
 use crate::registration::{
-    AlignmentError, IterativeClosestPoint, Place, RigidTransform, Start, align_points,
+    AlignmentError, IterativeClosestPoint, RigidTransform, SphereOrBox, Start, align_points,
 };
 
 /// Points of the scan at which is measured what is left.
@@ -41,7 +41,7 @@ pub struct SkinScanRules {
     /// The same place on the scan and in the CT; none, or three and more.
     pub landmarks: Vec<[Vector; 2]>,
     /// Only the skin of the CT in it decides.
-    pub mask: Option<Place>,
+    pub mask: Option<SphereOrBox>,
 }
 
 /// A scan where it lies in the CT, and how well it fits.
@@ -51,12 +51,12 @@ pub struct FittedScan {
     /// Of the scan into the frame of the CT.
     pub transform: RigidTransform,
     pub iterations: usize,
-    pub left: Left,
+    pub left: ScanDeviation,
 }
 
 /// Distances from the scan to the skin of the CT, in mm, and areas in mm².
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Left {
+pub struct ScanDeviation {
     pub mean: f64,
     pub median: f64,
     pub p95: f64,
@@ -135,8 +135,8 @@ fn register(
 fn measure(
     scan: &TriangleSurface,
     skin: &TriangleSurface,
-    (image, mask): (&ImageVolume, Option<&Place>),
-) -> Result<Left, SkinScanError> {
+    (image, mask): (&ImageVolume, Option<&SphereOrBox>),
+) -> Result<ScanDeviation, SkinScanError> {
     let search = SurfaceSearch::new(skin).map_err(AlignmentError::from)?;
     let samples = area_sampling::equal_areas(scan, POINTS);
     let counts = |point: &Vector| mask.is_none_or(|mask| mask.holds(point));
@@ -149,7 +149,7 @@ fn measure(
     let area = whole * distances.len() as f64 / samples.len().max(1) as f64;
     let count = distances.len().max(1) as f64;
     let at = |share: f64| distances.get((share * count) as usize).copied().unwrap_or(f64::INFINITY);
-    Ok(Left {
+    Ok(ScanDeviation {
         mean: distances.iter().sum::<f64>() / count,
         median: at(0.5),
         p95: at(0.95),
@@ -159,7 +159,7 @@ fn measure(
     })
 }
 
-fn refuse(left: &Left) -> Result<(), SkinScanError> {
+fn refuse(left: &ScanDeviation) -> Result<(), SkinScanError> {
     let [covered_cm2, whole_cm2] =
         [left.area * (1.0 - left.outliers), left.whole].map(|mm2| mm2 / 100.0);
     if left.area < LEAST_AREA {

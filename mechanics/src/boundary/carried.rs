@@ -76,7 +76,7 @@ pub struct ConnectedPart {
 
 /// A part that goes along as one.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Carried {
+pub struct RigidPart {
     pub movement: RigidMovement,
     /// How far a corner of the box around it goes at most, in mm.
     pub farthest: f64,
@@ -328,7 +328,7 @@ impl ConnectedPart {
     }
 
     /// The rigid movement with which all that holds the part goes along, if there is one and the part does not stay.
-    pub fn carried(&self, movement: impl Fn(u32) -> RigidMovement) -> Option<Carried> {
+    pub fn carried(&self, movement: impl Fn(u32) -> RigidMovement) -> Option<RigidPart> {
         let targets: Vec<Option<Numbers>> =
             self.held.iter().map(|rows| self.target(rows.holder, &movement)).collect();
         let mut misfit = Misfit { form: Form::zeros(), mixed: Numbers::zeros() };
@@ -348,7 +348,7 @@ impl ConnectedPart {
                 rows.missed(&numbers, target.as_ref()) <= most * most
             };
             if self.held.iter().zip(&targets).all(follows) {
-                return (farthest > STAYS_MM).then_some(Carried { movement: carried, farthest });
+                return (farthest > STAYS_MM).then_some(RigidPart { movement: carried, farthest });
             }
         }
         None

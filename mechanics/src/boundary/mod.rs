@@ -11,7 +11,7 @@ pub mod sliding;
 pub mod support;
 pub mod tearing;
 
-pub use carried::{Carried, ConnectedPart, Form, HeldRows, Holder, connected_parts};
+pub use carried::{ConnectedPart, Form, HeldRows, Holder, RigidPart, connected_parts};
 pub use conditions::{ConditionError, Conditions, HeldNodes, NodeClass, Wall, WallNode};
 pub use freedom::Freedom;
 pub use hold::Hold;

@@ -21,7 +21,7 @@ pub struct LoosePart {
 
 /// The parts of the mesh that the holds do not keep in place. `part_of_cell` is the part of each cell by faces.
 pub fn loose_parts(mesh: &VolumeMesh, part_of_cell: &[u32], holds: &[Hold]) -> Vec<LoosePart> {
-    let mut parts = Parts::new(mesh, part_of_cell);
+    let mut parts = ConnectedBodies::new(mesh, part_of_cell);
     for hold in holds {
         for held in 0..hold.count() {
             let axis = hold.axes().column(held).into_owned();
@@ -74,14 +74,14 @@ impl Body {
     }
 }
 
-struct Parts {
+struct ConnectedBodies {
     bodies: Vec<Body>,
     /// Compressed lists: the bodies of node n are `body_of[start[n]..start[n + 1]]`.
     start: Vec<usize>,
     body_of: Vec<u32>,
 }
 
-impl Parts {
+impl ConnectedBodies {
     fn new(mesh: &VolumeMesh, part_of_cell: &[u32]) -> Self {
         // The parts of the cells around each node, several times each.
         let mut first = vec![0_usize; mesh.nodes.len() + 1];
@@ -101,7 +101,7 @@ impl Parts {
         }
         let count = part_of_cell.iter().max().map_or(0, |last| *last as usize + 1);
         let mut nodes_of: Vec<Vec<u32>> = vec![Vec::new(); count];
-        let mut parts = Parts { bodies: Vec::new(), start: vec![0], body_of: Vec::new() };
+        let mut parts = ConnectedBodies { bodies: Vec::new(), start: vec![0], body_of: Vec::new() };
         for node in 0..mesh.nodes.len() {
             let own = &mut around[first[node]..first[node + 1]];
             own.sort_unstable();

@@ -2,7 +2,7 @@
 //! pairs of groups say.
 
 use super::colour::{FAINT_INK, GRID, INK};
-use super::drawing::{Document, Paint, Place, Style, wrapped};
+use super::drawing::{Document, Paint, Rectangle, Style, wrapped};
 use super::legend::Scale;
 use super::svg::svg;
 use super::symbol::Symbol;
@@ -64,9 +64,9 @@ impl BoxesPicture<'_> {
     }
 
     /// Below the brackets.
-    fn plot(&self) -> Place {
+    fn plot(&self) -> Rectangle {
         let y = 84.0 + BRACKET * self.pairs.len() as f64;
-        Place { x: LEFT, y, width: WIDTH - LEFT - MARGIN, height: HEIGHT }
+        Rectangle { x: LEFT, y, width: WIDTH - LEFT - MARGIN, height: HEIGHT }
     }
 
     fn scale(&self) -> Scale {

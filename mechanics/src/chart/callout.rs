@@ -1,14 +1,14 @@
 //! Words beside marks: where there is room, near their mark, and never over each other.
 
-use super::drawing::{Place, Style, estimated_width};
+use super::drawing::{Rectangle, Style, estimated_width};
 
 /// What is taken already.
-pub struct Taken {
-    inside: Place,
+pub struct OccupiedAreas {
+    inside: Rectangle,
     /// Words and marks: nothing may lie over them.
-    solid: Vec<Place>,
+    solid: Vec<Rectangle>,
     /// Lines: words had better not lie over them.
-    lines: Vec<Place>,
+    lines: Vec<Rectangle>,
 }
 
 /// Directions from the mark in which words may stand, the best first: right, left, then up and down.
@@ -27,28 +27,34 @@ const DIRECTIONS: [(f64, f64); 10] = [
 /// How far words may stand off, in heights of a line.
 const DISTANCES: [f64; 4] = [0.0, 0.9, 1.9, 3.2];
 
-impl Taken {
-    pub fn within(inside: Place) -> Self {
-        Taken { inside, solid: Vec::new(), lines: Vec::new() }
+impl OccupiedAreas {
+    pub fn within(inside: Rectangle) -> Self {
+        OccupiedAreas { inside, solid: Vec::new(), lines: Vec::new() }
     }
 
     /// A mark around a point.
     pub fn add_mark(&mut self, [x, y]: [f64; 2], radius: f64) {
         let (x, y, side) = (x - radius, y - radius, 2.0 * radius);
-        self.solid.push(Place { x, y, width: side, height: side });
+        self.solid.push(Rectangle { x, y, width: side, height: side });
     }
 
     /// A line between two points, upright or level.
     pub fn add_line(&mut self, a: [f64; 2], b: [f64; 2]) {
         let (x, y) = (a[0].min(b[0]) - 1.5, a[1].min(b[1]) - 1.5);
         let (width, height) = ((a[0] - b[0]).abs() + 3.0, (a[1] - b[1]).abs() + 3.0);
-        self.lines.push(Place { x, y, width, height });
+        self.lines.push(Rectangle { x, y, width, height });
     }
 
     /// Room for words beside a mark; none where they would cover something. Takes it.
-    pub fn find(&mut self, at: [f64; 2], radius: f64, style: Style, words: &str) -> Option<Place> {
+    pub fn find(
+        &mut self,
+        at: [f64; 2],
+        radius: f64,
+        style: Style,
+        words: &str,
+    ) -> Option<Rectangle> {
         let (width, height) = (estimated_width(words, style) * 0.93, style.size * 1.25);
-        let mut best: Option<(f64, Place)> = None;
+        let mut best: Option<(f64, Rectangle)> = None;
         for (far, distance) in DISTANCES.into_iter().enumerate() {
             for (rank, (right, down)) in DIRECTIONS.into_iter().enumerate() {
                 let reach = radius + 5.0 + distance * height;
@@ -57,7 +63,7 @@ impl Taken {
                     at[1] + down * (reach * 0.8 + height / 2.0),
                 ];
                 let (x, y) = (middle[0] - width / 2.0, middle[1] - height / 2.0);
-                let place = Place { x, y, width, height };
+                let place = Rectangle { x, y, width, height };
                 if !contains(&self.inside, &place) || self.solid.iter().any(|o| meet(o, &place)) {
                     continue;
                 }
@@ -74,11 +80,11 @@ impl Taken {
     }
 }
 
-fn meet(a: &Place, b: &Place) -> bool {
+fn meet(a: &Rectangle, b: &Rectangle) -> bool {
     a.x < b.x + b.width && b.x < a.x + a.width && a.y < b.y + b.height && b.y < a.y + a.height
 }
 
-fn contains(outer: &Place, inner: &Place) -> bool {
+fn contains(outer: &Rectangle, inner: &Rectangle) -> bool {
     let (right, foot) = (outer.x + outer.width, outer.y + outer.height);
     inner.x >= outer.x
         && inner.y >= outer.y
@@ -92,8 +98,8 @@ mod tests {
 
     #[test]
     fn words_never_lie_over_words_and_give_up_where_there_is_no_room() {
-        let inside = Place { x: 0.0, y: 0.0, width: 300.0, height: 120.0 };
-        let mut taken = Taken::within(inside);
+        let inside = Rectangle { x: 0.0, y: 0.0, width: 300.0, height: 120.0 };
+        let mut taken = OccupiedAreas::within(inside);
         let mark = [150.0, 60.0];
         taken.add_mark(mark, 6.0);
         let mut found = Vec::new();
@@ -107,7 +113,8 @@ mod tests {
 
     #[test]
     fn a_line_is_kept_free_where_there_is_another_place() {
-        let mut taken = Taken::within(Place { x: 0.0, y: 0.0, width: 400.0, height: 200.0 });
+        let mut taken =
+            OccupiedAreas::within(Rectangle { x: 0.0, y: 0.0, width: 400.0, height: 200.0 });
         taken.add_line([200.0, 100.0], [400.0, 100.0]);
         let place = taken.find([200.0, 100.0], 6.0, Style::of(12.0), "msm").unwrap();
         assert!(place.x + place.width < 200.0);

@@ -1,7 +1,7 @@
 //! Mean movement of the skin over the cell sizes of its meshes, with the limit that it goes to.
 
 use super::colour::GRID;
-use super::drawing::{Document, Paint, Place, Style, wrapped};
+use super::drawing::{Document, Paint, Rectangle, Style, wrapped};
 use super::svg::svg;
 use super::symbol::Symbol;
 
@@ -26,7 +26,7 @@ pub struct CellSizesSeries {
 const WIDTH: f64 = 900.0;
 const MARGIN: f64 = 28.0;
 const LINE: f64 = 17.0;
-const PLOT: Place = Place { x: 84.0, y: 84.0, width: 570.0, height: 360.0 };
+const PLOT: Rectangle = Rectangle { x: 84.0, y: 84.0, width: 570.0, height: 360.0 };
 
 /// Steps between two lines of a grid, times a power of ten.
 const STEPS: [f64; 4] = [1.0, 2.0, 5.0, 10.0];

@@ -2,11 +2,11 @@
 
 use super::Vector;
 use super::colour::{self, Rgb};
-use super::drawing::{Document, Place, Style};
+use super::drawing::{Document, Rectangle, Style};
 use super::facet::Finish;
-use super::raster::{Painted, Panel, PngError, Shot, draw_all};
+use super::raster::{ColouredSurface, Panel, PngError, Shot, draw_all};
 use super::svg::svg;
-use super::view::Outlook;
+use super::view::FaceDirection;
 
 /// What holds a node.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -35,7 +35,7 @@ pub struct ClassesPicture<'a> {
     /// For each point its entry in `classes`.
     pub class_of: &'a [usize],
     pub classes: &'a [NodeClasses],
-    pub outlook: Outlook,
+    pub outlook: FaceDirection,
     pub frame: &'a str,
 }
 
@@ -91,7 +91,7 @@ impl ClassesPicture<'_> {
             .zip(&extents)
             .zip(&VIEWS)
             .map(|((camera, extent), view)| Panel {
-                painted: Painted {
+                painted: ColouredSurface {
                     points: self.points,
                     triangles: if view.held_alone { &held } else { self.triangles },
                     colours: &colours,
@@ -108,7 +108,7 @@ impl ClassesPicture<'_> {
             .collect();
         for (panel, png) in draw_all(&panels)?.iter().enumerate() {
             let x = MARGIN + (PANEL_WIDTH + GAP) * panel as f64;
-            let place = Place { x, y: HEAD, width: PANEL_WIDTH, height: panel_height };
+            let place = Rectangle { x, y: HEAD, width: PANEL_WIDTH, height: panel_height };
             document.rectangle(place, colour::GROUND, 6.0);
             document.image(place, png);
             let middle = [place.x + PANEL_WIDTH / 2.0, HEAD - 10.0];
@@ -148,7 +148,7 @@ impl ClassesPicture<'_> {
         for (entry, class) in self.classes.iter().enumerate() {
             let x = MARGIN + (PANEL_WIDTH + GAP) * (entry % COLUMNS) as f64;
             let y = top + LINE * (entry / COLUMNS) as f64;
-            let patch = Place { x, y: y - 12.0, width: 16.0, height: 16.0 };
+            let patch = Rectangle { x, y: y - 12.0, width: 16.0, height: 16.0 };
             document.rectangle(patch, &colour::hexadecimal(palette[entry]), 3.0);
             let name = match &class.kind {
                 ClassKind::Joined(segment) => format!("joined to {segment}"),
@@ -199,7 +199,7 @@ mod tests {
             triangles: &[[0, 1, 2]],
             class_of: &[0, 1, 5],
             classes: &classes,
-            outlook: Outlook::ras(),
+            outlook: FaceDirection::ras(),
             frame: "RAS",
         };
         let mut palette = picture.palette();

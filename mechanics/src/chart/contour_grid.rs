@@ -2,11 +2,11 @@
 
 use super::axis::LogAxis;
 use super::colour::sequential;
-use super::drawing::{Document, Paint, Place};
+use super::drawing::{Document, Paint, Rectangle};
 use super::raster::Image;
 
 /// Where the grid is drawn.
-pub(super) const PLOT: Place = Place { x: 96.0, y: 92.0, width: 620.0, height: 400.0 };
+pub(super) const PLOT: Rectangle = Rectangle { x: 96.0, y: 92.0, width: 620.0, height: 400.0 };
 /// Bands of one colour.
 pub(super) const BANDS: f64 = 10.0;
 /// Pixels of the filled part for each unit of the drawing.

@@ -3,7 +3,7 @@
 
 use super::colour::{GRID, GROUND, INK, SERIES, hexadecimal, sequential};
 use super::contour_grid::{BANDS, ContourAxis, Grid, INSET, PLOT, labelled, position};
-use super::drawing::{Document, Paint, Place, Style, wrapped};
+use super::drawing::{Document, Paint, Rectangle, Style, wrapped};
 use super::legend::Scale;
 use super::raster::PngError;
 use super::svg::svg;
@@ -111,7 +111,7 @@ impl ContourPicture<'_> {
         }
         if let (Some(noise), Some(least)) = (self.noise, self.distances[self.best]) {
             let (top, foot) = (height(least + noise), height(least));
-            let band = Place { y: top, height: foot - top, ..PLOT };
+            let band = Rectangle { y: top, height: foot - top, ..PLOT };
             document.rectangle(band, "#cfe3f1", 0.0);
             let at = [PLOT.x + PLOT.width + 10.0, 0.5 * (top + foot) + 4.0];
             document.text(at, WIDTH - at[0] - 8.0, Style::of(12.0), "as good as the best");
@@ -166,13 +166,13 @@ fn levels([low, high]: [f64; 2]) -> Vec<f64> {
 
 fn write_legend(document: &mut Document, [low, high]: [f64; 2], has_noise: bool) {
     let x = PLOT.x + PLOT.width + 22.0;
-    let bar = Place { x, y: PLOT.y + 24.0, width: 18.0, height: 240.0 };
+    let bar = Rectangle { x, y: PLOT.y + 24.0, width: 18.0, height: 240.0 };
     document.text([x, PLOT.y + 12.0], 150.0, Style::of(13.0), "mean D, mm");
     let height = bar.height / BANDS;
     for number in 0..BANDS as usize {
         let y = bar.y + bar.height - height * (number + 1) as f64;
         let colour = hexadecimal(sequential((number as f64 + 0.5) / BANDS));
-        document.rectangle(Place { y, height: height + 0.5, ..bar }, &colour, 0.0);
+        document.rectangle(Rectangle { y, height: height + 0.5, ..bar }, &colour, 0.0);
     }
     for number in [0, 2, 4, 6, 8, 10] {
         let share = f64::from(number) / BANDS;

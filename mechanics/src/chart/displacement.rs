@@ -2,12 +2,12 @@
 
 use super::Vector;
 use super::colour::{self, Rgb};
-use super::drawing::{Document, Place, Style, wrapped};
+use super::drawing::{Document, Rectangle, Style, wrapped};
 use super::facet::Finish;
 use super::legend::round_length;
-use super::raster::{Painted, Panel, PngError, Shot, draw_all};
+use super::raster::{ColouredSurface, Panel, PngError, Shot, draw_all};
 use super::svg::svg;
-use super::view::{Camera, Outlook};
+use super::view::{Camera, FaceDirection};
 use super::views::ViewValues;
 
 /// What the picture shows. Points in mm; `before` and `after` correspond one to one.
@@ -17,7 +17,7 @@ pub struct DisplacementPicture<'a> {
     pub triangles: &'a [[u32; 3]],
     pub before: &'a [Vector],
     pub after: &'a [Vector],
-    pub outlook: Outlook,
+    pub outlook: FaceDirection,
     /// The frame of the coordinates as clients name it, e.g. `LPS`.
     pub frame: &'a str,
     /// At which colours end, in mm: those of reports and of the page.
@@ -90,7 +90,7 @@ impl DisplacementPicture<'_> {
         ];
         let panel = |camera: &Camera, column: usize| {
             let (points, colours, finish) = columns[column];
-            let painted = Painted { points, triangles: self.triangles, colours, finish };
+            let painted = ColouredSurface { points, triangles: self.triangles, colours, finish };
             Panel { painted, shot: layout.shot(*camera, self) }
         };
         let panels: Vec<Panel> = cameras
@@ -101,7 +101,7 @@ impl DisplacementPicture<'_> {
         for (number, png) in draw_all(&panels)?.iter().enumerate() {
             let place = layout.panel(number / columns.len(), number % columns.len());
             document.rectangle(place, colour::GROUND, 6.0);
-            let below = Place { y: place.y + STRIP, height: layout.image_height, ..place };
+            let below = Rectangle { y: place.y + STRIP, height: layout.image_height, ..place };
             document.image(below, png);
         }
         for (row, (name, _, _)) in ROWS.iter().enumerate() {
@@ -158,8 +158,8 @@ impl Layout {
         }
     }
 
-    fn panel(&self, row: usize, column: usize) -> Place {
-        Place {
+    fn panel(&self, row: usize, column: usize) -> Rectangle {
+        Rectangle {
             x: MARGIN + (PANEL_WIDTH + GAP) * column as f64,
             y: HEAD + (self.image_height + STRIP + GAP) * row as f64,
             width: PANEL_WIDTH,
@@ -177,9 +177,9 @@ impl Layout {
     }
 
     /// Both panels of the last column, beside which the legend stands.
-    fn beside(&self) -> Place {
+    fn beside(&self) -> Rectangle {
         let [top, bottom] = [self.panel(0, 2), self.panel(1, 2)];
-        Place { height: bottom.y + bottom.height - top.y, ..top }
+        Rectangle { height: bottom.y + bottom.height - top.y, ..top }
     }
 }
 
@@ -197,7 +197,7 @@ mod tests {
             triangles: &[[0, 1, 2]],
             before: &before,
             after: &after,
-            outlook: Outlook::lps(),
+            outlook: FaceDirection::lps(),
             frame: "LPS",
             range_mm: 5.0,
             statistics: "mean 2.30 mm",

@@ -87,7 +87,7 @@ impl Style {
 
 /// A rectangle from its top left.
 #[derive(Clone, Copy)]
-pub struct Place {
+pub struct Rectangle {
     pub x: f64,
     pub y: f64,
     pub width: f64,
@@ -118,13 +118,13 @@ pub struct OwnPaint {
 /// One thing of a drawing; later ones lie over earlier ones.
 pub enum Item {
     Rectangle {
-        place: Place,
+        place: Rectangle,
         fill: String,
         corner: f64,
     },
     /// Evenly spaced colours, the first at the foot.
     Gradient {
-        place: Place,
+        place: Rectangle,
         colours: Vec<String>,
     },
     Line {
@@ -148,12 +148,12 @@ pub enum Item {
     },
     /// The bytes of a PNG file.
     Image {
-        place: Place,
+        place: Rectangle,
         png: Vec<u8>,
     },
     /// Another drawing, as large as its place.
     Drawing {
-        place: Place,
+        place: Rectangle,
         drawing: Document,
     },
     /// What follows until [`Item::Close`] belongs together, and has a name.
@@ -178,12 +178,12 @@ impl Document {
         Document { items: Vec::new(), width, height }
     }
 
-    pub fn rectangle(&mut self, place: Place, fill: &str, corner: f64) {
+    pub fn rectangle(&mut self, place: Rectangle, fill: &str, corner: f64) {
         self.items.push(Item::Rectangle { place, fill: fill.to_owned(), corner });
     }
 
     /// A rectangle that runs through evenly spaced colours, the first at its foot.
-    pub fn gradient(&mut self, place: Place, colours: &[String]) {
+    pub fn gradient(&mut self, place: Rectangle, colours: &[String]) {
         self.items.push(Item::Gradient { place, colours: colours.to_vec() });
     }
 
@@ -240,12 +240,12 @@ impl Document {
     }
 
     /// An image in the bytes of a PNG file.
-    pub fn image(&mut self, place: Place, png: &[u8]) {
+    pub fn image(&mut self, place: Rectangle, png: &[u8]) {
         self.items.push(Item::Image { place, png: png.to_vec() });
     }
 
     /// Another drawing, as large as the place.
-    pub fn drawing(&mut self, place: Place, drawing: Document) {
+    pub fn drawing(&mut self, place: Rectangle, drawing: Document) {
         self.items.push(Item::Drawing { place, drawing });
     }
 }

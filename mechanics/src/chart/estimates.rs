@@ -3,7 +3,7 @@
 
 use super::axis::LogAxis;
 use super::colour::{FRONT, GRID, INK};
-use super::drawing::{Document, Paint, Place, Style, wrapped};
+use super::drawing::{Document, Paint, Rectangle, Style, wrapped};
 use super::series::{MethodSeries, mark_data};
 use super::symbol::Symbol;
 
@@ -106,7 +106,8 @@ impl EstimatesPicture<'_> {
 }
 
 fn write_grid(document: &mut Document, across: LogAxis, upwards: LogAxis) {
-    let Place { x, y, width, height } = Place { x: LEFT, y: HEAD, width: SIDE, height: SIDE };
+    let Rectangle { x, y, width, height } =
+        Rectangle { x: LEFT, y: HEAD, width: SIDE, height: SIDE };
     let (right, foot) = (x + width, y + height);
     for tick in across.ticks().into_iter().filter(|tick| tick.labelled) {
         let at = [across.place(tick.value), upwards.place(tick.value)];

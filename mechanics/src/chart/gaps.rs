@@ -2,18 +2,18 @@
 
 use super::Vector;
 use super::colour::{GROUND, Rgb, hexadecimal};
-use super::drawing::{Document, Place, Style};
+use super::drawing::{Document, Rectangle, Style};
 use super::facet::Finish;
-use super::raster::{Painted, Panel, PngError, Shot, draw_all};
+use super::raster::{ColouredSurface, Panel, PngError, Shot, draw_all};
 use super::svg::svg;
-use super::view::{Camera, Extent, Outlook};
+use super::view::{Camera, Extent, FaceDirection};
 
 /// What the picture shows.
 pub struct GapsPicture<'a> {
     pub title: &'a str,
     pub subtitle: &'a str,
     pub bones: &'a [GapsOfBone<'a>],
-    pub outlook: Outlook,
+    pub outlook: FaceDirection,
     pub frame: &'a str,
 }
 
@@ -75,7 +75,7 @@ impl GapsPicture<'_> {
         for (number, png) in images.iter().enumerate() {
             let (row, column) = ((number / 2) as f64, (number % 2) as f64);
             let x = MARGIN + column * (PANEL_WIDTH + GAP);
-            let place = Place { x, y: HEAD + row * (height + GAP), width: PANEL_WIDTH, height };
+            let place = Rectangle { x, y: HEAD + row * (height + GAP), width: PANEL_WIDTH, height };
             document.rectangle(place, GROUND, 6.0);
             document.image(place, png);
             if column == 0.0 {
@@ -109,7 +109,8 @@ impl GapsPicture<'_> {
         for (number, bone) in self.bones.iter().enumerate() {
             for ((points, _), colours) in bone.stages.iter().zip(&colours[number]) {
                 let finish = Finish::Classes;
-                let painted = Painted { points, triangles: bone.triangles, colours, finish };
+                let painted =
+                    ColouredSurface { points, triangles: bone.triangles, colours, finish };
                 panels.push(Panel { painted, shot: shot(number) });
             }
         }
@@ -169,7 +170,7 @@ fn write_legend(document: &mut Document, [x, y]: [f64; 2]) {
     let bands = BANDS.iter().map(|(_, colour, words)| (*colour, *words));
     for (line, (colour, words)) in bands.chain(beyond).enumerate() {
         let y = y + 22.0 + 24.0 * line as f64;
-        let patch = Place { x, y, width: 18.0, height: 18.0 };
+        let patch = Rectangle { x, y, width: 18.0, height: 18.0 };
         document.rectangle(patch, &hexadecimal(colour), 3.0);
         document.text([x + 26.0, y + 14.0], LEGEND - 26.0, Style::of(12.0), words);
     }
@@ -199,7 +200,7 @@ mod tests {
             },
         ];
         let (title, subtitle) = ("Gaps", "jaw 1 mm up");
-        let outlook = Outlook::lps();
+        let outlook = FaceDirection::lps();
         let picture = GapsPicture { title, subtitle, bones: &bones, outlook, frame: "LPS" };
         let text = picture.to_svg().expect("a picture");
         assert_eq!(text.matches("data:image/png;base64,").count(), 4);

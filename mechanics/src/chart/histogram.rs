@@ -1,7 +1,7 @@
 //! Shares of area over signed values of a fixed range, in the colours of that range.
 
 use super::colour::{GRID, INK, hexadecimal};
-use super::drawing::{Document, Place, Style};
+use super::drawing::{Document, Rectangle, Style};
 use super::legend::Scale;
 use super::views::ViewValues;
 
@@ -14,7 +14,7 @@ pub struct HistogramPicture<'a> {
 }
 
 const SIZE: [f64; 2] = [1000.0, 270.0];
-const PLOT: Place = Place { x: 70.0, y: 30.0, width: 900.0, height: 180.0 };
+const PLOT: Rectangle = Rectangle { x: 70.0, y: 30.0, width: 900.0, height: 180.0 };
 /// Two for each band of the colours.
 const BINS: usize = 20;
 
@@ -54,7 +54,7 @@ impl HistogramPicture<'_> {
             let value = range * (2.0 * (bin as f64 + 0.5) / BINS as f64 - 1.0);
             let (y, foot) = (place(100.0 * share), PLOT.y + PLOT.height);
             let x = PLOT.x + width * bin as f64 + 1.0;
-            let bar = Place { x, y, width: width - 2.0, height: foot - y };
+            let bar = Rectangle { x, y, width: width - 2.0, height: foot - y };
             document.open("bin", &format!("{value:.2} mm: {:.1} %", 100.0 * share));
             document.rectangle(bar, &hexadecimal(self.values.colour(value)), 0.0);
             let outline = [[x, foot], [x, y], [x + width - 2.0, y], [x + width - 2.0, foot]];

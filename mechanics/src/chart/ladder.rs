@@ -2,9 +2,9 @@
 //! both is joined by a line, and what gave no answer stands in a band of its own with its reason.
 
 use super::axis::{LogAxis, duration, numbers};
-use super::callout::Taken;
+use super::callout::OccupiedAreas;
 use super::colour::{FAILED_INK, FRONT, GRID, INK};
-use super::drawing::{Document, Paint, Place, Style, estimated_width, wrapped};
+use super::drawing::{Document, Paint, Rectangle, Style, estimated_width, wrapped};
 use super::ladder_legend::Legend;
 use super::series::{MethodSeries, mark_data};
 use super::symbol::Symbol;
@@ -245,7 +245,7 @@ impl LadderPicture<'_> {
 
     /// Names beside the marks of the front, and beside the best of each other method while there is room.
     fn write_names(&self, document: &mut Document, layout: &Layout, front: &[[f64; 2]]) {
-        let mut taken = Taken::within(layout.plot);
+        let mut taken = OccupiedAreas::within(layout.plot);
         for mark in self.marks {
             let (radius, _) = self.size(mark.level);
             taken.add_mark(layout.place(mark.wall_s, mark.error_mm), radius + 2.0);
@@ -283,8 +283,8 @@ struct Layout {
     height: f64,
     /// Failures are written in so many columns.
     columns: usize,
-    band: Place,
-    plot: Place,
+    band: Rectangle,
+    plot: Rectangle,
     time: LogAxis,
     error: LogAxis,
     notes: Vec<String>,
@@ -296,11 +296,11 @@ impl Layout {
         let columns = if picture.failures.len() > 8 { 2 } else { 1 };
         let lines = picture.failures.len().div_ceil(columns);
         let band_height = if lines == 0 { 0.0 } else { 34.0 + FAILURE_LINE * lines as f64 };
-        let band = Place { x: LEFT, y: HEAD, width, height: band_height };
+        let band = Rectangle { x: LEFT, y: HEAD, width, height: band_height };
         let below = if lines == 0 { 0.0 } else { 10.0 };
         let top = HEAD + band_height + below;
         let legend = Legend::height(picture.shown().len()) - band_height - below;
-        let plot = Place { x: LEFT, y: top, width, height: LEAST_HEIGHT.max(legend) };
+        let plot = Rectangle { x: LEFT, y: top, width, height: LEAST_HEIGHT.max(legend) };
         let foot = plot.y + plot.height;
         let runs = || picture.marks.iter().flat_map(|mark| mark.runs.iter().copied());
         let own = || picture.marks.iter().map(|mark| [mark.wall_s, mark.error_mm]);
@@ -321,7 +321,7 @@ impl Layout {
     }
 
     fn write_grid(&self, document: &mut Document) {
-        let Place { x, y, width, height } = self.plot;
+        let Rectangle { x, y, width, height } = self.plot;
         let (right, foot) = (x + width, y + height);
         for tick in self.time.ticks() {
             let at = self.time.place(tick.value);

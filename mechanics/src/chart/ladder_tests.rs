@@ -195,13 +195,13 @@ fn captions_lie_over_no_mark_and_over_no_caption() {
             && (plot.y..plot.y + plot.height).contains(&at[1])
     };
     let document = picture.to_drawing();
-    let captions: Vec<Place> = document
+    let captions: Vec<Rectangle> = document
         .items
         .iter()
         .filter_map(|item| match item {
             Item::Text { at, style, words, .. } if is_inside(at) => {
                 let (width, height) = (estimated_width(words, *style) * 0.93, style.size * 1.25);
-                Some(Place { x: at[0] - width / 2.0, y: at[1] - 0.76 * height, width, height })
+                Some(Rectangle { x: at[0] - width / 2.0, y: at[1] - 0.76 * height, width, height })
             }
             _ => None,
         })

@@ -1,7 +1,7 @@
 //! Learning curves: error by the number of cases that were learned from, beside levels that need none.
 
 use super::colour::{FAINT_INK, GRID};
-use super::drawing::{Document, Paint, Place, Style};
+use super::drawing::{Document, Paint, Rectangle, Style};
 use super::svg::svg;
 use super::symbol::Symbol;
 
@@ -20,7 +20,7 @@ pub struct LearningSeries {
 }
 
 const SIZE: [f64; 2] = [900.0, 520.0];
-const PLOT: Place = Place { x: 76.0, y: 64.0, width: 560.0, height: 380.0 };
+const PLOT: Rectangle = Rectangle { x: 76.0, y: 64.0, width: 560.0, height: 380.0 };
 
 /// Errors between two lines of the grid, as far as these are no more than ten.
 const STEPS: [f64; 5] = [0.1, 0.2, 0.5, 1.0, 5.0];

@@ -47,7 +47,7 @@ pub use raster::{Image, PngError};
 pub use series::MethodSeries;
 pub use slices::SlicesPicture;
 pub use stability_map::{Mark, StabilityAxis, StabilityMap};
-pub use view::{Outlook, clear_front, front_of};
+pub use view::{FaceDirection, clear_front, front_of};
 pub use views::{ViewOutline, ViewRow, ViewValues, ViewsPicture};
 
 /// A position in mm.

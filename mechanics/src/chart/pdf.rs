@@ -11,12 +11,12 @@ use pdf_writer::types::{LineCapStyle, LineJoinStyle};
 use pdf_writer::{Content, Filter, Finish, Name, Pdf, Rect, Ref, Str, TextStr};
 
 use super::colour::INK;
-use super::drawing::{Anchor, Document, Item, OwnPaint, Place, Run, Style};
+use super::drawing::{Anchor, Document, Item, OwnPaint, Rectangle, Run, Style};
 use super::helvetica::{encoded, width};
 use super::path_steps::{Step, steps};
 
 /// What a PDF says of itself.
-pub struct About<'a> {
+pub struct PdfMetadata<'a> {
     pub title: &'a str,
     /// As of HTML, e.g. `de`.
     pub language: &'a str,
@@ -36,7 +36,7 @@ const PLAIN: Ref = Ref::new(3);
 const BOLD: Ref = Ref::new(4);
 
 /// The file; a picture that is no PNG is left out.
-pub fn pdf(pages: &[Document], about: &About) -> Vec<u8> {
+pub fn pdf(pages: &[Document], about: &PdfMetadata) -> Vec<u8> {
     let (catalog, tree, info) = (Ref::new(1), Ref::new(2), Ref::new(5));
     let mut writer =
         Writer { pdf: Pdf::new(), next: 6, images: Vec::new(), opacities: HashMap::new() };
@@ -109,7 +109,7 @@ impl Writer {
         }
     }
 
-    fn nested(&mut self, place: &Place, drawing: &Document, content: &mut Content) {
+    fn nested(&mut self, place: &Rectangle, drawing: &Document, content: &mut Content) {
         let scale = (place.width / drawing.width).min(place.height / drawing.height) as f32;
         content.save_state();
         content.transform([scale, 0.0, 0.0, scale, place.x as f32, place.y as f32]);
@@ -165,7 +165,7 @@ impl Writer {
         format!("G{percent}")
     }
 
-    fn image(&mut self, place: &Place, png: &[u8], content: &mut Content) {
+    fn image(&mut self, place: &Rectangle, png: &[u8], content: &mut Content) {
         let Some(pixels) = Pixels::decoded(png) else { return };
         let (at, mask_at) = (self.number(), self.number());
         let (colour, mask) = (packed(&pixels.colour), packed(&pixels.opacity));
@@ -179,7 +179,7 @@ impl Writer {
         image.finish();
         let name = format!("I{}", self.images.len());
         self.images.push(at);
-        let Place { x, y, width, height } = *place;
+        let Rectangle { x, y, width, height } = *place;
         content.save_state();
         content.transform([width, 0.0, 0.0, -height, x, y + height].map(|value| value as f32));
         content.x_object(Name(name.as_bytes()));
@@ -256,7 +256,7 @@ fn line(content: &mut Content, points: &[[f64; 2]], ink: &str, width: f64) {
 }
 
 /// As bands, one for each colour.
-fn gradient(content: &mut Content, place: &Place, colours: &[String]) {
+fn gradient(content: &mut Content, place: &Rectangle, colours: &[String]) {
     let height = place.height / colours.len().max(1) as f64;
     for (index, colour) in colours.iter().enumerate() {
         let y = place.y + place.height - height * (index + 1) as f64;
@@ -304,9 +304,9 @@ mod tests {
         page.words([30.0, 40.0], Run::Level, Style::of(12.0), "Größe (mm)");
         let png =
             crate::chart::Image { width: 2, height: 1, pixels: vec![[255, 0, 0, 255], [0; 4]] };
-        let place = Place { x: 30.0, y: 60.0, width: 100.0, height: 50.0 };
+        let place = Rectangle { x: 30.0, y: 60.0, width: 100.0, height: 50.0 };
         page.image(place, &png.to_png().unwrap());
-        let about = About { title: "T", language: "de", creator: "facies" };
+        let about = PdfMetadata { title: "T", language: "de", creator: "facies" };
         let bytes = pdf(&[page], &about);
         let text = String::from_utf8_lossy(&bytes);
         assert!(text.starts_with("%PDF-") && text.trim_end().ends_with("%%EOF"));

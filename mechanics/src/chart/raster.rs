@@ -31,7 +31,7 @@ pub struct PngError {
 }
 
 /// A surface with a colour for each point.
-pub struct Painted<'a> {
+pub struct ColouredSurface<'a> {
     pub points: &'a [Vector],
     pub triangles: &'a [[u32; 3]],
     pub colours: &'a [Rgb],
@@ -79,7 +79,7 @@ impl Image {
 
 /// One image of a document.
 pub struct Panel<'a> {
-    pub painted: Painted<'a>,
+    pub painted: ColouredSurface<'a>,
     pub shot: Shot,
 }
 
@@ -89,7 +89,7 @@ pub fn draw_all(panels: &[Panel]) -> Result<Vec<Vec<u8>>, PngError> {
 }
 
 /// Draws a surface; where there is none the image is transparent.
-pub fn draw(surface: &Painted, shot: &Shot) -> Image {
+pub fn draw(surface: &ColouredSurface, shot: &Shot) -> Image {
     let corners = corners(surface, shot);
     let facets: Vec<Facet> = surface
         .triangles
@@ -104,7 +104,7 @@ pub fn draw(surface: &Painted, shot: &Shot) -> Image {
 }
 
 /// The points of a surface on the screen, in samples.
-fn corners(surface: &Painted, shot: &Shot) -> Vec<Corner> {
+fn corners(surface: &ColouredSurface, shot: &Shot) -> Vec<Corner> {
     let scale = SAMPLES as f64 / shot.millimetres_per_pixel;
     let middle = [shot.width, shot.height].map(|side| (side * SAMPLES) as f64 / 2.0);
     let normals = point_normals(surface);
@@ -125,7 +125,7 @@ fn corners(surface: &Painted, shot: &Shot) -> Vec<Corner> {
         .collect()
 }
 
-fn point_normals(surface: &Painted) -> Vec<Vector> {
+fn point_normals(surface: &ColouredSurface) -> Vec<Vector> {
     let mut normals = vec![Vector::zeros(); surface.points.len()];
     for triangle in surface.triangles {
         let [a, b, c] = triangle.map(|point| surface.points[point as usize]);
@@ -141,7 +141,7 @@ fn point_normals(surface: &Painted) -> Vec<Vector> {
 }
 
 /// For each point the share of skylight that its neighbours leave it, in [0.55, 1].
-fn openness(surface: &Painted, normals: &[Vector]) -> Vec<f64> {
+fn openness(surface: &ColouredSurface, normals: &[Vector]) -> Vec<f64> {
     let mut rise = vec![(0.0, 0.0); surface.points.len()];
     for triangle in surface.triangles {
         for (&from, &to) in triangle.iter().zip(triangle.iter().cycle().skip(1)) {
@@ -239,7 +239,7 @@ impl Samples {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::chart::view::Outlook;
+    use crate::chart::view::FaceDirection;
 
     /// Rings of latitude around z.
     fn sphere(radius: f64, rings: u32) -> (Vec<Vector>, Vec<[u32; 3]>) {
@@ -264,7 +264,7 @@ mod tests {
         (points, triangles)
     }
 
-    fn shot(outlook: Outlook, size: usize) -> Shot {
+    fn shot(outlook: FaceDirection, size: usize) -> Shot {
         Shot {
             camera: outlook.camera(30.0, 20.0),
             centre: [0.0; 2],
@@ -278,13 +278,13 @@ mod tests {
     fn a_sphere_covers_the_pixels_of_its_disc() {
         let (points, triangles) = sphere(40.0, 60);
         let colours = vec![[200, 180, 160]; points.len()];
-        let surface = Painted {
+        let surface = ColouredSurface {
             points: &points,
             triangles: &triangles,
             colours: &colours,
             finish: Finish::Bare,
         };
-        let image = draw(&surface, &shot(Outlook::lps(), 100));
+        let image = draw(&surface, &shot(FaceDirection::lps(), 100));
         let covered: f64 = image.pixels.iter().map(|pixel| f64::from(pixel[3]) / 255.0).sum();
         let disc = std::f64::consts::PI * 40.0 * 40.0;
         // The polyhedron's outline lies inside the circle by 0.2 % of its area.
@@ -302,15 +302,15 @@ mod tests {
         triangles.extend(more.iter().map(|t| t.map(|p| p + count)));
         let mut colours = vec![[0, 0, 255]; count as usize];
         colours.resize(points.len(), [255, 0, 0]);
-        let surface = Painted {
+        let surface = ColouredSurface {
             points: &points,
             triangles: &triangles,
             colours: &colours,
             finish: Finish::Classes,
         };
-        let mut view = shot(Outlook::lps(), 101);
+        let mut view = shot(FaceDirection::lps(), 101);
         for (around, red_wins) in [(0.0, true), (180.0, false)] {
-            view.camera = Outlook::lps().camera(around, 0.0);
+            view.camera = FaceDirection::lps().camera(around, 0.0);
             let [red, _, blue, opacity] = draw(&surface, &view).pixels[50 * 101 + 50];
             assert_eq!((red > blue, opacity), (red_wins, 255));
         }
@@ -321,13 +321,13 @@ mod tests {
         let (mut points, triangles) = sphere(40.0, 20);
         points[100].x = f64::NAN;
         let colours = vec![[200, 180, 160]; points.len()];
-        let surface = Painted {
+        let surface = ColouredSurface {
             points: &points,
             triangles: &triangles,
             colours: &colours,
             finish: Finish::Bare,
         };
-        let image = draw(&surface, &shot(Outlook::lps(), 100));
+        let image = draw(&surface, &shot(FaceDirection::lps(), 100));
         assert!(image.pixels.iter().filter(|pixel| pixel[3] > 0).count() > 4000);
     }
 }

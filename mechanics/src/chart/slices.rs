@@ -2,12 +2,12 @@
 
 use super::Vector;
 use super::colour::{self, Rgb, sequential};
-use super::drawing::{Document, Place, Style};
+use super::drawing::{Document, Rectangle, Style};
 use super::facet::Finish;
 use super::legend::Scale;
-use super::raster::{Painted, Panel, PngError, Shot, draw_all};
+use super::raster::{ColouredSurface, Panel, PngError, Shot, draw_all};
 use super::svg::svg;
-use super::view::{Camera, Extent, Outlook};
+use super::view::{Camera, Extent, FaceDirection};
 
 /// What the picture shows. Points in mm.
 pub struct SlicesPicture<'a> {
@@ -18,7 +18,7 @@ pub struct SlicesPicture<'a> {
     pub tetrahedra: &'a [[u32; 4]],
     /// A point of all three planes.
     pub middle: Vector,
-    pub outlook: Outlook,
+    pub outlook: FaceDirection,
     /// The frame of the coordinates as clients name it, e.g. `LPS`.
     pub frame: &'a str,
 }
@@ -184,7 +184,7 @@ fn panel<'a>(
 ) -> Panel<'a> {
     let pixels = (PANEL * SHARPNESS) as usize;
     Panel {
-        painted: Painted {
+        painted: ColouredSurface {
             points: &cut.points,
             triangles: &cut.triangles,
             colours,
@@ -200,10 +200,10 @@ fn panel<'a>(
     }
 }
 
-fn place_of(panel: usize) -> Place {
+fn place_of(panel: usize) -> Rectangle {
     let (row, column) = ((panel / 3) as f64, (panel % 3) as f64);
     let (x, y) = (MARGIN + (PANEL + GAP) * column, HEAD + (PANEL + GAP) * row);
-    Place { x, y, width: PANEL, height: PANEL }
+    Rectangle { x, y, width: PANEL, height: PANEL }
 }
 
 /// A bar of colours beside a row; where large is good, the dark end is at its foot.
@@ -223,7 +223,7 @@ fn write_legend(
         let colour = colour::hexadecimal(sequential(if falling { 1.0 - share } else { share }));
         let strip = height / f64::from(steps);
         let top = y + height - strip * f64::from(step + 1);
-        document.rectangle(Place { x, y: top, width: 16.0, height: strip + 0.5 }, &colour, 0.0);
+        document.rectangle(Rectangle { x, y: top, width: 16.0, height: strip + 0.5 }, &colour, 0.0);
     }
     let top = if falling { REGULAR } else { scale.maximum() };
     for &tick in scale.ticks.iter().filter(|&&tick| tick <= top) {
@@ -249,7 +249,7 @@ mod tests {
             points,
             tetrahedra,
             middle: Vector::new(0.1, 0.1, 0.1),
-            outlook: Outlook::lps(),
+            outlook: FaceDirection::lps(),
             frame: "LPS",
         }
     }
@@ -260,7 +260,7 @@ mod tests {
         let cells = [[0, 1, 2, 3]];
         let picture = picture(&points, &cells);
         // z = .1 cuts the right angle off at .9 and .9.
-        let cut = picture.cut(&Outlook::lps().camera(0.0, 90.0));
+        let cut = picture.cut(&FaceDirection::lps().camera(0.0, 90.0));
         let area: f64 = cut
             .triangles
             .iter()

@@ -2,7 +2,7 @@
 //! cell for each value. A wrong answer without a warning is what the eye must find first.
 
 use super::colour::{INK, SERIES};
-use super::drawing::{Document, Place, Style, wrapped};
+use super::drawing::{Document, Rectangle, Style, wrapped};
 use super::svg::svg;
 
 /// What a method did.
@@ -119,7 +119,7 @@ impl StabilityMap<'_> {
         for (row, name) in names.enumerate() {
             let y = first + ROW * row as f64;
             if row % 2 == 0 {
-                let stripe = Place {
+                let stripe = Rectangle {
                     x: MARGIN - 8.0,
                     y: y - 5.0,
                     width: WIDTH - 2.0 * MARGIN + 16.0,
@@ -227,7 +227,7 @@ fn draw_legend(document: &mut Document, top: f64) {
 /// A cell with its sign, so that colour says nothing alone (colours after Okabe and Ito, see `colour`).
 fn draw_mark(document: &mut Document, [x, y]: [f64; 2], mark: Mark) {
     let [width, height] = [CELL[0] - 2.0, CELL[1]];
-    let cell = Place { x: x + 1.0, y, width, height };
+    let cell = Rectangle { x: x + 1.0, y, width, height };
     let (cx, cy) = (x + CELL[0] / 2.0, y + height / 2.0);
     let sign = |points: &[[f64; 2]]| -> Vec<[f64; 2]> {
         points.iter().map(|[dx, dy]| [cx + dx, cy + dy]).collect()
@@ -256,7 +256,7 @@ fn draw_mark(document: &mut Document, [x, y]: [f64; 2], mark: Mark) {
             document.stroke(&sign(&[[-4.0, 4.0], [4.0, -4.0]]), "#ffffff", 2.2);
         }
         Mark::Wrong => {
-            let around = Place {
+            let around = Rectangle {
                 x: cell.x - 3.0,
                 y: cell.y - 3.0,
                 width: width + 6.0,

@@ -3,7 +3,7 @@
 use base64::Engine;
 
 use super::colour::INK;
-use super::drawing::{Anchor, Document, Item, OwnPaint, Place, Run, Style};
+use super::drawing::{Anchor, Document, Item, OwnPaint, Rectangle, Run, Style};
 
 /// The whole document, under a title.
 pub fn svg(document: &Document, title: &str) -> String {
@@ -40,11 +40,11 @@ fn written(item: &Item) -> String {
                 text(*at, *style, words)
             ),
         },
-        Item::Image { place: Place { x, y, width, height }, png } => format!(
+        Item::Image { place: Rectangle { x, y, width, height }, png } => format!(
             "<image x=\"{x:.1}\" y=\"{y:.1}\" width=\"{width:.1}\" height=\"{height:.1}\" href=\"data:image/png;base64,{}\"/>\n",
             base64::engine::general_purpose::STANDARD.encode(png)
         ),
-        Item::Drawing { place: Place { x, y, width, height }, drawing } => format!(
+        Item::Drawing { place: Rectangle { x, y, width, height }, drawing } => format!(
             "<svg x=\"{x:.1}\" y=\"{y:.1}\" width=\"{width:.1}\" height=\"{height:.1}\" viewBox=\"0 0 {:.0} {:.0}\">\n{}</svg>\n",
             drawing.width,
             drawing.height,
@@ -61,14 +61,14 @@ fn written(item: &Item) -> String {
     }
 }
 
-fn rectangle(place: &Place, fill: &str, corner: f64) -> String {
-    let Place { x, y, width, height } = place;
+fn rectangle(place: &Rectangle, fill: &str, corner: f64) -> String {
+    let Rectangle { x, y, width, height } = place;
     format!(
         "<rect x=\"{x:.1}\" y=\"{y:.1}\" width=\"{width:.1}\" height=\"{height:.1}\" rx=\"{corner}\" fill=\"{fill}\"/>\n"
     )
 }
 
-fn gradient(place: &Place, colours: &[String]) -> String {
+fn gradient(place: &Rectangle, colours: &[String]) -> String {
     let last = colours.len().saturating_sub(1).max(1) as f64;
     let stops = colours.iter().enumerate().map(|(step, colour)| {
         let offset = step as f64 / last;

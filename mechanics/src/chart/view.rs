@@ -4,21 +4,21 @@ use super::Vector;
 
 /// Which way a face looks and which way its head points; neither has to have length 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Outlook {
+pub struct FaceDirection {
     /// Out of the face, towards somebody in front of it.
     pub front: Vector,
     pub up: Vector,
 }
 
-impl Outlook {
+impl FaceDirection {
     /// Left, posterior, superior: the face looks along -y.
     pub fn lps() -> Self {
-        Outlook { front: -Vector::y(), up: Vector::z() }
+        FaceDirection { front: -Vector::y(), up: Vector::z() }
     }
 
     /// Right, anterior, superior: the face looks along +y.
     pub fn ras() -> Self {
-        Outlook { front: Vector::y(), up: Vector::z() }
+        FaceDirection { front: Vector::y(), up: Vector::z() }
     }
 
     /// The camera of somebody who has walked `around` degrees to the right of the person in front
@@ -96,9 +96,9 @@ impl Extent {
 /// Share of a surface that an outlook has to see, in projection.
 const LEAST_SEEN: f64 = 0.05;
 
-impl Outlook {
+impl FaceDirection {
     /// The same, or where a skin would be seen edge-on, as that of a plate that lies on its back, one that faces it.
-    pub fn facing(self, points: &[Vector], triangles: &[[u32; 3]]) -> Outlook {
+    pub fn facing(self, points: &[Vector], triangles: &[[u32; 3]]) -> FaceDirection {
         let front = self.front.try_normalize(1e-12).unwrap_or_else(Vector::zeros);
         let (mut area, mut seen, mut sum) = (0.0, 0.0, Vector::zeros());
         for triangle in triangles {
@@ -114,9 +114,9 @@ impl Outlook {
         match sum.try_normalize(LEAST_SEEN * area) {
             None => self,
             Some(turned) if turned.dot(&self.up).abs() > 0.9 * self.up.norm() => {
-                Outlook { front: turned, up: -self.front }
+                FaceDirection { front: turned, up: -self.front }
             }
-            Some(turned) => Outlook { front: turned, up: self.up },
+            Some(turned) => FaceDirection { front: turned, up: self.up },
         }
     }
 }
@@ -161,29 +161,32 @@ mod tests {
     #[test]
     fn a_plate_that_lies_on_its_back_is_seen_from_above_and_a_face_from_the_front() {
         let plate = [Vector::zeros(), Vector::x(), Vector::y()];
-        let outlook = Outlook::lps().facing(&plate, &[[0, 1, 2]]);
+        let outlook = FaceDirection::lps().facing(&plate, &[[0, 1, 2]]);
         assert!((outlook.front - Vector::z()).norm() < 1e-12, "{:?}", outlook.front);
         assert!((outlook.up - Vector::y()).norm() < 1e-12, "{:?}", outlook.up);
         let face = [Vector::zeros(), Vector::x(), Vector::z()];
-        assert!((Outlook::lps().facing(&face, &[[0, 1, 2]]).front + Vector::y()).norm() < 1e-12);
+        assert!(
+            (FaceDirection::lps().facing(&face, &[[0, 1, 2]]).front + Vector::y()).norm() < 1e-12
+        );
     }
 
     #[test]
     fn the_viewer_in_front_sees_the_left_side_of_the_face_on_his_right() {
         // In LPS the person's left is +x.
-        let camera = Outlook::lps().camera(0.0, 0.0);
+        let camera = FaceDirection::lps().camera(0.0, 0.0);
         assert!((camera.right - Vector::x()).norm() < 1e-12);
         assert!((camera.towards + Vector::y()).norm() < 1e-12);
-        let camera = Outlook::ras().camera(0.0, 0.0);
+        let camera = FaceDirection::ras().camera(0.0, 0.0);
         assert!((camera.right + Vector::x()).norm() < 1e-12);
-        let beside = Outlook::lps().camera(90.0, 0.0);
+        let beside = FaceDirection::lps().camera(90.0, 0.0);
         assert!((beside.towards - Vector::x()).norm() < 1e-12);
     }
 
     #[test]
     fn a_camera_is_orthonormal_and_right_handed() {
-        let odd = Outlook { front: Vector::new(-3.0, 1.0, 2.0), up: Vector::new(0.1, 0.0, 4.0) };
-        let blind = Outlook { front: Vector::z(), up: Vector::z() };
+        let odd =
+            FaceDirection { front: Vector::new(-3.0, 1.0, 2.0), up: Vector::new(0.1, 0.0, 4.0) };
+        let blind = FaceDirection { front: Vector::z(), up: Vector::z() };
         for camera in [odd.camera(40.0, 15.0), blind.camera(-170.0, -20.0)] {
             assert!((camera.right.cross(&camera.up) - camera.towards).norm() < 1e-12);
             assert!((camera.up.norm() - 1.0).abs() < 1e-12);

@@ -2,17 +2,17 @@
 
 use super::Vector;
 use super::colour::{self, Rgb, sequential, signed};
-use super::drawing::{Document, Place, Style, wrapped};
+use super::drawing::{Document, Rectangle, Style, wrapped};
 use super::facet::Finish;
-use super::raster::{Image, Painted, PngError, Shot, draw};
-use super::view::{Camera, Outlook};
+use super::raster::{ColouredSurface, Image, PngError, Shot, draw};
+use super::view::{Camera, FaceDirection};
 use rayon::prelude::*;
 
 /// What the picture shows. Points in mm; all rows have the same triangles.
 pub struct ViewsPicture<'a> {
     pub triangles: &'a [[u32; 3]],
     pub rows: &'a [ViewRow<'a>],
-    pub outlook: Outlook,
+    pub outlook: FaceDirection,
     /// Front, between, side.
     pub columns: [&'a str; 3],
 }
@@ -103,7 +103,7 @@ impl ViewsPicture<'_> {
         &self,
         cameras: &[Camera; 3],
         layout: &Layout,
-    ) -> Result<Vec<(Place, Vec<u8>)>, PngError> {
+    ) -> Result<Vec<(Rectangle, Vec<u8>)>, PngError> {
         let all: Vec<[usize; 2]> =
             (0..self.rows.len()).flat_map(|row| (0..3).map(move |column| [row, column])).collect();
         let drawn = all.par_iter().map(|&[row, column]| {
@@ -117,7 +117,7 @@ impl ViewsPicture<'_> {
     fn image(&self, row: &ViewRow, shot: &Shot) -> Image {
         let bare = |points: &[Vector], triangles, finish| {
             let colours = vec![colour::SKIN; points.len()];
-            draw(&Painted { points, triangles, colours: &colours, finish }, shot)
+            draw(&ColouredSurface { points, triangles, colours: &colours, finish }, shot)
         };
         let mut image = match &row.values {
             None => bare(row.points, self.triangles, Finish::Bare),
@@ -126,7 +126,12 @@ impl ViewsPicture<'_> {
                     values.values.iter().map(|&value| values.colour(value)).collect();
                 let (points, triangles) = (row.points, self.triangles);
                 draw(
-                    &Painted { points, triangles, colours: &colours, finish: Finish::Values },
+                    &ColouredSurface {
+                        points,
+                        triangles,
+                        colours: &colours,
+                        finish: Finish::Values,
+                    },
                     shot,
                 )
             }
@@ -149,7 +154,7 @@ impl ViewValues<'_> {
     }
 
     /// Bands as high as a panel, beside it, under the name in as many lines as it needs.
-    pub(super) fn write_legend(&self, document: &mut Document, panel: Place) {
+    pub(super) fn write_legend(&self, document: &mut Document, panel: Rectangle) {
         let x = panel.x + panel.width + GAP;
         let heading = Style::of(12.5).bold();
         let lines = wrapped(self.name, LEGEND, heading);
@@ -163,7 +168,7 @@ impl ViewValues<'_> {
         let span = self.range_mm - low;
         for band in 0..BANDS {
             let y = top + height * (BANDS - 1 - band) as f64 / BANDS as f64;
-            let place = Place { x, y, width: 16.0, height: height / BANDS as f64 + 0.3 };
+            let place = Rectangle { x, y, width: 16.0, height: height / BANDS as f64 + 0.3 };
             let middle = low + span * (band as f64 + 0.5) / BANDS as f64;
             document.rectangle(place, &colour::hexadecimal(self.colour(middle)), 0.0);
         }
@@ -228,8 +233,8 @@ impl Layout {
         }
     }
 
-    fn panel(&self, row: usize, column: usize) -> Place {
-        Place {
+    fn panel(&self, row: usize, column: usize) -> Rectangle {
+        Rectangle {
             x: (PANEL + GAP) * column as f64,
             y: HEAD + (self.height + GAP) * row as f64,
             width: PANEL,
@@ -264,8 +269,12 @@ mod tests {
         assert_ne!(shown.colour(8.9), shown.colour(9.1));
         let rows = [ViewRow { values: Some(shown), ..row(&points, None) }];
         let columns = ["front", "three-quarter", "lateral"];
-        let picture =
-            ViewsPicture { triangles: TRIANGLES, rows: &rows, outlook: Outlook::lps(), columns };
+        let picture = ViewsPicture {
+            triangles: TRIANGLES,
+            rows: &rows,
+            outlook: FaceDirection::lps(),
+            columns,
+        };
         let drawing = picture.to_drawing().unwrap();
         let words: Vec<&str> = drawing
             .items
@@ -302,7 +311,7 @@ mod tests {
         let count = |outline_of| {
             let rows = [row(&after, outline_of)];
             let triangles = TRIANGLES;
-            let (outlook, columns) = (Outlook::lps(), [""; 3]);
+            let (outlook, columns) = (FaceDirection::lps(), [""; 3]);
             let picture = ViewsPicture { triangles, rows: &rows, outlook, columns };
             let camera = outlook.camera(0.0, 0.0);
             let cameras = [camera; 3];

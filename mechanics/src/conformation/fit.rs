@@ -14,7 +14,7 @@ use crate::mesh::Vector;
 const TOLERANCE: f64 = 1e-3;
 const MOST_ITERATIONS: usize = 150;
 
-struct Held {
+struct SpringToTarget {
     support: Support,
     stiffness: Matrix3<f64>,
     to: Vector,
@@ -23,7 +23,7 @@ struct Held {
 /// The quadratic form of pulls and bending on a lattice.
 pub(super) struct Energy<'a> {
     lattice: &'a Lattice,
-    held: Vec<Held>,
+    held: Vec<SpringToTarget>,
     differences: Vec<Difference>,
     /// λ / h.
     bending: f64,
@@ -31,7 +31,7 @@ pub(super) struct Energy<'a> {
 
 impl<'a> Energy<'a> {
     pub fn new(lattice: &'a Lattice, pulls: &[Pull], bending: f64) -> Self {
-        let held = pulls.par_iter().map(|pull| Held {
+        let held = pulls.par_iter().map(|pull| SpringToTarget {
             support: lattice.support(&pull.at),
             stiffness: pull.stiffness(),
             to: pull.to - pull.at,

@@ -6,7 +6,7 @@
 
 use rayon::prelude::*;
 
-use super::mending::Mended;
+use super::mending::RepairedSurface;
 use super::triangle::Corners;
 use super::triangle_tree::TriangleTree;
 use super::winding_cells::WindingCells;
@@ -74,7 +74,7 @@ pub(super) struct Assessed {
 
 /// `None` where the surface has no inside.
 pub(super) fn assess(
-    mended: &Mended,
+    mended: &RepairedSurface,
     tree: &TriangleTree,
     cells: &WindingCells,
 ) -> Option<Assessed> {

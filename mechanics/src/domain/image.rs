@@ -48,7 +48,7 @@ pub struct ImageDomain {
 }
 
 /// What the grid of an image knows.
-pub(super) struct Divided {
+pub(super) struct ImageGrid {
     pub division: Division,
     /// The first and the last voxel along each axis that tissue may reach into.
     pub tissue: [[usize; 3]; 2],
@@ -121,7 +121,7 @@ impl ImageDomain {
         let channels = channels([values, for_bone], &all, [skin, bone]);
         let surroundings = surroundings_of(&all, &division, &channels);
         let spline = CubicSpline::new(size, channels);
-        let divided = Divided { division, tissue, left_out, surroundings };
+        let divided = ImageGrid { division, tissue, left_out, surroundings };
         ImageDomain::of_spline(&image, spline, divided, &options.limits)
     }
 
@@ -151,10 +151,10 @@ impl ImageDomain {
     pub(super) fn of_spline(
         image: &ImageVolume,
         spline: CubicSpline<2>,
-        divided: Divided,
+        divided: ImageGrid,
         limits: &[Limit],
     ) -> Result<Self, ImageDomainError> {
-        let Divided { division, tissue, left_out, surroundings } = divided;
+        let ImageGrid { division, tissue, left_out, surroundings } = divided;
         let mut limits = Limits::new(limits)?;
         limits.push_border(image);
         let span = division.bone - division.skin;

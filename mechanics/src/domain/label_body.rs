@@ -6,7 +6,7 @@
 use super::Limit;
 use super::channels::tissue_box;
 use super::compartments::{Compartment, Division, known_compartments};
-use super::image::{Divided, ImageDomain, surroundings_of};
+use super::image::{ImageDomain, ImageGrid, surroundings_of};
 use super::image_error::ImageDomainError;
 use super::left_out::left_out;
 use super::region_map::RegionMap;
@@ -116,7 +116,7 @@ impl LabelBody {
         let channels = [body, share(&is_bone)];
         let surroundings = surroundings_of(&all, &division, &channels);
         let spline = CubicSpline::blurred(size, &channels);
-        let divided = Divided { division, tissue, left_out, surroundings };
+        let divided = ImageGrid { division, tissue, left_out, surroundings };
         let domain = ImageDomain::of_spline(image, spline, divided, limits)?;
         let region = |voxel: usize| match self.class(voxel) {
             LabelClass::Tissue(region) => Some(region),

@@ -39,7 +39,7 @@ pub struct Mending {
 
 /// A surface ready to be searched.
 #[derive(Clone, Debug)]
-pub(super) struct Mended {
+pub(super) struct RepairedSurface {
     pub facets: Vec<Facet>,
     pub mending: Mending,
     /// Edges at which the surface does not go on with one triangle of the same side.
@@ -49,7 +49,7 @@ pub(super) struct Mended {
 }
 
 /// Mends a surface whose corners are finite points of it.
-pub(super) fn mend(surface: &TriangleSurface) -> Mended {
+pub(super) fn mend(surface: &TriangleSurface) -> RepairedSurface {
     let mut mending = Mending::default();
     let (triangles, numbers) = sound_triangles(surface, &mut mending);
     let corners: Vec<Corners> =
@@ -66,7 +66,7 @@ pub(super) fn mend(surface: &TriangleSurface) -> Mended {
     let open = edges.open_lengths(&corners, &turned);
     let open_edges = edges.open_count(&turned);
     let facets = facets(&corners, &numbers, &turned, &open);
-    Mended { facets, mending, open_edges, pieces: pieces.count }
+    RepairedSurface { facets, mending, open_edges, pieces: pieces.count }
 }
 
 /// Triangles by welded points, without those that bound nothing, and their numbers.

@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use super::error::{FormatError, Place};
+use super::error::{FilePosition, FormatError};
 
 #[derive(Clone, Debug)]
 pub(super) struct Cursor<'a> {
@@ -32,7 +32,7 @@ impl<'a> Cursor<'a> {
     pub fn bad_bytes(&self, detail: impl Into<String>) -> FormatError {
         FormatError::Parse {
             format: self.format,
-            place: Place::Offset(self.at as u64),
+            place: FilePosition::Offset(self.at as u64),
             detail: detail.into(),
         }
     }
@@ -43,7 +43,7 @@ impl<'a> Cursor<'a> {
         let lines = before.iter().filter(|&&byte| byte == b'\n').count() as u64;
         FormatError::Parse {
             format: self.format,
-            place: Place::Line(lines + 1),
+            place: FilePosition::Line(lines + 1),
             detail: detail.into(),
         }
     }

@@ -4,16 +4,16 @@ use std::fmt;
 
 /// Where in a file: text formats count lines from 1, binary ones bytes from 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Place {
+pub enum FilePosition {
     Line(u64),
     Offset(u64),
 }
 
-impl fmt::Display for Place {
+impl fmt::Display for FilePosition {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Place::Line(line) => write!(formatter, "line {line}"),
-            Place::Offset(offset) => write!(formatter, "byte {offset}"),
+            FilePosition::Line(line) => write!(formatter, "line {line}"),
+            FilePosition::Offset(offset) => write!(formatter, "byte {offset}"),
         }
     }
 }
@@ -22,7 +22,7 @@ impl fmt::Display for Place {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum FormatError {
     #[error("{format} file, {place}: {detail}")]
-    Parse { format: &'static str, place: Place, detail: String },
+    Parse { format: &'static str, place: FilePosition, detail: String },
     #[error("the file holds cells that are not supported: {}", types.join(", "))]
     UnsupportedCells { types: Vec<String> },
     #[error("a name is refused: {detail}")]
@@ -81,8 +81,8 @@ impl FormatError {
             FormatError::Parse { format, place, detail } => vec![
                 ("format", Text((*format).into())),
                 match place {
-                    Place::Line(line) => ("line", Count(*line)),
-                    Place::Offset(offset) => ("offset", Count(*offset)),
+                    FilePosition::Line(line) => ("line", Count(*line)),
+                    FilePosition::Offset(offset) => ("offset", Count(*offset)),
                 },
                 ("detail", Text(detail.clone())),
             ],

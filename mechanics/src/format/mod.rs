@@ -31,7 +31,7 @@ mod surface_cleaning;
 mod voxels;
 pub mod vtk;
 pub use arrays::{DISPLACEMENT, SurfaceArrays};
-pub use error::{FormatError, Member, Place};
+pub use error::{FilePosition, FormatError, Member};
 pub use file::{Mesh, MeshFormat, ReadMesh};
 pub use limits::ReadLimits;
 pub use lps::VolumeInLps;

@@ -180,13 +180,13 @@ pub(super) fn trailing(bytes: u64) -> Option<Warning> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::format::Place;
+    use crate::format::FilePosition;
 
     #[test]
     fn a_promise_beyond_what_deflate_can_keep_is_refused_before_memory_is_taken() {
         let cursor = Cursor::new("NRRD", b"few bytes");
         let error = check_promise(16 << 20, &cursor, 100, &ReadLimits::default()).unwrap_err();
-        let place = Place::Offset(0);
+        let place = FilePosition::Offset(0);
         let detail = "16777216 bytes declared in 9 compressed ones".to_owned();
         assert_eq!(error, FormatError::Parse { format: "NRRD", place, detail });
     }

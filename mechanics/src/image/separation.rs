@@ -17,7 +17,7 @@ pub struct Seed {
 
 /// A voxel that is reached, ordered by how thick bone was on the way, then by who came first.
 #[derive(PartialEq, Eq, PartialOrd, Ord)]
-struct Reached {
+struct FrontVoxel {
     /// Bits of a positive number in single precision, which are ordered like it.
     thickness: u32,
     earlier: std::cmp::Reverse<u64>,
@@ -44,11 +44,12 @@ pub fn separated(mask: &Mask, seeds: &[Seed]) -> Vec<Option<usize>> {
     let mut owner = vec![None; mask.inside.len()];
     let mut heap = BinaryHeap::new();
     let mut count = 0;
-    let mut reach = |heap: &mut BinaryHeap<Reached>, voxel: usize, seed: usize, thickness: f32| {
-        count += 1;
-        let earlier = std::cmp::Reverse(count);
-        heap.push(Reached { thickness: thickness.to_bits(), earlier, voxel, seed });
-    };
+    let mut reach =
+        |heap: &mut BinaryHeap<FrontVoxel>, voxel: usize, seed: usize, thickness: f32| {
+            count += 1;
+            let earlier = std::cmp::Reverse(count);
+            heap.push(FrontVoxel { thickness: thickness.to_bits(), earlier, voxel, seed });
+        };
     for (seed, Seed { voxels }) in seeds.iter().enumerate() {
         for &voxel in voxels.iter().filter(|&&voxel| mask.inside[voxel]) {
             for voxel in climb(&mask.grid, &depth, voxel) {
@@ -56,7 +57,7 @@ pub fn separated(mask: &Mask, seeds: &[Seed]) -> Vec<Option<usize>> {
             }
         }
     }
-    while let Some(Reached { thickness, voxel, seed, .. }) = heap.pop() {
+    while let Some(FrontVoxel { thickness, voxel, seed, .. }) = heap.pop() {
         if owner[voxel].is_some() {
             continue;
         }

@@ -127,7 +127,7 @@ impl<const N: usize> CubicSpline<N> {
 
 /// A voxel that a place sees.
 #[derive(Clone, Copy, Debug)]
-pub struct Seen {
+pub struct VoxelWeight {
     pub voxel: usize,
     pub weight: f64,
     /// How the weight changes by the index along each axis.
@@ -135,7 +135,7 @@ pub struct Seen {
 }
 
 /// The voxels that a place sees, with their weights, whose sum is one; those beyond the border are mirrored.
-pub fn seen_from(size: [usize; 3], place: [f64; 3], mut each: impl FnMut(Seen)) {
+pub fn seen_from(size: [usize; 3], place: [f64; 3], mut each: impl FnMut(VoxelWeight)) {
     let support: [Support; 3] = std::array::from_fn(|axis| Support::new(place[axis], size[axis]));
     let [x, y, z] = support.map(Support::weights);
     let [dx, dy, dz] = support.map(Support::slopes);
@@ -146,7 +146,7 @@ pub fn seen_from(size: [usize; 3], place: [f64; 3], mut each: impl FnMut(Seen)) 
             for i in 0..4 {
                 let slope = [dx[i] * y[j] * z[k], x[i] * dy[j] * z[k], x[i] * y[j] * dz[k]];
                 let weight = x[i] * y[j] * z[k];
-                each(Seen { voxel: row + index(0, i), weight, slope });
+                each(VoxelWeight { voxel: row + index(0, i), weight, slope });
             }
         }
     }

@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use super::cohort::{Cohort, LEAST_TRAINING, Pool};
 use super::features::Distance;
-use super::learner::{Compared, Method};
+use super::learner::{ComparedCases, Method};
 use super::validation::CaseErrors;
 use crate::draws::Draws;
 
@@ -29,7 +29,7 @@ pub fn learning_curve(
     pool: Pool,
     seed: u64,
 ) -> Vec<CurvePoint> {
-    let compared = Compared::new(cohort, method.target, distance);
+    let compared = ComparedCases::new(cohort, method.target, distance);
     let most = cohort.smallest_pool(pool);
     let sizes = SIZES.into_iter().filter(|&size| size < most).chain([most]);
     let sizes = sizes.filter(|&size| size >= LEAST_TRAINING);
@@ -45,7 +45,7 @@ pub fn learning_curve(
     sizes.map(point).collect()
 }
 
-fn error(compared: &Compared, method: Method, case: usize, training: &[usize]) -> f64 {
+fn error(compared: &ComparedCases, method: Method, case: usize, training: &[usize]) -> f64 {
     let fitted = compared.fit(method.learner, training);
     let told = compared.displacement(&fitted, case, training);
     let Cohort { cases, regions, .. } = compared.cohort;

@@ -89,7 +89,7 @@ impl Target {
 }
 
 /// The cases of a cohort compared with each other, once for all that is fitted to some of them.
-pub struct Compared<'a> {
+pub struct ComparedCases<'a> {
     pub cohort: &'a Cohort,
     pub target: Target,
     pub answers: Vec<Vec<f64>>,
@@ -134,14 +134,14 @@ impl Fitted {
     }
 }
 
-impl<'a> Compared<'a> {
+impl<'a> ComparedCases<'a> {
     pub fn new(cohort: &'a Cohort, target: Target, distance: Distance) -> Self {
         let features: Vec<Features> =
             cohort.cases.iter().map(|case| case.features.clone()).collect();
         let answers: Vec<Vec<f64>> = cohort.cases.iter().map(|case| target.of(case)).collect();
         let bone: Vec<&[f64]> = cohort.cases.iter().map(|case| case.bone.as_slice()).collect();
         let slices: Vec<&[f64]> = answers.iter().map(Vec::as_slice).collect();
-        Compared {
+        ComparedCases {
             cohort,
             target,
             space: FeatureSpace::new(&features, distance),

@@ -23,4 +23,4 @@ pub mod virtual_cohort;
 pub use cohort::{Cohort, CohortError, LearningCase};
 pub use features::{Distance, Features};
 pub use learner::{Learner, Method, Target};
-pub use model::{Asked, Corrected, LearnedModel, Refusal};
+pub use model::{Corrected, LearnedModel, PreoperativeCase, Refusal};

@@ -3,7 +3,7 @@
 use super::bands::band;
 use super::cohort::{Cohort, LearningCase};
 use super::features::{Distance, Features};
-use super::learner::{Compared, Fitted, LeftOut, Method, bone_products, without};
+use super::learner::{ComparedCases, Fitted, LeftOut, Method, bone_products, without};
 use super::pairs::blended;
 
 /// What was learned, ready to be asked.
@@ -20,7 +20,7 @@ pub struct LearnedModel {
 
 /// What is known of a case before its operation.
 #[derive(Clone, Copy)]
-pub struct Asked<'a> {
+pub struct PreoperativeCase<'a> {
     pub features: &'a Features,
     pub bone: &'a [f64],
     /// How mechanics says that the skin moves.
@@ -52,7 +52,7 @@ pub enum Refusal {
 impl LearnedModel {
     /// Learns from all cases of a cohort.
     pub fn new(cohort: &Cohort, method: Method, distance: Distance) -> Self {
-        let compared = Compared::new(cohort, method.target, distance);
+        let compared = ComparedCases::new(cohort, method.target, distance);
         let all: Vec<usize> = (0..cohort.len()).collect();
         let fitted = compared.fit(method.learner, &all);
         LearnedModel {
@@ -65,7 +65,7 @@ impl LearnedModel {
     }
 
     /// The displacement of a case that is of the kind of those that were learned from.
-    pub fn correct(&self, asked: Asked) -> Result<Corrected, Refusal> {
+    pub fn correct(&self, asked: PreoperativeCase) -> Result<Corrected, Refusal> {
         self.fits(asked)?;
         let standard = &self.fitted.standard;
         let apart = |case: &LearningCase| {
@@ -93,7 +93,7 @@ impl LearnedModel {
     }
 
     /// What each training case makes of a case at these distances and with these products of bone.
-    fn band(&self, asked: Asked, of_cases: [&Vec<f64>; 2]) -> Option<Vec<[f64; 2]>> {
+    fn band(&self, asked: PreoperativeCase, of_cases: [&Vec<f64>; 2]) -> Option<Vec<[f64; 2]>> {
         let weights = |left: &LeftOut| {
             let [distances, bone] = of_cases.map(|all| without(all, left.place));
             let mut weights = left.fitted.weights(&distances, &bone);
@@ -110,7 +110,7 @@ impl LearnedModel {
         })
     }
 
-    fn fits(&self, asked: Asked) -> Result<(), Refusal> {
+    fn fits(&self, asked: PreoperativeCase) -> Result<(), Refusal> {
         let Some(first) = self.cases.first() else { return Ok(()) };
         let blocks = asked.features.blocks.iter().zip(&first.features.blocks);
         let pairs = [

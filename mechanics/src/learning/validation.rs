@@ -13,7 +13,7 @@ use super::bands::band;
 use super::cohort::{Cohort, LEAST_TRAINING, Pool};
 use super::deformation_model::ModeCount;
 use super::features::Distance;
-use super::learner::{Compared, Fitted, Learner, Method, Rule, without};
+use super::learner::{ComparedCases, Fitted, Learner, Method, Rule, without};
 use super::pairs::blended;
 use crate::validation::Statistics;
 
@@ -143,7 +143,7 @@ struct Fold {
 
 /// Predicts each case from the others.
 pub fn validate(cohort: &Cohort, method: Method, distance: Distance) -> Validated {
-    let compared = Compared::new(cohort, method.target, distance);
+    let compared = ComparedCases::new(cohort, method.target, distance);
     let all: Vec<usize> = (0..cohort.len()).collect();
     let tuned = compared.fit(method.learner, &all).rule;
     let folds: Vec<Fold> =
@@ -171,7 +171,7 @@ pub fn validate(cohort: &Cohort, method: Method, distance: Distance) -> Validate
     }
 }
 
-fn fold(compared: &Compared, method: Method, tuned: &Rule, case: usize) -> Fold {
+fn fold(compared: &ComparedCases, method: Method, tuned: &Rule, case: usize) -> Fold {
     let others = compared.cohort.others(case);
     let fitted = compared.fit(method.learner, &others);
     let flattered = compared.fit_as_tuned(tuned, method.learner, &others);
@@ -186,11 +186,11 @@ fn fold(compared: &Compared, method: Method, tuned: &Rule, case: usize) -> Fold 
 }
 
 /// How far a case is from the nearest training case, as a share of the distance beyond which it is refused.
-fn novelty(compared: &Compared, fitted: &Fitted, case: usize, training: &[usize]) -> f64 {
+fn novelty(compared: &ComparedCases, fitted: &Fitted, case: usize, training: &[usize]) -> f64 {
     compared.nearest(case, training) / fitted.farthest.max(f64::MIN_POSITIVE)
 }
 
-fn other_classes(compared: &Compared, method: Method, name: &str) -> Option<OtherClasses> {
+fn other_classes(compared: &ComparedCases, method: Method, name: &str) -> Option<OtherClasses> {
     let cohort = compared.cohort;
     if cohort.smallest_pool(Pool::OtherClasses) < LEAST_TRAINING {
         return None;
@@ -208,7 +208,7 @@ fn other_classes(compared: &Compared, method: Method, name: &str) -> Option<Othe
 }
 
 fn band_of(
-    compared: &Compared,
+    compared: &ComparedCases,
     method: Method,
     fitted: &Fitted,
     case: usize,

@@ -6,7 +6,7 @@ use super::cohort::{Cohort, LearningCase, Pool};
 use super::curve::learning_curve;
 use super::features::{Distance, Features};
 use super::learner::{Learner, Method, Target};
-use super::model::{Asked, LearnedModel, Refusal};
+use super::model::{LearnedModel, PreoperativeCase, Refusal};
 use super::validation::{Column, validate};
 use crate::draws::Draws;
 use crate::study::paired::{Equality, ZeroRule, signed_rank};
@@ -183,7 +183,11 @@ fn a_case_unlike_all_others_is_refused_with_its_distance() {
     let predicted = vec![0.0; 3 * POINTS];
     let ask = |x: f64| {
         let features = Features { blocks: vec![vec![x, x]] };
-        model.correct(Asked { features: &features, bone: &[x, x], predicted: &predicted })
+        model.correct(PreoperativeCase {
+            features: &features,
+            bone: &[x, x],
+            predicted: &predicted,
+        })
     };
     let found = ask(0.1).expect("it is in the middle of the cases");
     assert!(found.distance <= model.fitted.farthest && found.displacement.len() == 3 * POINTS);
@@ -192,8 +196,11 @@ fn a_case_unlike_all_others_is_refused_with_its_distance() {
         other => panic!("{other:?}"),
     }
     let features = Features { blocks: vec![vec![0.0; 3]] };
-    let other_mesh =
-        model.correct(Asked { features: &features, bone: &[0.0; 2], predicted: &predicted });
+    let other_mesh = model.correct(PreoperativeCase {
+        features: &features,
+        bone: &[0.0; 2],
+        predicted: &predicted,
+    });
     let what = "a feature";
     assert_eq!(other_mesh, Err(Refusal::OtherMesh { what, found: 3, expected: 2 }));
 }

@@ -11,19 +11,20 @@ pub(super) struct SurfaceTopology {
     /// For each triangle the numbers of its edges and of its welded corners.
     edges_of: Vec<[u32; 3]>,
     vertices_of: Vec<[u32; 3]>,
-    edges: Vec<Place>,
-    vertices: Vec<Place>,
+    edges: Vec<SurfaceFeature>,
+    vertices: Vec<SurfaceFeature>,
 }
 
 /// An edge or a vertex: the weighted sum of the normals around it.
 #[derive(Clone, Copy)]
-struct Place {
+struct SurfaceFeature {
     normal: Vector,
     is_open: bool,
 }
 
-impl Place {
-    const BARE: Place = Place { normal: Vector::new(0.0, 0.0, 0.0), is_open: false };
+impl SurfaceFeature {
+    const BARE: SurfaceFeature =
+        SurfaceFeature { normal: Vector::new(0.0, 0.0, 0.0), is_open: false };
 }
 
 impl SurfaceTopology {
@@ -41,8 +42,8 @@ impl SurfaceTopology {
         let (edges_of, edge_ends, edge_uses) = number_edges(&vertices_of);
         let mut topology = SurfaceTopology {
             faces: vec![Vector::zeros(); vertices_of.len()],
-            edges: vec![Place::BARE; edge_ends.len()],
-            vertices: vec![Place::BARE; vertex_count],
+            edges: vec![SurfaceFeature::BARE; edge_ends.len()],
+            vertices: vec![SurfaceFeature::BARE; vertex_count],
             edges_of,
             vertices_of,
         };
@@ -76,7 +77,7 @@ impl SurfaceTopology {
         self.place(triangle, feature).is_some_and(|p| p.is_open)
     }
 
-    fn place(&self, triangle: usize, feature: Feature) -> Option<&Place> {
+    fn place(&self, triangle: usize, feature: Feature) -> Option<&SurfaceFeature> {
         match feature {
             Feature::Face => None,
             Feature::Edge(local) => Some(&self.edges[self.edges_of[triangle][local] as usize]),

@@ -13,7 +13,7 @@ const LIMITS: [f64; 2] = [0.15, 0.35];
 const FAIR: f64 = 0.21;
 
 /// A node of an edge of the boundary whose ends share no boundary, and the other end.
-type Beside = [u32; 2];
+type CreaseEdge = [u32; 2];
 
 /// Moves nodes onto creases; returns how many.
 pub(super) fn sharpen(climb: &mut Climb, watch: &Watch) -> Result<usize, MeshingError> {
@@ -32,7 +32,7 @@ pub(super) fn sharpen(climb: &mut Climb, watch: &Watch) -> Result<usize, Meshing
 }
 
 /// Both ways, ascending.
-fn beside_creases(draft: &Draft) -> Vec<Beside> {
+fn beside_creases(draft: &Draft) -> Vec<CreaseEdge> {
     let several = draft.boundaries.iter().fold(BoundarySet::NONE, |all, &set| all.and(set));
     if several.iter().count() < 2 {
         return Vec::new();
@@ -42,7 +42,7 @@ fn beside_creases(draft: &Draft) -> Vec<Beside> {
         let [a, b, c] = face.nodes;
         [[a, b], [b, a], [b, c], [c, b], [c, a], [a, c]]
     });
-    let mut beside: Vec<Beside> = edges.filter(|&[a, b]| parts(draft, a, b)).collect();
+    let mut beside: Vec<CreaseEdge> = edges.filter(|&[a, b]| parts(draft, a, b)).collect();
     beside.sort_unstable();
     beside.dedup();
     beside
@@ -54,7 +54,7 @@ fn parts(draft: &Draft, one: u32, other: u32) -> bool {
 }
 
 /// The boundaries on the far side of the crease that a node is still beside.
-fn beyond(draft: &Draft, beside: &[Beside], node: u32) -> BoundarySet {
+fn beyond(draft: &Draft, beside: &[CreaseEdge], node: u32) -> BoundarySet {
     let first = beside.partition_point(|edge| edge[0] < node);
     let edges = beside[first..].iter().take_while(|edge| edge[0] == node);
     let others = edges.map(|edge| edge[1]).filter(|&other| parts(draft, node, other));

@@ -24,7 +24,7 @@ const FAIR: f64 = 0.42;
 
 /// What the triangles at a node ask for, summed over them.
 #[derive(Clone, Copy, Default)]
-struct Asked {
+struct NodeTarget {
     /// Normals, with twice the areas as their lengths.
     normal: Vector,
     /// Twice the area.
@@ -42,7 +42,7 @@ pub(super) fn fit(climb: &mut Climb, watch: &Watch) -> Result<usize, MeshingErro
     let domain = climb.domain;
     let draft = &*climb.draft;
     let lacks = watch.map(&faces, |face| lack(draft, domain, face))?;
-    let mut asked = vec![Asked::default(); draft.nodes.len()];
+    let mut asked = vec![NodeTarget::default(); draft.nodes.len()];
     let mut free: Vec<bool> = draft.boundaries.iter().map(|&set| only(set).is_some()).collect();
     draft.copies.iter().flatten().for_each(|&node| free[node as usize] = false);
     for (face, lack) in faces.iter().zip(lacks) {
@@ -77,7 +77,7 @@ fn lack(draft: &Draft, domain: &dyn Domain, face: &RimFace) -> Option<f64> {
     Some(MEAN * (domain.projection(&middle, boundary) - middle).dot(&normal))
 }
 
-impl Asked {
+impl NodeTarget {
     fn add(&mut self, draft: &Draft, face: &RimFace, lack: f64) {
         let [a, b, c] = face.nodes.map(|node| draft.nodes[node as usize]);
         let normal = (b - a).cross(&(c - a));

@@ -37,7 +37,7 @@ pub(super) struct Thin {
 }
 
 /// A place on an edge of the lattice that does not lie on the side of its ends.
-struct Met {
+struct EdgeCrossing {
     ends_inside: bool,
     place: Vector,
 }
@@ -70,7 +70,7 @@ pub(super) fn find(
 }
 
 impl Search<'_> {
-    fn about(&self, number: u32) -> Vec<Met> {
+    fn about(&self, number: u32) -> Vec<EdgeCrossing> {
         self.edges(number).into_iter().filter_map(|[from, to]| self.met(from, to)).collect()
     }
 
@@ -89,14 +89,14 @@ impl Search<'_> {
         edges
     }
 
-    fn met(&self, from: u32, to: u32) -> Option<Met> {
+    fn met(&self, from: u32, to: u32) -> Option<EdgeCrossing> {
         let ends_inside = self.lattice.inside[from as usize];
         if self.lattice.inside[to as usize] != ends_inside {
             return None;
         }
         let ends = [from, to].map(|node| self.lattice.position(node));
         let place = Edge { ends, inside: ends_inside }.missed(self.domain, DEEP)?;
-        Some(Met { ends_inside, place })
+        Some(EdgeCrossing { ends_inside, place })
     }
 }
 

@@ -14,9 +14,9 @@ use crate::mesh::Vector;
 use crate::progress::Unobserved;
 
 /// Tissue without end.
-struct Everything;
+struct UnboundedTissue;
 
-impl Domain for Everything {
+impl Domain for UnboundedTissue {
     fn bounds(&self) -> (Vector, Vector) {
         (Vector::zeros(), Vector::repeat(32.0))
     }
@@ -45,7 +45,7 @@ impl Domain for Everything {
 /// One corner of a box divided again and again.
 fn graded() -> Lattice {
     let size = SizeField { finest: 1.0, coarsest: 16.0, ..SizeField::uniform(1.0) };
-    let (low, high) = Everything.bounds();
+    let (low, high) = UnboundedTissue.bounds();
     let mut tree = Octree::new(Grid::new(&low, &high, &size).unwrap());
     let depth = tree.grid.depth;
     assert!(depth >= 3);
@@ -58,7 +58,7 @@ fn graded() -> Lattice {
     }
     tree.balance();
     let leaves = tree.into_leaves();
-    Lattice::new(&leaves, &Everything, &Watch::new(&Unobserved, 1)).unwrap()
+    Lattice::new(&leaves, &UnboundedTissue, &Watch::new(&Unobserved, 1)).unwrap()
 }
 
 #[test]

@@ -8,7 +8,7 @@ use super::problem::{InvertedCell, LoadCase};
 use crate::boundary::Hold;
 use crate::mesh::{Vector, VolumeMesh};
 use crate::progress::Progress;
-use crate::solver::cliques::{Cliques, CliquesOfRow, renumbered};
+use crate::solver::element_connectivity::{ElementConnectivity, ElementsOfRow, renumbered};
 use crate::solver::half_matrix::{HalfMatrix, Pattern};
 use crate::solver::lanes::Lanes;
 use crate::solver::layout::Layout;
@@ -17,11 +17,11 @@ use crate::solver::{Block, PartlyHeld, SolverError, System, Unknowns};
 /// Numbered nodes of which some are held, each along the first axes of a frame of its own.
 pub struct Constrained<'a> {
     pub holds: &'a [Hold],
-    pub numbering: &'a Numbering,
+    pub numbering: &'a DofMap,
 }
 
 /// What a load case states, by row, along the axes of the rows.
-pub struct Known {
+pub struct PrescribedValues {
     /// Zero where free.
     pub displacement: Vec<Lanes<f64, 3, 1>>,
     pub force: Unknowns,
@@ -29,14 +29,14 @@ pub struct Known {
 
 /// The numbering of nodes at positions. Nodes held in all directions have no free unknown, nor have nodes
 /// of no cell, which nothing couples.
-pub fn number(cells: &Cliques, positions: &[Vector], holds: &[Hold]) -> Numbering {
+pub fn number(cells: &ElementConnectivity, positions: &[Vector], holds: &[Hold]) -> DofMap {
     let mut held = vec![true; positions.len()];
     for cell in 0..cells.len() {
         cells.row(cell).iter().for_each(|&node| held[node as usize] = false);
     }
     let whole = holds.iter().filter(|hold| hold.count() == 3);
     whole.for_each(|hold| held[hold.node as usize] = true);
-    Numbering::of(cells, positions, &held)
+    DofMap::of(cells, positions, &held)
 }
 
 impl Constrained<'_> {
@@ -55,9 +55,10 @@ impl Constrained<'_> {
     }
 
     /// The values of holds and forces of a load case.
-    pub fn known(&self, case: &LoadCase) -> Known {
+    pub fn known(&self, case: &LoadCase) -> PrescribedValues {
         let rows = self.numbering.layout.place.len();
-        let mut known = Known { displacement: vec![[[0.0]; 3]; rows], force: vec![[0.0; 3]; rows] };
+        let mut known =
+            PrescribedValues { displacement: vec![[[0.0]; 3]; rows], force: vec![[0.0; 3]; rows] };
         for (force, &row) in case.forces.iter().zip(&self.numbering.layout.place) {
             known.force[row as usize] = (*force).into();
         }
@@ -127,7 +128,7 @@ impl Constrained<'_> {
     }
 }
 
-impl Known {
+impl PrescribedValues {
     /// f - K u_b of the free unknowns, zero for held ones.
     pub fn right_hand_side(&self, system: &System) -> Unknowns {
         let product = product_at_holds(system, &self.displacement);
@@ -168,29 +169,29 @@ const CHUNK: usize = 4096;
 
 /// Where nodes and cells go in the matrix. It depends on the cells and on which nodes are held, and
 /// serves any materials.
-pub struct Numbering {
+pub struct DofMap {
     pub layout: Arc<Layout>,
     pub pattern: Arc<Pattern>,
     /// Places of the nodes of each cell, cells in the order of the layout.
-    pub cliques: Cliques,
-    pub around: CliquesOfRow,
+    pub connectivity: ElementConnectivity,
+    pub around: ElementsOfRow,
 }
 
-impl Numbering {
+impl DofMap {
     /// For the nodes of a mesh. `held` tells those without a free unknown.
     pub fn new(mesh: &VolumeMesh, held: &[bool]) -> Self {
-        Numbering::of(&nodes_of_cells(mesh), &mesh.nodes, held)
+        DofMap::of(&nodes_of_cells(mesh), &mesh.nodes, held)
     }
 
     /// For nodes at positions that stand in cells of any kind.
-    pub fn of(cliques: &Cliques, positions: &[Vector], held: &[bool]) -> Self {
+    pub fn of(connectivity: &ElementConnectivity, positions: &[Vector], held: &[bool]) -> Self {
         let rows = positions.len();
-        let around = cliques.inverted(rows);
-        let layout = Layout::new(cliques, &around, held, 3, far_end(positions));
-        let cliques = renumbered(cliques, &layout.clique_order, &layout.place);
-        let around = cliques.inverted(rows);
-        let pattern = Arc::new(Pattern::new(&cliques, &around, rows));
-        Numbering { layout: Arc::new(layout), pattern, cliques, around }
+        let around = connectivity.inverted(rows);
+        let layout = Layout::new(connectivity, &around, held, 3, far_end(positions));
+        let connectivity = renumbered(connectivity, &layout.element_order, &layout.place);
+        let around = connectivity.inverted(rows);
+        let pattern = Arc::new(Pattern::new(&connectivity, &around, rows));
+        DofMap { layout: Arc::new(layout), pattern, connectivity, around }
     }
 
     /// Values of nodes in the order of rows.
@@ -212,18 +213,18 @@ impl Numbering {
     pub fn add_cells<M: AsRef<[Block]> + Send>(
         &self,
         matrix: &mut HalfMatrix<f64, 3>,
-        cliques: &[usize],
+        elements: &[usize],
         progress: &dyn Progress,
         cell_matrix: impl Fn(usize) -> Result<M, InvertedCell> + Sync,
     ) -> Result<bool, InvertedCell> {
-        for chunk in cliques.chunks(CHUNK) {
+        for chunk in elements.chunks(CHUNK) {
             if progress.is_cancelled() {
                 return Ok(false);
             }
-            let cell = |&clique: &usize| cell_matrix(self.layout.clique_order[clique] as usize);
+            let cell = |&element: &usize| cell_matrix(self.layout.element_order[element] as usize);
             let matrices: Vec<Result<M, InvertedCell>> = chunk.par_iter().map(cell).collect();
-            for (&clique, blocks) in chunk.iter().zip(matrices) {
-                add_cell(matrix, self.cliques.row(clique), blocks?.as_ref());
+            for (&element, blocks) in chunk.iter().zip(matrices) {
+                add_cell(matrix, self.connectivity.row(element), blocks?.as_ref());
             }
         }
         Ok(true)
@@ -231,10 +232,10 @@ impl Numbering {
 }
 
 /// The nodes of each cell of a mesh.
-pub(in crate::model) fn nodes_of_cells(mesh: &VolumeMesh) -> Cliques {
-    let mut cliques = Cliques::default();
-    mesh.cells.iter().for_each(|(_, nodes)| cliques.push(nodes.iter().copied()));
-    cliques
+pub(in crate::model) fn nodes_of_cells(mesh: &VolumeMesh) -> ElementConnectivity {
+    let mut connectivity = ElementConnectivity::default();
+    mesh.cells.iter().for_each(|(_, nodes)| connectivity.push(nodes.iter().copied()));
+    connectivity
 }
 
 /// The node at one end of the longest extent.
@@ -261,7 +262,7 @@ pub(crate) fn add_cell(matrix: &mut HalfMatrix<f64, 3>, rows: &[u32], blocks: &[
 }
 
 /// The rows of held nodes that keep free unknowns.
-pub fn partly_held(holds: &[Hold], numbering: &Numbering) -> Vec<PartlyHeld> {
+pub fn partly_held(holds: &[Hold], numbering: &DofMap) -> Vec<PartlyHeld> {
     holds
         .iter()
         .map(|hold| (hold, numbering.row(hold.node)))

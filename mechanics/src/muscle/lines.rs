@@ -34,9 +34,9 @@ pub fn fibre_cells(mesh: &VolumeMesh, muscles: &[MuscleLines], within: &[f64]) -
 }
 
 /// For each cell the distance to each muscle and its tangent there; nothing of one without a line that has a length.
-type Near = Vec<Vec<Option<(f64, Vector)>>>;
+type MuscleDistances = Vec<Vec<Option<(f64, Vector)>>>;
 
-fn near(mesh: &VolumeMesh, muscles: &[MuscleLines]) -> Near {
+fn near(mesh: &VolumeMesh, muscles: &[MuscleLines]) -> MuscleDistances {
     let of_cell = |cell: usize| {
         let place = centroid(mesh, cell);
         muscles.iter().map(|muscle| nearest(&place, &muscle.lines)).collect()

@@ -29,7 +29,7 @@ pub struct Linearised {
 }
 
 /// How far each unknown may go down and up from here.
-pub struct Room {
+pub struct StepBounds {
     pub lower: DVector<f64>,
     pub upper: DVector<f64>,
 }
@@ -43,7 +43,7 @@ impl Linearised {
     }
 
     /// The best step within the room, with damping mu.
-    pub fn step(&self, damping: f64, room: &Room) -> DVector<f64> {
+    pub fn step(&self, damping: f64, room: &StepBounds) -> DVector<f64> {
         let count = self.slope.len();
         let mut step = DVector::zeros(count);
         let mut is_held = vec![false; count];
@@ -102,7 +102,7 @@ impl Linearised {
         step: &DVector<f64>,
         is_held: &[bool],
         damping: f64,
-        room: &Room,
+        room: &StepBounds,
     ) -> Option<usize> {
         let slope = self.slope_at(step, damping);
         let flat = FLAT * self.largest.sqrt() * self.residual.norm();
@@ -115,7 +115,7 @@ impl Linearised {
     }
 }
 
-impl Room {
+impl StepBounds {
     /// How much of the way from a step to another one lies within the room, and which unknown is
     /// stopped at which of its ends.
     fn way(&self, from: &DVector<f64>, to: &DVector<f64>) -> (f64, Option<(usize, f64)>) {
@@ -148,8 +148,8 @@ mod tests {
         Linearised::new(jacobian, DVector::from_vec(vec![-7.0, 4.0, 1.0, -3.0]))
     }
 
-    fn room(size: f64) -> Room {
-        Room { lower: DVector::repeat(3, -size), upper: DVector::repeat(3, size) }
+    fn room(size: f64) -> StepBounds {
+        StepBounds { lower: DVector::repeat(3, -size), upper: DVector::repeat(3, size) }
     }
 
     #[test]

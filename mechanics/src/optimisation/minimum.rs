@@ -8,7 +8,7 @@
 use nalgebra::DVector;
 
 use super::OptimisationError;
-use super::bounded_step::{Linearised, Room};
+use super::bounded_step::{Linearised, StepBounds};
 use super::reduction::Reduction;
 use super::unknowns::Unknowns;
 
@@ -43,7 +43,7 @@ pub fn minimise(unknowns: &Unknowns, reduction: &Reduction) -> Result<Minimum, O
     for iterations in 0..MOST_ITERATIONS {
         let jacobian = reduction.jacobian(&unknowns.derivatives(&at));
         let linearised = Linearised::new(jacobian, residual.clone());
-        let room = Room { lower: &unknowns.lower - &at, upper: &unknowns.upper - &at };
+        let room = StepBounds { lower: &unknowns.lower - &at, upper: &unknowns.upper - &at };
         step = linearised.step(0.0, &room);
         let size = residual.norm();
         let small = SMALL_PROMISE * size * size + ROUNDING * size * reduction.size();

@@ -33,7 +33,7 @@ pub struct Halves {
 pub fn split(surface: &TriangleSurface, plane: &Plane) -> Result<Halves, ClipError> {
     let welded = welded(surface)?;
     check_closed(&welded)?;
-    let mut parts = Parts::new(&welded, plane);
+    let mut parts = DividedSurface::new(&welded, plane);
     for &triangle in &welded.triangles {
         parts.add(triangle);
     }
@@ -99,7 +99,7 @@ fn check_closed(surface: &TriangleSurface) -> Result<(), ClipError> {
     }
 }
 
-struct Parts<'a> {
+struct DividedSurface<'a> {
     plane: &'a Plane,
     points: Vec<Vector>,
     heights: Vec<f64>,
@@ -111,9 +111,9 @@ struct Parts<'a> {
     rim: BTreeMap<u32, Vec<u32>>,
 }
 
-impl<'a> Parts<'a> {
+impl<'a> DividedSurface<'a> {
     fn new(surface: &TriangleSurface, plane: &'a Plane) -> Self {
-        Parts {
+        DividedSurface {
             plane,
             heights: surface.points.iter().map(|point| plane.height(point)).collect(),
             points: surface.points.clone(),

@@ -140,26 +140,26 @@ pub(super) fn turned_about(
 /// Bounded cuts with bone of one segment on both of their sides.
 pub(super) fn bridges(osteotomy: &Osteotomy, grid: &Grid<'_>, labels: &BoneLabels) -> Vec<Bridge> {
     let bounded = (0..osteotomy.cuts().len()).filter(|&cut| osteotomy.cuts()[cut].is_bounded());
-    bounded.flat_map(|cut| Across::new(osteotomy, grid, labels, cut).bridges(grid)).collect()
+    bounded.flat_map(|cut| VoxelPairs::new(osteotomy, grid, labels, cut).bridges(grid)).collect()
 }
 
 /// Pairs of voxels of one segment on both sides of the plane of a cut: those that it parts, and those beside it.
-struct Across<'a> {
+struct VoxelPairs<'a> {
     osteotomy: &'a Osteotomy,
     cut: usize,
     parted: BTreeMap<usize, Sum>,
     beside: BTreeMap<usize, Vec<(usize, Neighbour)>>,
 }
 
-impl<'a> Across<'a> {
+impl<'a> VoxelPairs<'a> {
     fn new(
         osteotomy: &'a Osteotomy,
         grid: &Grid<'_>,
         labels: &BoneLabels,
         cut: usize,
-    ) -> Across<'a> {
+    ) -> VoxelPairs<'a> {
         let mut across =
-            Across { osteotomy, cut, parted: BTreeMap::new(), beside: BTreeMap::new() };
+            VoxelPairs { osteotomy, cut, parted: BTreeMap::new(), beside: BTreeMap::new() };
         let bounded = &osteotomy.cuts()[cut];
         for (voxel, neighbour) in pairs(grid) {
             let (one, other) = (labels.owner(voxel), labels.owner(neighbour.voxel));

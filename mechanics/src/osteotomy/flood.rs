@@ -13,32 +13,32 @@ use super::grid::Grid;
 use super::rule::Osteotomy;
 
 /// A voxel that a segment has reached: brighter ones first, then those that were reached earlier.
-struct Reached {
+struct FrontVoxel {
     value: f64,
     turn: Reverse<u64>,
     voxel: usize,
     segment: usize,
 }
 
-impl Ord for Reached {
+impl Ord for FrontVoxel {
     fn cmp(&self, other: &Self) -> Ordering {
         self.value.total_cmp(&other.value).then(self.turn.cmp(&other.turn))
     }
 }
 
-impl PartialOrd for Reached {
+impl PartialOrd for FrontVoxel {
     fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
         Some(self.cmp(other))
     }
 }
 
-impl PartialEq for Reached {
+impl PartialEq for FrontVoxel {
     fn eq(&self, other: &Self) -> bool {
         self.cmp(other) == Ordering::Equal
     }
 }
 
-impl Eq for Reached {}
+impl Eq for FrontVoxel {}
 
 /// A voxel that a segment grows from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -57,14 +57,14 @@ pub(super) fn flood(
 ) {
     let mut waiting = BinaryHeap::new();
     let mut turn = 0;
-    let mut reach = |waiting: &mut BinaryHeap<Reached>, voxel: usize, segment: usize| {
+    let mut reach = |waiting: &mut BinaryHeap<FrontVoxel>, voxel: usize, segment: usize| {
         turn += 1;
-        waiting.push(Reached { value: value(voxel), turn: Reverse(turn), voxel, segment });
+        waiting.push(FrontVoxel { value: value(voxel), turn: Reverse(turn), voxel, segment });
     };
     for marker in markers {
         reach(&mut waiting, marker.voxel, marker.segment);
     }
-    while let Some(Reached { voxel, segment, .. }) = waiting.pop() {
+    while let Some(FrontVoxel { voxel, segment, .. }) = waiting.pop() {
         if labels.owner(voxel) != Some(Owner::Rest) {
             continue;
         }

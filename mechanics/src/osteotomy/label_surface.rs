@@ -22,7 +22,7 @@ const NEAREST_END: f64 = 0.05;
 const WAYS: [[usize; 3]; 6] = [[0, 1, 2], [1, 2, 0], [2, 0, 1], [0, 2, 1], [1, 0, 2], [2, 1, 0]];
 
 /// The place of a voxel in a grid with one more voxel around the image.
-type Place = [usize; 3];
+type VoxelIndex = [usize; 3];
 
 /// A closed surface around the voxels of a segment; empty where it has none.
 pub fn label_surface(
@@ -58,12 +58,12 @@ struct Marching<'a> {
     labels: &'a BoneLabels,
     segment: usize,
     is_right_handed: bool,
-    crossings: HashMap<[Place; 2], u32>,
+    crossings: HashMap<[VoxelIndex; 2], u32>,
     surface: TriangleSurface,
 }
 
 impl Marching<'_> {
-    fn add_cube(&mut self, first: Place) {
+    fn add_cube(&mut self, first: VoxelIndex) {
         let corner = |number: usize| [0, 1, 2].map(|axis| first[axis] + (number >> axis & 1));
         let inside = (0..8).filter(|&number| self.is_inside(corner(number))).count();
         if inside == 0 || inside == 8 {
@@ -84,7 +84,7 @@ impl Marching<'_> {
     }
 
     /// The triangles in a tetrahedron of positive volume.
-    fn add_tetrahedron(&mut self, corners: [Place; 4]) {
+    fn add_tetrahedron(&mut self, corners: [VoxelIndex; 4]) {
         let inside = corners.map(|corner| self.is_inside(corner));
         let mut order = [0, 1, 2, 3];
         order.sort_by_key(|&corner| !inside[corner]);
@@ -105,12 +105,12 @@ impl Marching<'_> {
     }
 
     /// A triangle by the edges that it crosses, each from inside to outside.
-    fn add(&mut self, edges: [[Place; 2]; 3]) {
+    fn add(&mut self, edges: [[VoxelIndex; 2]; 3]) {
         let triangle = edges.map(|edge| self.crossing(edge));
         self.surface.triangles.push(triangle);
     }
 
-    fn crossing(&mut self, edge: [Place; 2]) -> u32 {
+    fn crossing(&mut self, edge: [VoxelIndex; 2]) -> u32 {
         if let Some(&point) = self.crossings.get(&edge) {
             return point;
         }
@@ -123,7 +123,7 @@ impl Marching<'_> {
     }
 
     /// How much of an edge lies inside.
-    fn share(&self, [inside, outside]: [Place; 2], [from, to]: [Vector; 2]) -> f64 {
+    fn share(&self, [inside, outside]: [VoxelIndex; 2], [from, to]: [Vector; 2]) -> f64 {
         let (Some(inside), Some(outside)) = (self.voxel(inside), self.voxel(outside)) else {
             return 0.5;
         };
@@ -139,19 +139,19 @@ impl Marching<'_> {
         cut.chain(threshold).reduce(f64::min).unwrap_or(0.5)
     }
 
-    fn is_inside(&self, place: Place) -> bool {
+    fn is_inside(&self, place: VoxelIndex) -> bool {
         let owner = self.voxel(place).and_then(|voxel| self.labels.owner(voxel));
         owner == Some(Owner::Segment(self.segment))
     }
 
     /// The number of a voxel; `None` around the image.
-    fn voxel(&self, place: Place) -> Option<usize> {
+    fn voxel(&self, place: VoxelIndex) -> Option<usize> {
         let size = self.labels.size();
         let is_within = (0..3).all(|axis| (1..=size[axis]).contains(&place[axis]));
         is_within.then(|| place[0] - 1 + size[0] * (place[1] - 1 + size[1] * (place[2] - 1)))
     }
 
-    fn centre(&self, place: Place) -> Vector {
+    fn centre(&self, place: VoxelIndex) -> Vector {
         let placement = self.labels.placement();
         let steps = placement.steps.iter().zip(place);
         steps.fold(placement.origin, |sum, (step, count)| sum + step * (count as f64 - 1.0))

@@ -36,7 +36,11 @@ const MEMORY_MARGIN: f64 = 1.15;
 const TIME_GROWTH: f64 = 1.1;
 
 /// The warning where what linearity leaves out is above what is accepted of the mesh.
-fn more_is_left_out(scene: &Scene, prediction: &Prediction, wanted: &Wanted) -> Option<Warning> {
+fn more_is_left_out(
+    scene: &Scene,
+    prediction: &Prediction,
+    wanted: &RefinementGoal,
+) -> Option<Warning> {
     let moving = scene.skin.moving_points(&prediction.displacement);
     let mean = scene.skin.mean_length(&moving, &prediction.nonlinearity.as_ref().ok()?.left_out);
     let accepted = wanted.skin_mm;
@@ -63,7 +67,7 @@ fn muscles_stay(scene: &Scene) -> Option<Warning> {
 
 /// What is accepted, and what it may take.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Wanted {
+pub struct RefinementGoal {
     /// The mean error over the skin nodes of the case that move (`moving_points`), in mm.
     pub skin_mm: f64,
     /// The same for named parts of the skin.
@@ -99,7 +103,7 @@ pub enum Stop {
 }
 
 /// A prediction with the meshes that it took.
-pub struct Adapted {
+pub struct AdaptivePrediction {
     /// At the nodes and cells of the scene.
     pub prediction: Prediction,
     /// None where no mesh was made.
@@ -154,7 +158,7 @@ impl Stop {
     }
 }
 
-impl Wanted {
+impl RefinementGoal {
     fn limits<'a>(&'a self, scene: &Scene) -> Result<Vec<Limit<'a>>, AdaptiveError> {
         let mut limits =
             vec![Limit { name: None, accepted_mm: self.skin_mm, points: scene.skin.points() }];
@@ -276,10 +280,10 @@ impl<'a> Step<'a> {
 /// Predicts a scene on meshes that are refined until what is wanted is met; `stopwatch` tells seconds.
 pub fn predict_adaptively(
     scene: &Scene,
-    wanted: &Wanted,
+    wanted: &RefinementGoal,
     stopwatch: &dyn Fn() -> f64,
     progress: &dyn Progress,
-) -> Result<Adapted, AdaptiveError> {
+) -> Result<AdaptivePrediction, AdaptiveError> {
     let mut limits = wanted.limits(scene)?;
     if let Some(reason) = numerical_error::reason_for_none(scene) {
         return Err(reason.into());
@@ -325,7 +329,7 @@ pub fn predict_adaptively(
     prediction.warnings.extend((stop != Stop::Met).then(|| not_met(&limits, &levels, stop)));
     prediction.warnings.extend(more_is_left_out(scene, &prediction, wanted));
     prediction.warnings.extend(finest.is_some().then(|| muscles_stay(scene)).flatten());
-    Ok(Adapted { prediction, finest, levels, stop })
+    Ok(AdaptivePrediction { prediction, finest, levels, stop })
 }
 
 /// Gives a prediction at the nodes and cells of the scene that was refined; returns the displacement of all nodes.

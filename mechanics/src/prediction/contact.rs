@@ -3,13 +3,13 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::case::ContactKind;
-use super::numerical_error::{Known, at_last_tangent, estimate_in_contact};
+use super::numerical_error::{ErrorOrReason, at_last_tangent, estimate_in_contact};
 use super::scene::Scene;
 use super::skin_overlap::{Deepest, deepest_overlap};
 use crate::boundary::NodeClass;
 use crate::boundary::contact::{BoneInside, FacingSurfaces, bones_inside};
 use crate::mesh::{Vector, Warning};
-use crate::model::fem::contact::{Contact, ContactProblem, Effort, Pressed};
+use crate::model::fem::contact::{Contact, ContactProblem, Effort, PressingRow};
 use crate::model::fem::finite_strain;
 use crate::model::fem::linear_system::{LinearSystem, Solved};
 use crate::model::problem::{Equilibrium, ModelError};
@@ -53,14 +53,14 @@ pub(super) struct InTouch {
     pub equilibrium: Equilibrium,
     pub touch: Touch,
     /// Where something presses and it was asked for.
-    pub numerical_error: Option<Known>,
+    pub numerical_error: Option<ErrorOrReason>,
 }
 
 /// What a solution with contact found.
 struct Pressing {
     equilibrium: Equilibrium,
     contact: Contact,
-    numerical_error: Option<Known>,
+    numerical_error: Option<ErrorOrReason>,
 }
 
 /// The answer of linear elasticity in which what touches presses; none where nothing does or contact is not asked for. On
@@ -226,7 +226,7 @@ fn pairs(
 ) -> Vec<ContactPair> {
     let names = names(scene);
     let mut sides: BTreeMap<[&str; 2], [Side; 2]> = BTreeMap::new();
-    for Pressed { row, force } in &contact.pressed {
+    for PressingRow { row, force } in &contact.pressed {
         let corners = row.terms.iter().skip(1);
         let nearest = corners.max_by(|(_, a), (_, b)| a.norm().total_cmp(&b.norm()));
         let of_tissue = || nearest.map(|(other, _)| names[*other as usize].as_str());

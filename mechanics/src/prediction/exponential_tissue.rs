@@ -15,7 +15,7 @@ use crate::model::fem::strain::gradient_at_centre;
 const KEPT: std::ops::RangeInclusive<f64> = 0.95..=1.05;
 
 /// A cell of an exponential law, less its growth.
-struct Strained {
+struct ExponentialCell {
     cell: usize,
     exponent: f64,
     volume: f64,
@@ -29,7 +29,7 @@ pub(super) fn warnings(scene: &Scene, displacement: &[Vector]) -> Vec<Warning> {
     }
     let laws: Vec<Hyperelastic> =
         scene.materials.iter().map(|material| material.hyperelastic()).collect();
-    let strained: Vec<Strained> = scene
+    let strained: Vec<ExponentialCell> = scene
         .material_of_cell
         .iter()
         .enumerate()
@@ -39,7 +39,7 @@ pub(super) fn warnings(scene: &Scene, displacement: &[Vector]) -> Vec<Warning> {
             let f = (Matrix3::identity() + moved) / grown;
             let direction = scene.fibres.get(cell).copied().unwrap_or_default();
             let exponent = exponent(&laws[usize::from(material)], &f, &direction)?;
-            Some(Strained { cell, exponent, volume: f.determinant() })
+            Some(ExponentialCell { cell, exponent, volume: f.determinant() })
         })
         .collect();
     [bounded(&strained), volume_changes(&strained)].into_iter().flatten().collect()
@@ -52,7 +52,7 @@ fn exponent(tissue: &Hyperelastic, f: &Matrix3<f64>, direction: &Vector) -> Opti
     [of_law, of_fibres].into_iter().flatten().reduce(f64::max)
 }
 
-fn bounded(strained: &[Strained]) -> Option<Warning> {
+fn bounded(strained: &[ExponentialCell]) -> Option<Warning> {
     let beyond = || strained.iter().filter(|at| at.exponent > LARGEST_EXPONENT);
     let first = beyond().next()?.cell;
     let cells = beyond().count();
@@ -65,7 +65,7 @@ fn bounded(strained: &[Strained]) -> Option<Warning> {
     Some(warning.with("first_cell", first as f64).with("largest_exponent", largest))
 }
 
-fn volume_changes(strained: &[Strained]) -> Option<Warning> {
+fn volume_changes(strained: &[ExponentialCell]) -> Option<Warning> {
     let changed = || strained.iter().map(|at| at.volume).filter(|volume| !KEPT.contains(volume));
     let cells = changed().count();
     let [least, most] = [f64::min, f64::max].map(|pick| changed().reduce(pick));

@@ -12,7 +12,7 @@ use super::method::MethodKind;
 use super::scene::{Scene, Tetrahedron};
 use crate::mesh::Vector;
 use crate::mesh::ignored::listed;
-use crate::model::fem::inner_stress::{Acted, InnerStress};
+use crate::model::fem::inner_stress::{InnerStress, StressedTissue};
 use crate::model::problem::InvertedCell;
 
 /// Shares of its volume that tissue may gain or lose: from half of it to twice of it.
@@ -35,7 +35,7 @@ impl Scene {
         }
         let (edges, tissue) = (self.edge_nodes(), self.tissue());
         let has_pressures = self.tetrahedron() == Tetrahedron::Stabilised;
-        let acted = Acted { tissue: &tissue, has_pressures, edges: edges.as_ref() };
+        let acted = StressedTissue { tissue: &tissue, has_pressures, edges: edges.as_ref() };
         inner.add_forces(&acted, forces)
     }
 

@@ -32,7 +32,7 @@ pub(super) struct TissueOfCells {
 }
 
 /// The parts of a cell in steps: those of the tissues, then that of its region.
-type Parts = Vec<u16>;
+type TissueShares = Vec<u16>;
 
 impl Check<'_> {
     /// The material of each cell: that of its region, or what an image shows.
@@ -165,7 +165,7 @@ fn imaged(
     };
     let pressure_of_cell: Vec<u16> =
         largest.iter().enumerate().map(|(cell, &tissue)| own(cell, tissue)).collect();
-    let mut mixtures: BTreeMap<(u16, &Parts), u16> = BTreeMap::new();
+    let mut mixtures: BTreeMap<(u16, &TissueShares), u16> = BTreeMap::new();
     let material_of_cell = parts
         .iter()
         .enumerate()
@@ -190,7 +190,7 @@ fn imaged(
 }
 
 /// The whole cell is the tissue of its mean.
-fn labels(hounsfield: &Hounsfield, sampled: &SampledCells) -> Vec<Parts> {
+fn labels(hounsfield: &Hounsfield, sampled: &SampledCells) -> Vec<TissueShares> {
     let tissues = &hounsfield.tissues;
     let label = |mean: &Option<f64>| {
         let inside = |mean: f64| {
@@ -210,19 +210,19 @@ fn shares(
     sampled: &SampledCells,
     region_of_cell: &[u16],
     pure: usize,
-) -> Vec<Parts> {
+) -> Vec<TissueShares> {
     let samples = sampled.samples as u16;
-    let counted = |cell: usize| -> Parts {
+    let counted = |cell: usize| -> TissueShares {
         let counts = sampled.counts(cell);
         let rest = samples - counts.iter().sum::<u16>();
         counts.iter().copied().chain([rest]).collect()
     };
-    let counted: Vec<Parts> = (0..sampled.mean.len()).map(counted).collect();
+    let counted: Vec<TissueShares> = (0..sampled.mean.len()).map(counted).collect();
     let mut steps = samples;
     loop {
-        let rounded: Vec<Parts> =
+        let rounded: Vec<TissueShares> =
             counted.iter().map(|parts| in_steps(parts, samples, steps)).collect();
-        let mut mixtures: Vec<(u16, &Parts)> =
+        let mut mixtures: Vec<(u16, &TissueShares)> =
             region_of_cell.iter().copied().zip(&rounded).collect();
         mixtures.sort_unstable();
         mixtures.dedup();
@@ -236,9 +236,9 @@ fn shares(
 
 /// Parts that sum to `samples` as parts that sum to `steps`: rounded down, and what is then missing given to
 /// those that lost most, the first where they lost the same.
-fn in_steps(parts: &Parts, samples: u16, steps: u16) -> Parts {
+fn in_steps(parts: &TissueShares, samples: u16, steps: u16) -> TissueShares {
     let scaled = |part: u16| u32::from(part) * u32::from(steps);
-    let mut rounded: Parts =
+    let mut rounded: TissueShares =
         parts.iter().map(|&part| (scaled(part) / u32::from(samples)) as u16).collect();
     let missing = steps - rounded.iter().sum::<u16>();
     let mut by_loss: Vec<usize> = (0..parts.len()).collect();
@@ -248,7 +248,7 @@ fn in_steps(parts: &Parts, samples: u16, steps: u16) -> Parts {
 }
 
 /// The tissue with the largest part, the first of equals; `None` where it is the region.
-fn largest_tissue(parts: &Parts) -> Option<u16> {
+fn largest_tissue(parts: &TissueShares) -> Option<u16> {
     let most = parts.iter().max()?;
     let first = parts.iter().position(|part| part == most)?;
     (first + 1 < parts.len()).then_some(first as u16)
@@ -258,7 +258,7 @@ fn describe(
     mesh: &VolumeMesh,
     hounsfield: &Hounsfield,
     sampled: &SampledCells,
-    (parts, tissue_of_cell): (&[Parts], Vec<Option<u16>>),
+    (parts, tissue_of_cell): (&[TissueShares], Vec<Option<u16>>),
 ) -> ImagedTissue {
     let mut found = vec![TissueShare::default(); hounsfield.tissues.len() + 1];
     let mut whole = 0.0;

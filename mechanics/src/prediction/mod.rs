@@ -71,10 +71,12 @@ pub use stated::{StatedCondition, StatedHold};
 pub use unheld::{GoesAlong, NOTHING_HELD, goes_along};
 pub use walls::normal_turned;
 
-pub use adaptive::{Adapted, AdaptiveError, Level, Stop, Wanted, predict_adaptively};
+pub use adaptive::{
+    AdaptiveError, AdaptivePrediction, Level, RefinementGoal, Stop, predict_adaptively,
+};
 pub use adequate::{
     Accepted, Adequate, Considered, Errors, MeanErrors, NEWTON_MAY_TAKE, Rung, SECOND_ORDER_TAKES,
-    USUALLY_ACCEPTED_MM, Watched, predict_adequately,
+    TimedProgress, USUALLY_ACCEPTED_MM, predict_adequately,
 };
 use answer::Answer;
 pub use answer::{equilibrium, estimates};

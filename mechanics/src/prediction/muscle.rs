@@ -29,14 +29,14 @@ use crate::muscle::strap::{Strap, strap_of};
 pub const PULL: RangeInclusive<f64> = 0.0..=10_000.0;
 
 /// Directions in the cells of a mesh, of any length.
-enum Along<'a> {
+enum FibreDirections<'a> {
     Uniform(Vector),
     Array(Course<'a>),
     Strap(Strap),
     Lines(&'a [Vec<Vector>]),
 }
 
-impl Along<'_> {
+impl FibreDirections<'_> {
     fn at(&self, mesh: &VolumeMesh, cell: usize) -> Option<Vector> {
         let middle = || {
             let corners = mesh.corners(cell);
@@ -44,10 +44,10 @@ impl Along<'_> {
             corners.sum::<Vector>() / count
         };
         let along = match self {
-            Along::Uniform(direction) => *direction,
-            Along::Array(course) => course.axis(cell).along,
-            Along::Strap(strap) => strap.axis_at(&middle())?,
-            Along::Lines(lines) => nearest(&middle(), lines)?.1,
+            FibreDirections::Uniform(direction) => *direction,
+            FibreDirections::Array(course) => course.axis(cell).along,
+            FibreDirections::Strap(strap) => strap.axis_at(&middle())?,
+            FibreDirections::Lines(lines) => nearest(&middle(), lines)?.1,
         };
         unit(&along)
     }
@@ -128,7 +128,7 @@ impl<'a> Check<'a> {
         region: &str,
         fibres: Option<&'a FibreDirection>,
         pointer: &str,
-    ) -> Option<Along<'a>> {
+    ) -> Option<FibreDirections<'a>> {
         let case = self.case;
         let own = fibres.or_else(|| case.fibres.get(region)).or_else(|| case.fibres.get("*"));
         match own {
@@ -143,9 +143,11 @@ impl<'a> Check<'a> {
         }
     }
 
-    fn along(&mut self, course: &FibreDirection, pointer: &str) -> Option<Along<'a>> {
+    fn along(&mut self, course: &FibreDirection, pointer: &str) -> Option<FibreDirections<'a>> {
         let array = match course {
-            FibreDirection::Uniform(direction) => return Some(Along::Uniform(*direction)),
+            FibreDirection::Uniform(direction) => {
+                return Some(FibreDirections::Uniform(*direction));
+            }
             FibreDirection::Array(array) => array,
         };
         let found = Course::of(&self.case.volume, array);
@@ -154,14 +156,14 @@ impl<'a> Check<'a> {
             let at = format!("{pointer}/array");
             self.problems.add(at, SceneErrorCode::UnknownArray, detail);
         }
-        found.map(Along::Array)
+        found.map(FibreDirections::Array)
     }
 
     /// w f (x) f of cells and their shares.
     fn directed(
         &mut self,
         shares: impl IntoIterator<Item = (usize, f64)>,
-        along: Option<Along>,
+        along: Option<FibreDirections>,
         pointer: &str,
     ) -> Vec<CellStress> {
         let Some(along) = along else { return Vec::new() };
@@ -237,11 +239,11 @@ impl<'a> Check<'a> {
         let mut broadness = None;
         let along = match fibres {
             BodyFibres::Course(course) => self.along(course, pointer),
-            BodyFibres::Lines(lines) => Some(Along::Lines(lines)),
+            BodyFibres::Lines(lines) => Some(FibreDirections::Lines(lines)),
             BodyFibres::Box { halvings } => strap_of(surface, *halvings).map(|strap| {
                 broadness = Some(strap.broadness);
                 self.warnings.extend(not_a_strap(name, &strap));
-                Along::Strap(strap)
+                FibreDirections::Strap(strap)
             }),
         };
         let body = MuscleBody { enclosed: surface.signed_volume().abs(), broadness };

@@ -12,7 +12,7 @@ use super::scene::Scene;
 use super::skin::landmark_displacement;
 use super::walls::turned_at_second_order;
 use crate::mesh::Vector;
-use crate::model::fem::force_series::{ForceSeries, Forces, Moved};
+use crate::model::fem::force_series::{ForceSeries, Forces, LinearState};
 use crate::model::fem::linear_system::{Correction, LinearSystem, Residual, Solved};
 use crate::model::fem::mass_tensor::{Iterations, MassTensorSettings};
 use crate::model::problem::{Equilibrium, ModelError};
@@ -120,8 +120,8 @@ pub(super) fn to_second_order(
         states,
         warnings: first.warnings.iter().cloned().chain(unknown).collect(),
     };
-    let moved = Moved { displacement: &first.displacement, pressures };
-    let again = Moved { displacement: &second.displacement, pressures: &second.pressures };
+    let moved = LinearState { displacement: &first.displacement, pressures };
+    let again = LinearState { displacement: &second.displacement, pressures: &second.pressures };
     let forces = series(scene, system).third(moved, again)?;
     let third = match solution(system, &forces, LOOSE, progress) {
         Ok(third) => Ok(Nonlinearity::of(scene, third.displacement)),
@@ -151,7 +151,7 @@ fn second_order_forces(
     solved: &Solved,
 ) -> Result<Forces, ModelError> {
     let Solved { equilibrium: Equilibrium { displacement, .. }, pressures } = solved;
-    Ok(series(scene, system).second_along(Moved { displacement, pressures })?)
+    Ok(series(scene, system).second_along(LinearState { displacement, pressures })?)
 }
 
 /// -K0^-1 of forces.

@@ -34,7 +34,7 @@ impl From<DiscretisationError> for NumericalError {
 }
 
 /// An estimate, or why there is none.
-pub type Known = Result<NumericalError, NotEstimated>;
+pub type ErrorOrReason = Result<NumericalError, NotEstimated>;
 
 /// Why there is no estimate.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -65,7 +65,7 @@ pub(super) fn estimate(
     system: &LinearSystem,
     solved: &Solved,
     progress: &dyn Progress,
-) -> Result<Known, ModelError> {
+) -> Result<ErrorOrReason, ModelError> {
     known(of(scene, system).of(solved, progress))
 }
 
@@ -75,7 +75,7 @@ pub(super) fn estimate_in_contact(
     system: &LinearSystem,
     found: &mut InContact,
     progress: &dyn Progress,
-) -> Result<Known, ModelError> {
+) -> Result<ErrorOrReason, ModelError> {
     known(of(scene, system).in_contact(found, progress))
 }
 
@@ -85,7 +85,7 @@ fn of<'a>(scene: &'a Scene, system: &'a LinearSystem<'a>) -> Estimate<'a> {
 }
 
 /// What is only not known is no failure.
-fn known(estimate: Result<DiscretisationError, ModelError>) -> Result<Known, ModelError> {
+fn known(estimate: Result<DiscretisationError, ModelError>) -> Result<ErrorOrReason, ModelError> {
     match estimate {
         Ok(error) => Ok(Ok(error.into())),
         Err(stopped @ ModelError::Solver(SolverError::Stopped)) => Err(stopped),
@@ -94,7 +94,7 @@ fn known(estimate: Result<DiscretisationError, ModelError>) -> Result<Known, Mod
 }
 
 /// The estimate of an answer at finite strain.
-pub(super) fn at_last_tangent(error: MeshError) -> Known {
+pub(super) fn at_last_tangent(error: MeshError) -> ErrorOrReason {
     error.map(NumericalError::from).map_err(NotEstimated::AtRest)
 }
 
@@ -118,7 +118,7 @@ pub(super) fn reason_for_none(scene: &Scene) -> Option<NotEstimated> {
 }
 
 /// What a reader must know: an error that is large, a correction that could not be made.
-pub(super) fn warnings(scene: &Scene, error: &Known) -> Vec<Warning> {
+pub(super) fn warnings(scene: &Scene, error: &ErrorOrReason) -> Vec<Warning> {
     let why = match error {
         Ok(error) if error.is_added => None,
         Ok(_) => Some(

@@ -12,7 +12,7 @@ use super::stated::{StatedCondition, StatedHold};
 use crate::boundary::NodeClass;
 use crate::boundary::contact::BoneSurface;
 use crate::mesh::Vector;
-use crate::model::fem::contact::Pressed;
+use crate::model::fem::contact::PressingRow;
 use crate::model::problem::Equilibrium;
 
 /// Normals of one node that differ by less are one wall.
@@ -47,7 +47,7 @@ pub(super) fn by_class(
         *sums.entry(holder).or_insert_with(Vector::zeros) += reaction;
     }
     let pressed = contact.iter().flat_map(|touch| &touch.contact.pressed);
-    for (Pressed { row, force }, on) in pressed.filter_map(|own| Some((own, own.row.bone?))) {
+    for (PressingRow { row, force }, on) in pressed.filter_map(|own| Some((own, own.row.bone?))) {
         let bone = &scene.bones[on.bone as usize];
         let holder = if bone.is_carried { bone.name.as_str() } else { NodeClass::Fixed.name() };
         *sums.entry(holder.to_owned()).or_insert_with(Vector::zeros) += row.normal() * *force;
@@ -127,7 +127,7 @@ fn by_bone(scene: &Scene, contact: Option<&Touch>) -> Vec<ConditionReaction> {
             force: Vector::zeros(),
         };
         let pressed = contact.iter().flat_map(|touch| &touch.contact.pressed);
-        for Pressed { row, force } in pressed {
+        for PressingRow { row, force } in pressed {
             if row.bone.is_some_and(|on| on.bone as usize == number) {
                 own.force += row.normal() * *force;
                 own.nodes += 1;

@@ -51,7 +51,7 @@ impl Scene {
         let mesh = Arc::new(carrier.mesh());
         let faces = Faces::new(&mesh);
         let boundary = mesh.boundary_of(&faces);
-        let finer = Finer { scene: self, carrier: &carrier, mesh: &mesh, boundary: &boundary };
+        let finer = FinerScene { scene: self, carrier: &carrier, mesh: &mesh, boundary: &boundary };
 
         // 1. What holds the nodes.
         let stated = finer.stated();
@@ -111,14 +111,14 @@ fn consistent(scene: &Scene) -> Result<Vec<Vector>, InvertedCell> {
 }
 
 /// A scene, and the finer mesh.
-struct Finer<'a> {
+struct FinerScene<'a> {
     scene: &'a Scene,
     carrier: &'a Carrier<'a>,
     mesh: &'a VolumeMesh,
     boundary: &'a [BoundaryFace],
 }
 
-impl Finer<'_> {
+impl FinerScene<'_> {
     /// The conditions with the new nodes that belong to them.
     fn stated(&self) -> Vec<StatedCondition> {
         let carried = |stated: &StatedCondition| {

@@ -21,7 +21,9 @@ use crate::model::fem::cell_stiffness::Dilatation;
 use crate::model::fem::discretisation_error::DistributedLoads;
 use crate::model::fem::displacement::Problem;
 use crate::model::fem::edge_nodes::EdgeNodes;
-use crate::model::fem::finite_strain::{Elements, FibreField, Finer, FiniteStrain, MeshError};
+use crate::model::fem::finite_strain::{
+    Elements, FibreField, FinerProblem, FiniteStrain, MeshError,
+};
 use crate::model::fem::inner_stress::InnerStress;
 use crate::model::fem::linear_system::LinearSystem;
 use crate::model::fem::mass_tensor::{Iterations, MassTensorSettings};
@@ -207,7 +209,10 @@ impl Scene {
     }
 
     /// The problem of finite strain, and what a finer mesh would see of it, for what is done with them.
-    pub(super) fn at_finite_strain<T>(&self, done: impl FnOnce(&FiniteStrain, &Finer) -> T) -> T {
+    pub(super) fn at_finite_strain<T>(
+        &self,
+        done: impl FnOnce(&FiniteStrain, &FinerProblem) -> T,
+    ) -> T {
         let (laws, fibres): (Vec<Law>, Vec<Option<Fibres>>) = self
             .materials
             .iter()
@@ -240,7 +245,7 @@ impl Scene {
         let (tissue, boundary) = (self.tissue(), &self.boundary);
         // What grows and pulls is in the cells already.
         let loads = DistributedLoads { inner: InnerStress::default(), ..self.distributed.clone() };
-        done(&problem, &Finer { tissue, laws: &laws, boundary, loads: &loads })
+        done(&problem, &FinerProblem { tissue, laws: &laws, boundary, loads: &loads })
     }
 
     fn mass_tensors(&self) -> MassTensors<'_> {

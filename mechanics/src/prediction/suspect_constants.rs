@@ -22,43 +22,47 @@ const MOST: usize = 20;
 
 /// What a constant is called, its unit, and between which values it is usual.
 #[derive(Clone, Copy)]
-struct Usual {
+struct UsualRange {
     what: &'static str,
     unit: &'static str,
     least: f64,
     most: f64,
 }
 
-const MODULUS: Usual = Usual { what: "Young's modulus", unit: "kPa", least: 0.1, most: 1e7 };
-const FIBRE_MODULUS: Usual = Usual { what: "Young's modulus along fibres", ..MODULUS };
-const FIBRE_SHEAR: Usual = Usual { what: "the shear modulus along fibres", least: 0.03, ..MODULUS };
+const MODULUS: UsualRange =
+    UsualRange { what: "Young's modulus", unit: "kPa", least: 0.1, most: 1e7 };
+const FIBRE_MODULUS: UsualRange = UsualRange { what: "Young's modulus along fibres", ..MODULUS };
+const FIBRE_SHEAR: UsualRange =
+    UsualRange { what: "the shear modulus along fibres", least: 0.03, ..MODULUS };
 /// 0 is allowed: without gravity or time no density is of use.
-const DENSITY: Usual = Usual { what: "density", unit: "g/cm3", least: 0.1, most: 10.0 };
+const DENSITY: UsualRange = UsualRange { what: "density", unit: "g/cm3", least: 0.1, most: 10.0 };
 /// Skin under tension has 100 to 20 000 kPa.
-const SHEET_MODULUS: Usual =
-    Usual { what: "Young's modulus of the membrane", most: 5e4, ..MODULUS };
-const SHEET_THICKNESS: Usual =
-    Usual { what: "the thickness of the membrane", unit: "mm", least: 0.05, most: 10.0 };
+const SHEET_MODULUS: UsualRange =
+    UsualRange { what: "Young's modulus of the membrane", most: 5e4, ..MODULUS };
+const SHEET_THICKNESS: UsualRange =
+    UsualRange { what: "the thickness of the membrane", unit: "mm", least: 0.05, most: 10.0 };
 /// Ulusoy et al. 2010 name 12 to 750 N/m, which are mN/mm.
-const LINK: Usual = Usual { what: "the stiffness of a link", unit: "N/m", least: 1.0, most: 1e4 };
+const LINK: UsualRange =
+    UsualRange { what: "the stiffness of a link", unit: "N/m", least: 1.0, most: 1e4 };
 /// Per node: a bite exerts up to 1e6 mN on all of a jaw.
-const FORCE: Usual = Usual { what: "the force at a node", unit: "mN", least: 1e-6, most: 1e5 };
+const FORCE: UsualRange =
+    UsualRange { what: "the force at a node", unit: "mN", least: 1e-6, most: 1e5 };
 /// Tongue and lips exert 1 to 50 kPa.
-const TRACTION: Usual = Usual { what: "traction", unit: "kPa", least: 1e-2, most: 500.0 };
-const PRESSURE: Usual = Usual { what: "pressure", ..TRACTION };
+const TRACTION: UsualRange = UsualRange { what: "traction", unit: "kPa", least: 1e-2, most: 500.0 };
+const PRESSURE: UsualRange = UsualRange { what: "pressure", ..TRACTION };
 /// In mm/ms^2: the earth has 9.81e-3, and 9810 mm/s^2 is no m/s^2.
-const GRAVITY: Usual = Usual { what: "gravity", unit: "mm/ms2", least: 1e-5, most: 0.1 };
+const GRAVITY: UsualRange = UsualRange { what: "gravity", unit: "mm/ms2", least: 1e-5, most: 0.1 };
 
 /// Of skeletal muscle some 100 to 400 kPa at most (Powell et al. 1984).
-const PULL: Usual = Usual { what: "the stress", unit: "kPa", least: 0.1, most: 1e3 };
+const PULL: UsualRange = UsualRange { what: "the stress", unit: "kPa", least: 0.1, most: 1e3 };
 /// As a size; small strain does not reach farther either.
-const GROWTH: Usual =
-    Usual { what: "the change of volume", unit: "of the volume", least: 1e-4, most: 0.3 };
+const GROWTH: UsualRange =
+    UsualRange { what: "the change of volume", unit: "of the volume", least: 1e-4, most: 0.3 };
 
-impl Usual {
+impl UsualRange {
     /// A warning where a value that does something is outside.
     fn doubt(&self, value: f64, of: &str) -> Option<Warning> {
-        let Usual { what, unit, least, most } = *self;
+        let UsualRange { what, unit, least, most } = *self;
         if value == 0.0 || (least..=most).contains(&value) {
             return None;
         }
@@ -147,7 +151,8 @@ pub(super) fn moduli_apart(case: &Case, scene: &Scene) -> Option<Warning> {
 
 fn of_material(name: &str, material: &LinearElastic) -> [Option<Warning>; 4] {
     let of = format!(" of {name:?}");
-    let fibre = |usual: Usual, value: Option<f64>| value.and_then(|value| usual.doubt(value, &of));
+    let fibre =
+        |usual: UsualRange, value: Option<f64>| value.and_then(|value| usual.doubt(value, &of));
     [
         MODULUS.doubt(material.young_modulus(), &of),
         DENSITY.doubt(material.density(), &of),

@@ -19,7 +19,7 @@
 use nalgebra::{Matrix6, Rotation3, Vector6};
 use rayon::prelude::*;
 
-use super::{AlignmentError, Place, RigidTransform, Start};
+use super::{AlignmentError, RigidTransform, SphereOrBox, Start};
 use crate::mesh::closest_point::Feature;
 use crate::mesh::{SurfaceSearch, TriangleSurface, Vector, area_sampling};
 use crate::progress::Progress;
@@ -66,7 +66,7 @@ const LAST_DAMPING: f64 = 1e6;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct IterativeClosestPoint {
     /// Only the part of the fixed surface in it decides.
-    pub mask: Option<Place>,
+    pub mask: Option<SphereOrBox>,
     pub start: Start,
     /// The iteration ends when the mean squared distance changes by less than this share.
     pub relative_change: f64,
@@ -111,7 +111,7 @@ pub(super) struct StopRule {
 }
 
 /// The state of an iteration when it ended.
-pub(super) struct Ended {
+pub(super) struct IterationState {
     pub alignment: SurfaceAlignment,
     /// The last relative change of the mean squared distance.
     pub change: f64,
@@ -153,7 +153,7 @@ impl IterativeClosestPoint {
 /// About `count` points spread over the part of a surface in the mask.
 pub(super) fn points_in_mask(
     surface: &TriangleSurface,
-    mask: Option<&Place>,
+    mask: Option<&SphereOrBox>,
     count: usize,
 ) -> Result<Vec<Vector>, AlignmentError> {
     /// Small masks are found on a denser sampling, up to this many times as dense.
@@ -228,7 +228,7 @@ pub(super) fn iterate(
     start: RigidTransform,
     stop: &StopRule,
     progress: &dyn Progress,
-) -> Result<Ended, AlignmentError> {
+) -> Result<IterationState, AlignmentError> {
     let rounding = ROUNDING * (largest(points) + largest(&[start.inverse().apply(&points[0])]));
     let mut state = State::new(points, search, start);
     let mut limit = state.limit();
@@ -244,7 +244,7 @@ pub(super) fn iterate(
             let share_far = state.share_far();
             let alignment =
                 SurfaceAlignment { transform, iterations, rms, points, pairs, share_far };
-            return Ok(Ended { alignment, change, has_converged });
+            return Ok(IterationState { alignment, change, has_converged });
         }
         if progress.is_cancelled() {
             return Err(AlignmentError::Cancelled { iterations });

@@ -8,7 +8,7 @@ use nalgebra::Matrix3;
 
 use super::closest_point::{StopRule, SurfaceAlignment, iterate, points_in_mask};
 use super::start::{half_turns, inertia};
-use super::{AlignmentError, Place, RigidTransform};
+use super::{AlignmentError, RigidTransform, SphereOrBox};
 use crate::mesh::{SurfaceSearch, TriangleSurface, Vector};
 use crate::progress::Unobserved;
 
@@ -41,7 +41,7 @@ impl MirrorCheck {
 pub fn check_mirror(
     fixed: &TriangleSurface,
     moving: &TriangleSurface,
-    mask: Option<&Place>,
+    mask: Option<&SphereOrBox>,
     start: &RigidTransform,
 ) -> Result<MirrorCheck, AlignmentError> {
     let points = points_in_mask(fixed, mask, POINTS)?;

@@ -3,14 +3,14 @@
 pub mod closest_point;
 pub mod mirror;
 pub mod performed;
-mod place;
 mod rigid;
+mod sphere_or_box;
 mod start;
 pub mod thin_plate_spline;
 
 pub use closest_point::{IterativeClosestPoint, SurfaceAlignment};
-pub use place::Place;
 pub use rigid::{PointAlignment, RigidTransform, align_points, align_weighted_points};
+pub use sphere_or_box::SphereOrBox;
 pub use start::Start;
 pub use thin_plate_spline::ThinPlateSpline;
 

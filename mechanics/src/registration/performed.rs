@@ -9,7 +9,7 @@
 use rayon::prelude::*;
 
 use super::closest_point::{SurfaceAlignment, points_in_mask};
-use super::{AlignmentError, IterativeClosestPoint, Place, RigidTransform, Start};
+use super::{AlignmentError, IterativeClosestPoint, RigidTransform, SphereOrBox, Start};
 use crate::mesh::{SurfaceSearch, TriangleSurface, Vector};
 use crate::progress::Progress;
 
@@ -18,7 +18,7 @@ use crate::progress::Progress;
 pub struct BoneBefore<'a> {
     pub surface: &'a TriangleSurface,
     /// Only the part in it decides.
-    pub mask: Option<Place>,
+    pub mask: Option<SphereOrBox>,
     /// Takes the scan after the operation to this bone.
     pub start: Start,
 }

@@ -141,12 +141,12 @@ pub fn build_to(
     order: ResponseOrder,
     progress: &dyn Progress,
 ) -> Result<Columns, ResponseError> {
-    build_of(scene, &Asked { segments: names, order, inner: &[] }, progress)
+    build_of(scene, &ColumnRequest { segments: names, order, inner: &[] }, progress)
 }
 
 /// The columns that are asked for.
 #[derive(Clone, Copy)]
-pub struct Asked<'a> {
+pub struct ColumnRequest<'a> {
     /// Names of segments; all where none is named.
     pub segments: &'a [String],
     pub order: ResponseOrder,
@@ -157,11 +157,11 @@ pub struct Asked<'a> {
 /// The same with columns of what acts inside.
 pub fn build_of(
     scene: &Scene,
-    asked: &Asked,
+    asked: &ColumnRequest,
     progress: &dyn Progress,
 ) -> Result<Columns, ResponseError> {
     // 1. What is asked.
-    let Asked { segments: names, order, inner } = *asked;
+    let ColumnRequest { segments: names, order, inner } = *asked;
     let chosen = chosen(scene, names)?;
     check_order(scene, order)?;
     if order == ResponseOrder::Second && !inner.is_empty() {

@@ -14,7 +14,9 @@ mod response_error;
 mod rigid_numbers;
 mod second_order;
 mod superposition;
-pub use build::{Asked, Columns, ResponseOrder, build, build_of, build_to, check_order, chosen};
+pub use build::{
+    ColumnRequest, Columns, ResponseOrder, build, build_of, build_to, check_order, chosen,
+};
 pub use inner_loads::inner_loads;
 pub use linearity::{Linearity, Nonlinearity, SampledSecond, by_rule_of_thumb};
 pub use quadratic_form::{BeyondLinear, QuadraticForm};

@@ -8,7 +8,7 @@ use super::quadratic_form::{QuadraticForm, pairs, quantised};
 use super::rigid_numbers::SAMPLES;
 use super::superposition::COLUMNS_PER_SEGMENT;
 use crate::mesh::Vector;
-use crate::model::fem::force_series::{ForceSeries, Forces, Moved};
+use crate::model::fem::force_series::{ForceSeries, Forces, LinearState};
 use crate::model::fem::linear_system::{Correction, LinearSystem, Residual, Solved};
 use crate::model::problem::ModelError;
 use crate::prediction::Skin;
@@ -40,8 +40,8 @@ struct State {
 }
 
 impl State {
-    fn as_moved(&self) -> Moved<'_> {
-        Moved { displacement: &self.displacement, pressures: &self.pressures }
+    fn as_moved(&self) -> LinearState<'_> {
+        LinearState { displacement: &self.displacement, pressures: &self.pressures }
     }
 }
 
@@ -90,7 +90,7 @@ impl Solutions<'_> {
         used.dedup();
         let place = |column: usize| used.partition_point(|&other| other < column);
         let column = |&column: &usize| self.column(column);
-        let states: Vec<Moved> = used.iter().map(column).collect();
+        let states: Vec<LinearState> = used.iter().map(column).collect();
         let places: Vec<[usize; 2]> = some.iter().map(|pair| pair.map(place)).collect();
         let forces = self.series.second(&states, &places)?;
         let twice = some.iter().map(|[k, l]| if k == l { 1.0 } else { 2.0 });
@@ -100,9 +100,9 @@ impl Solutions<'_> {
         Ok(solved.iter().map(|state| self.at_skin(&state.displacement)).collect())
     }
 
-    fn column(&self, column: usize) -> Moved<'_> {
+    fn column(&self, column: usize) -> LinearState<'_> {
         let Solved { equilibrium, pressures } = &self.columns[column];
-        Moved { displacement: &equilibrium.displacement, pressures }
+        LinearState { displacement: &equilibrium.displacement, pressures }
     }
 
     fn at_skin(&self, displacement: &[Vector]) -> Vec<Vector> {
@@ -162,7 +162,7 @@ impl Solutions<'_> {
         relative_residual: f64,
         progress: &dyn Progress,
     ) -> Result<Vec<State>, ModelError> {
-        let states: Vec<Moved> = first.iter().map(State::as_moved).collect();
+        let states: Vec<LinearState> = first.iter().map(State::as_moved).collect();
         let squares: [[usize; 2]; SAMPLES] = std::array::from_fn(|direction| [direction; 2]);
         let forces = self.series.second(&states, &squares)?.into_iter();
         let residuals = forces.map(|forces| resisting(forces, 1.0)).collect();
@@ -189,7 +189,7 @@ impl Solutions<'_> {
         let of = |column: usize| self.column(first + column);
         let mut state = State { displacement: Vec::new(), pressures: Vec::new() };
         for (factor, column) in terms {
-            let Moved { displacement, pressures } = of(column);
+            let LinearState { displacement, pressures } = of(column);
             state.displacement.resize(displacement.len(), Vector::zeros());
             state.pressures.resize(pressures.len(), 0.0);
             state.displacement.iter_mut().zip(displacement).for_each(|(u, v)| *u += v * factor);

@@ -37,7 +37,7 @@ pub struct Point {
 }
 
 /// How a solution was found.
-pub struct Found {
+pub struct ConstrainedSolution {
     pub point: Point,
     /// Equations among those asked for that others among them decide.
     pub decided: Vec<usize>,
@@ -46,7 +46,7 @@ pub struct Found {
 }
 
 /// Equations to be met and how well.
-pub struct Wanted<'a> {
+pub struct ConstraintTarget<'a> {
     /// Which equations, by their numbers.
     pub rows: &'a [usize],
     /// h of each.
@@ -99,10 +99,10 @@ impl<'a> Equations<'a> {
     /// Meets some of the equations, from a point near by.
     pub fn solve(
         &mut self,
-        wanted: &Wanted,
+        wanted: &ConstraintTarget,
         start: Point,
         progress: &dyn Progress,
-    ) -> Result<Found, SolverError> {
+    ) -> Result<ConstrainedSolution, SolverError> {
         self.make_columns(wanted.rows, progress)?;
         let independent = Independent::new(&self.schur(wanted.rows));
         let mut run = Run {
@@ -116,7 +116,12 @@ impl<'a> Equations<'a> {
         };
         let relative_residual = run.solve(progress)?;
         let Run { independent, point, iterations, .. } = run;
-        Ok(Found { point, decided: independent.dependent(), iterations, relative_residual })
+        Ok(ConstrainedSolution {
+            point,
+            decided: independent.dependent(),
+            iterations,
+            relative_residual,
+        })
     }
 
     fn make_columns(&mut self, rows: &[usize], progress: &dyn Progress) -> Result<(), SolverError> {
@@ -151,7 +156,7 @@ impl<'a> Equations<'a> {
 
 struct Run<'a, 'b> {
     equations: &'b Equations<'a>,
-    wanted: &'b Wanted<'b>,
+    wanted: &'b ConstraintTarget<'b>,
     independent: Independent,
     point: Point,
     r: Vec<[f64; 1]>,

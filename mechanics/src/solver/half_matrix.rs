@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use super::cliques::{Cliques, CliquesOfRow};
+use super::element_connectivity::{ElementConnectivity, ElementsOfRow};
 use super::lanes::{Lanes, Real, add_product, add_transposed};
 use super::layout::Layout;
 use super::vectorised::vectorised;
@@ -24,15 +24,15 @@ pub struct Pattern {
 }
 
 impl Pattern {
-    /// Couples all members of each clique.
-    pub fn new(cliques: &Cliques, around: &CliquesOfRow, rows: usize) -> Self {
+    /// Couples all members of each element.
+    pub fn new(connectivity: &ElementConnectivity, around: &ElementsOfRow, rows: usize) -> Self {
         let chunks: Vec<Rows<u32>> = (0..rows.div_ceil(ROW_CHUNK))
             .into_par_iter()
             .map_init(
                 || vec![u32::MAX; rows],
                 |seen, chunk| {
                     let range = chunk * ROW_CHUNK..((chunk + 1) * ROW_CHUNK).min(rows);
-                    lower_columns(cliques, around, range, seen)
+                    lower_columns(connectivity, around, range, seen)
                 },
             )
             .collect();
@@ -69,8 +69,8 @@ impl Pattern {
 
 /// The lower columns of each row in a range. `seen` is scratch that holds no row of the range.
 fn lower_columns(
-    cliques: &Cliques,
-    around: &CliquesOfRow,
+    connectivity: &ElementConnectivity,
+    around: &ElementsOfRow,
     range: Range<usize>,
     seen: &mut [u32],
 ) -> Rows<u32> {
@@ -78,8 +78,8 @@ fn lower_columns(
     let mut columns = Vec::new();
     for row in range {
         columns.clear();
-        for &clique in around.row(row) {
-            for &column in cliques.row(clique as usize) {
+        for &element in around.row(row) {
+            for &column in connectivity.row(element as usize) {
                 if (column as usize) < row && seen[column as usize] != row as u32 {
                     seen[column as usize] = row as u32;
                     columns.push(column);

@@ -10,7 +10,7 @@
 
 use std::ops::Range;
 
-use super::cliques::{Cliques, CliquesOfRow};
+use super::element_connectivity::{ElementConnectivity, ElementsOfRow};
 
 /// Free unknowns below which one thread is faster than two.
 const PARTS_FROM: usize = 12_000;
@@ -23,8 +23,8 @@ const FOUR_PARTS_FROM: usize = 400_000;
 pub struct Layout {
     /// The place of each row.
     pub place: Vec<u32>,
-    /// Cliques in the order in which rows meet them.
-    pub clique_order: Vec<u32>,
+    /// Elements in the order in which rows meet them.
+    pub element_order: Vec<u32>,
     /// Places that couple only among themselves and with the separator.
     pub parts: Vec<Range<usize>>,
     /// Places below this are free; the separator reaches from the last part to here.
@@ -32,17 +32,17 @@ pub struct Layout {
 }
 
 impl Layout {
-    /// Orders the rows that the cliques couple, each of that many unknowns, from the row `start` on.
+    /// Orders the rows that the elements couple, each of that many unknowns, from the row `start` on.
     /// `held` tells the rows without any free unknown.
     pub fn new(
-        cliques: &Cliques,
-        around: &CliquesOfRow,
+        connectivity: &ElementConnectivity,
+        around: &ElementsOfRow,
         held: &[bool],
         unknowns: usize,
         start: usize,
     ) -> Self {
         let rows = held.len();
-        let (order, clique_order) = breadth_first(cliques, around, rows, start);
+        let (order, element_order) = breadth_first(connectivity, around, rows, start);
         let free_order: Vec<u32> = order.iter().copied().filter(|&r| !held[r as usize]).collect();
         let free = free_order.len();
         let count = match free * unknowns {
@@ -50,7 +50,7 @@ impl Layout {
             PARTS_FROM..FOUR_PARTS_FROM => 2,
             _ => 4,
         };
-        let part_of = parts_of_rows(cliques, &free_order, rows, count);
+        let part_of = parts_of_rows(connectivity, &free_order, rows, count);
         let mut place = vec![0; rows];
         let mut next = 0;
         let mut parts = Vec::with_capacity(count);
@@ -68,7 +68,7 @@ impl Layout {
             place[row as usize] = next as u32;
             next += 1;
         }
-        Layout { place, clique_order, parts, free }
+        Layout { place, element_order, parts, free }
     }
 
     /// Places that couple with several parts.
@@ -88,17 +88,17 @@ impl Layout {
     }
 }
 
-/// Rows from `start` on, and the cliques as they are met. Rows without a clique come last.
+/// Rows from `start` on, and the elements as they are met. Rows without a element come last.
 fn breadth_first(
-    cliques: &Cliques,
-    around: &CliquesOfRow,
+    connectivity: &ElementConnectivity,
+    around: &ElementsOfRow,
     rows: usize,
     start: usize,
 ) -> (Vec<u32>, Vec<u32>) {
     let mut seen = vec![false; rows];
-    let mut is_met = vec![false; cliques.len()];
+    let mut is_met = vec![false; connectivity.len()];
     let mut order: Vec<u32> = Vec::with_capacity(rows);
-    let mut clique_order = Vec::with_capacity(cliques.len());
+    let mut element_order = Vec::with_capacity(connectivity.len());
     let has_clique = |row: &usize| !around.row(*row).is_empty();
     // Of no rows at all none is the first.
     let begin = Some(start).filter(|&start| start < rows);
@@ -109,13 +109,13 @@ fn breadth_first(
         let mut next = order.len();
         order.push(first as u32);
         while next < order.len() {
-            for &clique in around.row(order[next] as usize) {
-                // Each clique is opened once: the first of its rows reaches all others.
-                if std::mem::replace(&mut is_met[clique as usize], true) {
+            for &element in around.row(order[next] as usize) {
+                // Each element is opened once: the first of its rows reaches all others.
+                if std::mem::replace(&mut is_met[element as usize], true) {
                     continue;
                 }
-                clique_order.push(clique);
-                for &row in cliques.row(clique as usize) {
+                element_order.push(element);
+                for &row in connectivity.row(element as usize) {
                     if !std::mem::replace(&mut seen[row as usize], true) {
                         order.push(row);
                     }
@@ -125,11 +125,16 @@ fn breadth_first(
         }
     }
     order.extend((0..rows as u32).filter(|&row| !seen[row as usize]));
-    (order, clique_order)
+    (order, element_order)
 }
 
 /// The part of each free row, `count` for the separator; held rows get `u8::MAX`.
-fn parts_of_rows(cliques: &Cliques, free_order: &[u32], rows: usize, count: usize) -> Vec<u8> {
+fn parts_of_rows(
+    connectivity: &ElementConnectivity,
+    free_order: &[u32],
+    rows: usize,
+    count: usize,
+) -> Vec<u8> {
     let mut part_of = vec![u8::MAX; rows];
     for (at, &row) in free_order.iter().enumerate() {
         part_of[row as usize] = (at * count / free_order.len()) as u8;
@@ -138,8 +143,8 @@ fn parts_of_rows(cliques: &Cliques, free_order: &[u32], rows: usize, count: usiz
         return part_of;
     }
     let cut = part_of.clone();
-    for clique in 0..cliques.len() {
-        let members = cliques.row(clique);
+    for element in 0..connectivity.len() {
+        let members = connectivity.row(element);
         let first = members.iter().map(|&row| cut[row as usize]).min().unwrap_or_default();
         for &row in members {
             if cut[row as usize] != u8::MAX && cut[row as usize] > first {

@@ -3,9 +3,9 @@
 
 mod choice;
 pub mod cholesky;
-pub mod cliques;
 pub mod conjugate_gradient;
 pub mod constrained;
+pub mod element_connectivity;
 pub mod half_matrix;
 mod independent;
 pub mod lanes;

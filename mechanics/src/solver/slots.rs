@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::cliques::Cliques;
+use super::element_connectivity::ElementConnectivity;
 use super::sparse_rows::{Couplings, Entry, SparseRows};
 use crate::rows::Rows;
 
@@ -23,9 +23,9 @@ pub struct Slots(Rows<Part>);
 impl Slots {
     /// For a matrix that `SparseRows::assemble` made of these couplings.
     pub fn new<T: Entry>(matrix: &SparseRows<T>, couplings: &Couplings) -> Self {
-        let mut cliques = Cliques::default();
-        couplings.rows.iter().for_each(|rows| cliques.push(*rows));
-        let around = cliques.inverted(matrix.rows());
+        let mut connectivity = ElementConnectivity::default();
+        couplings.rows.iter().for_each(|rows| connectivity.push(*rows));
+        let around = connectivity.inverted(matrix.rows());
         let part = |row: usize, cell: u32| {
             let of_cell = &couplings.rows[cell as usize];
             let corner = of_cell.iter().position(|&named| named as usize == row);

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use super::cliques::Cliques;
+use super::element_connectivity::ElementConnectivity;
 use super::lanes::Lanes;
 use super::vectorised::vectorised;
 use crate::rows::Rows;
@@ -59,9 +59,9 @@ impl<T: Entry> SparseRows<T> {
         couplings: &Couplings,
         value: impl Fn(usize, usize, usize) -> T + Sync,
     ) -> Self {
-        let mut cliques = Cliques::default();
-        couplings.rows.iter().for_each(|rows| cliques.push(*rows));
-        let around = cliques.inverted(row_count);
+        let mut connectivity = ElementConnectivity::default();
+        couplings.rows.iter().for_each(|rows| connectivity.push(*rows));
+        let around = connectivity.inverted(row_count);
         let chunks: Vec<Vec<Vec<(u32, T)>>> = (0..row_count.div_ceil(ROW_CHUNK))
             .into_par_iter()
             .map(|chunk| {

@@ -14,7 +14,8 @@ use crate::model::fem::strain::deformations;
 use crate::model::problem::{Equilibrium, ModelError};
 use crate::prediction::{
     Accepted, Adequate, Case, ElementChoice, Laws, Method, Plan, Rung, Scene, SceneErrorCode,
-    SceneErrors, Settings, Watched, equilibrium, estimates, inverted_cells, predict_adequately,
+    SceneErrors, Settings, TimedProgress, equilibrium, estimates, inverted_cells,
+    predict_adequately,
 };
 use crate::progress::Progress;
 use crate::solver::SolverError;
@@ -187,7 +188,7 @@ impl Bench<'_> {
         let stopwatch = || self.stopwatch.seconds();
         let ((linear, adequate), time) = self.timed(|progress| {
             let scene = Scene::new(case, plan, &variant.settings)?;
-            let watched = Watched { stopwatch: &stopwatch, progress };
+            let watched = TimedProgress { stopwatch: &stopwatch, progress };
             let adequate = predict_adequately(case, plan, &scene, &accepted, watched)?;
             Ok((scene, adequate))
         })?;

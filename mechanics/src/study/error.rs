@@ -7,7 +7,7 @@
 use std::collections::BTreeMap;
 
 use super::answer::{Answer, Refusal};
-use super::estimated::{True, lengths};
+use super::estimated::{TrueErrors, lengths};
 use super::report::Errors;
 use super::variant::Strain;
 use crate::mesh::{SurfaceSearch, TriangleSurface, Vector};
@@ -76,7 +76,7 @@ impl<'a> DisplacedSkin<'a> {
             regions.insert(name.clone(), errors(&of(&apart), &of(&self.areas))?);
         }
         let Answer { estimates, strain, .. } = answer;
-        let truth = True { errors: &apart, areas: &self.areas, strain: self.strain };
+        let truth = TrueErrors { errors: &apart, areas: &self.areas, strain: self.strain };
         let estimated = Estimated {
             numerical_error: errors_of(estimates.mesh.as_ref(), &self.areas),
             linearity_error: errors_of(estimates.linearity.as_ref(), &self.areas),

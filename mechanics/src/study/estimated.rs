@@ -23,7 +23,7 @@ pub(super) struct Estimates {
 }
 
 /// True errors at the nodes that were asked for, with their areas.
-pub(super) struct True<'a> {
+pub(super) struct TrueErrors<'a> {
     /// In mm, as lengths.
     pub errors: &'a [f64],
     pub areas: &'a [f64],
@@ -37,7 +37,7 @@ impl Estimates {
         &self,
         displacement: &[Vector],
         own: Strain,
-        truth: &True,
+        truth: &TrueErrors,
     ) -> Option<f64> {
         let strain = truth.strain?;
         let (expected, actual) = match (self.of_moving, strain) {
@@ -76,7 +76,7 @@ fn mean(values: &[f64], areas: &[f64]) -> f64 {
 }
 
 /// Node by node, as models are chosen.
-fn mean_of_moving(displacement: &[Vector], truth: &True) -> f64 {
+fn mean_of_moving(displacement: &[Vector], truth: &TrueErrors) -> f64 {
     let least = least_moving(displacement.iter().map(|u| u.norm()));
     let moving = displacement.iter().zip(truth.errors).filter(|(u, _)| u.norm() >= least);
     let (sum, count) =
@@ -101,7 +101,7 @@ mod tests {
         };
         let (errors, areas) = ([1.0, 1.0], [1.0, 3.0]);
         let moved = along(&[2.0, 2.0]);
-        let against = |strain| True { errors: &errors, areas: &areas, strain };
+        let against = |strain| TrueErrors { errors: &errors, areas: &areas, strain };
         let of = |of_answer, strain| own.effectivity(&moved, of_answer, &against(strain));
         let (small, finite) = (Strain::Small, Strain::Finite);
         // Rounding only.
@@ -114,7 +114,8 @@ mod tests {
     #[test]
     fn an_error_that_chose_the_model_is_held_against_the_skin_that_moves() {
         let own = Estimates { of_moving: Some(0.3), ..Estimates::default() };
-        let truth = True { errors: &[0.6, 9.0], areas: &[1.0, 1.0], strain: Some(Strain::Finite) };
+        let truth =
+            TrueErrors { errors: &[0.6, 9.0], areas: &[1.0, 1.0], strain: Some(Strain::Finite) };
         let ratio = own.effectivity(&along(&[5.0, 0.1]), Strain::Small, &truth);
         assert!((ratio.unwrap() - 0.5).abs() < 1e-12);
     }

@@ -6,7 +6,7 @@ use super::error::{DisplacedSkin, Measured};
 use super::levels::Levels;
 use super::report::Solved;
 use super::scan::{ScannedSkin, is_partial};
-use super::truth::{Asked, Truths};
+use super::truth::{TruthRequest, Truths};
 use super::variant::{Strain, StudyScene, Truth, Variant};
 use crate::prediction::{ContactKind, Skin};
 
@@ -33,7 +33,7 @@ pub(super) struct SceneTruths {
 impl SceneTruths {
     /// As far as answers without contact, and answers with contact, are to be held against it.
     pub(super) fn find(
-        asked: &Asked,
+        asked: &TruthRequest,
         levels: &mut Levels,
         [is_without, is_with]: [bool; 2],
     ) -> Result<Self, StudyError> {
@@ -65,7 +65,7 @@ impl SceneTruths {
         skin: &'a Result<Skin, Refusal>,
         (plan, materials): (usize, usize),
     ) -> TrueSkins<'a> {
-        let held = |truths: &'a Truths| Held {
+        let held = |truths: &'a Truths| ReferenceSkin {
             skin: DisplacedSkin::of(skin, &truths.skins[plan][materials], scene.truth.strain()),
             own_error: truths.error_mm.map(|[mean, _]| mean),
         };
@@ -78,14 +78,18 @@ impl SceneTruths {
 }
 
 /// A true skin, and how far it is off itself in the mean, in mm, as far as that is known.
-pub(super) struct Held<'a> {
+pub(super) struct ReferenceSkin<'a> {
     skin: Result<DisplacedSkin<'a>, Refusal>,
     own_error: Option<f64>,
 }
 
 /// What the answers to one plan with one set of materials are held against.
 pub(super) enum TrueSkins<'a> {
-    Displaced { without: Box<Held<'a>>, with: Option<Box<Held<'a>>>, is_formula: bool },
+    Displaced {
+        without: Box<ReferenceSkin<'a>>,
+        with: Option<Box<ReferenceSkin<'a>>>,
+        is_formula: bool,
+    },
     Scanned(&'a Result<ScannedSkin<'a>, Refusal>),
 }
 
@@ -104,7 +108,7 @@ impl TrueSkins<'_> {
                     Some(with) if is_touching => &**with,
                     Some(_) | None => &**without,
                 };
-                let Held { skin, own_error } = held;
+                let ReferenceSkin { skin, own_error } = held;
                 let skin = skin.as_ref().map_err(Refusal::clone)?;
                 let measured = skin.measure(&answer);
                 let measured =

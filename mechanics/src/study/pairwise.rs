@@ -58,9 +58,9 @@ pub fn compare_variants(rows: &[Row]) -> Vec<Pairwise> {
 }
 
 /// What two rows have to share to be a pair.
-type Place<'a> = (&'a str, &'a str, &'a str, u32);
+type PairKey<'a> = (&'a str, &'a str, &'a str, u32);
 
-fn of_label<'a>(rows: &'a [Row], label: &str) -> BTreeMap<Place<'a>, &'a Outcome> {
+fn of_label<'a>(rows: &'a [Row], label: &str) -> BTreeMap<PairKey<'a>, &'a Outcome> {
     let place = |row: &'a Row| (&*row.scene, &*row.plan, &*row.material, row.level);
     let own = rows.iter().filter(|row| row.label == label);
     own.map(|row| (place(row), &row.outcome)).collect()

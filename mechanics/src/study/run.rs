@@ -8,7 +8,7 @@ use super::held_against::{SceneTruths, TrueSkins};
 use super::levels::Levels;
 use super::report::{Outcome, Report, Row, SceneReport, Skipped};
 use super::scan::ScannedSkin;
-use super::truth::{Asked, is_in_contact, itself};
+use super::truth::{TruthRequest, is_in_contact, itself};
 use super::variant::{Materials, Study, StudyScene, Truth, Variant};
 use crate::mesh::Warning;
 use crate::prediction::{Plan, Scene, Settings, Skin};
@@ -66,7 +66,7 @@ fn distinct(what: &'static str, names: impl Iterator<Item = String>) -> Result<(
 }
 
 /// Variants that took too long at a level, and what rows of theirs are told that are not tried after that.
-type Late<'a> = BTreeMap<(u32, &'a str), Refusal>;
+type OverdueVariants<'a> = BTreeMap<(u32, &'a str), Refusal>;
 
 /// The rows of one scene.
 struct SceneWork<'a> {
@@ -95,7 +95,7 @@ impl<'a> SceneWork<'a> {
 
         // 2. What the methods answer, for each plan and material.
         let mut attempts = Vec::new();
-        let (mut late, mut skipped) = (Late::new(), Vec::new());
+        let (mut late, mut skipped) = (OverdueVariants::new(), Vec::new());
         for (plan, skin) in self.scene.plans.iter().zip(&skins) {
             for materials in &self.scene.materials {
                 let found = self.attempts(&mut levels, &mut late, (plan, materials), skin)?;
@@ -106,7 +106,8 @@ impl<'a> SceneWork<'a> {
 
         // 3. What is true.
         let begin = self.bench.stopwatch.seconds();
-        let asked = Asked { scene: self.scene, skins: &skins, progress: self.bench.progress };
+        let asked =
+            TruthRequest { scene: self.scene, skins: &skins, progress: self.bench.progress };
         let wanted = [false, true].map(|contact| {
             let answered = attempts.iter().flatten().filter(|attempt| attempt.answer.is_ok());
             answered.into_iter().any(|own| is_in_contact(self.scene, own.variant) == contact)
@@ -190,7 +191,7 @@ impl<'a> SceneWork<'a> {
     fn attempts(
         &self,
         levels: &mut Levels,
-        late: &mut Late<'a>,
+        late: &mut OverdueVariants<'a>,
         ((name, plan), materials): (&(String, Plan), &Materials),
         skin: &Result<Skin, Refusal>,
     ) -> Result<(Vec<Attempt<'a>>, Vec<Skipped>), StudyError> {

@@ -29,22 +29,22 @@ const MEMORY_MB: f64 = 12_000.0;
 pub(super) const PLANS_A_SEGMENT: usize = 3;
 
 /// The displacement of skin nodes in mm, or why there is none.
-pub(super) type Found = Result<Vec<Vector>, Refusal>;
+pub(super) type TrueSkin = Result<Vec<Vector>, Refusal>;
 
 /// What is true, and what is told of it.
 pub(super) struct Truths {
     /// For each plan, for each material.
-    pub skins: Vec<Vec<Found>>,
+    pub skins: Vec<Vec<TrueSkin>>,
     pub words: String,
     /// Mean and p95 in mm.
     pub error_mm: Option<[f64; 2]>,
 }
 
 /// How a refined truth is solved.
-type How = (ElementChoice, Strain, ContactKind);
+type TruthMethod = (ElementChoice, Strain, ContactKind);
 
 /// A scene whose truth is wanted.
-pub(super) struct Asked<'a> {
+pub(super) struct TruthRequest<'a> {
     pub scene: &'a StudyScene,
     /// For each plan, at level 0.
     pub skins: &'a [Result<Skin, Refusal>],
@@ -100,7 +100,7 @@ fn in_effect(element: ElementChoice, mesh: &VolumeMesh) -> ElementChoice {
     }
 }
 
-impl Asked<'_> {
+impl TruthRequest<'_> {
     /// The truth of rows without contact, which slide where they may, or of those with it.
     pub(super) fn find(
         &self,
@@ -160,7 +160,7 @@ impl Asked<'_> {
     }
 
     /// What holds for each plan, as it is of the materials, and each material.
-    fn each(&self, found: impl Fn(&Plan, &Materials, &Skin) -> Found) -> Vec<Vec<Found>> {
+    fn each(&self, found: impl Fn(&Plan, &Materials, &Skin) -> TrueSkin) -> Vec<Vec<TrueSkin>> {
         let plans = self.scene.plans.iter().zip(self.skins);
         plans
             .map(|((_, plan), skin)| {
@@ -174,9 +174,14 @@ impl Asked<'_> {
             .collect()
     }
 
-    fn refined(&self, levels: &mut Levels, times: u32, how: How) -> Result<Truths, StudyError> {
+    fn refined(
+        &self,
+        levels: &mut Levels,
+        times: u32,
+        how: TruthMethod,
+    ) -> Result<Truths, StudyError> {
         // 1. The finest mesh and, for its error, one or two before it.
-        let mut fields: Vec<Vec<Vec<Found>>> = Vec::new();
+        let mut fields: Vec<Vec<Vec<TrueSkin>>> = Vec::new();
         let mut words = String::new();
         let (mut solved_meshes, of) =
             (0, self.scene.materials.len() * (times - coarsest(times) + 1) as usize);
@@ -217,7 +222,7 @@ impl Asked<'_> {
         &self,
         levels: &mut Levels,
         (level, materials): (u32, &Materials),
-        (element, strain, contact): How,
+        (element, strain, contact): TruthMethod,
     ) -> Result<Solved, StudyError> {
         let usual = Settings::default();
         let relative_residual = match strain {
@@ -233,7 +238,7 @@ impl Asked<'_> {
                 return Ok(Solved { skins, words: "none".to_owned() });
             }
         };
-        let finer = Finer { case, settings, progress: self.progress };
+        let finer = FinerCase { case, settings, progress: self.progress };
         let plans = self.scene.plans_of(materials);
         let columns = match strain {
             Strain::Small if !contact.is_unilateral() => finer.columns(&plans)?,
@@ -269,7 +274,7 @@ impl Asked<'_> {
     }
 
     /// That of the plan and the material for which it is largest.
-    fn largest_error(&self, fields: &[Vec<Vec<Found>>]) -> Option<OwnError> {
+    fn largest_error(&self, fields: &[Vec<Vec<TrueSkin>>]) -> Option<OwnError> {
         let mut largest: Option<OwnError> = None;
         for (plan, skin) in self.skins.iter().enumerate() {
             let Ok(skin) = skin else { continue };
@@ -289,18 +294,18 @@ impl Asked<'_> {
 
 /// The plans on one mesh.
 struct Solved {
-    skins: Vec<Found>,
+    skins: Vec<TrueSkin>,
     words: String,
 }
 
 /// A finer case to be solved as the truth.
-struct Finer<'a> {
+struct FinerCase<'a> {
     case: Case,
     settings: Settings,
     progress: &'a dyn Progress,
 }
 
-impl Finer<'_> {
+impl FinerCase<'_> {
     /// The columns of the segments that plans move, where they are worth their time; none where plans are
     /// solved one by one.
     fn columns(&self, plans: &[(String, Plan)]) -> Result<Option<Columns>, StudyError> {
@@ -352,7 +357,7 @@ pub(super) fn moved_segments(plans: &[(String, Plan)], case: &Case) -> Vec<Strin
 }
 
 /// The plan as a sum of columns, at some of their nodes.
-fn sum(columns: &Columns, plan: &Plan, nodes: &[u32]) -> Found {
+fn sum(columns: &Columns, plan: &Plan, nodes: &[u32]) -> TrueSkin {
     let movement = |name: &str| {
         let planned = plan.segments.iter().find(|planned| planned.name == name);
         planned.map_or_else(RigidMovement::default, |planned| planned.movement)

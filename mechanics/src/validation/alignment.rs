@@ -7,7 +7,7 @@ use crate::progress::Progress;
 use crate::registration::closest_point::FAR;
 use crate::registration::mirror::{MirrorCheck, check_mirror};
 use crate::registration::{
-    IterativeClosestPoint, Place, RigidTransform, Start, SurfaceAlignment, align_points,
+    IterativeClosestPoint, RigidTransform, SphereOrBox, Start, SurfaceAlignment, align_points,
 };
 
 /// A landmark may lie outside the box around its surface by this share of the box's diagonal.
@@ -25,7 +25,7 @@ pub enum Alignment {
     Landmarks(Vec<LandmarkPair>),
     /// Only the part of the prediction in the mask decides.
     ClosestPoint {
-        mask: Option<Place>,
+        mask: Option<SphereOrBox>,
     },
     /// Other surfaces decide, such as bone of both scans; the actual surface goes along.
     Surfaces(Box<BoneSurfaces>),
@@ -39,7 +39,7 @@ pub struct BoneSurfaces {
     /// In the frame of the actual surface.
     pub moving: TriangleSurface,
     /// Only the part of the fixed one in it decides.
-    pub mask: Option<Place>,
+    pub mask: Option<SphereOrBox>,
     pub start: Start,
 }
 

@@ -6,13 +6,13 @@ use super::both_ways::{BothDirections, MeasuredPair};
 use super::distance::Measured;
 use super::error::ComparisonError;
 use crate::mesh::{TriangleSurface, Vector, Warning};
-use crate::registration::Place;
+use crate::registration::SphereOrBox;
 
 /// Where a comparison is measured once more.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Region {
     /// A part of space in the frame of the prediction.
-    Place(Place),
+    SphereOrBox(SphereOrBox),
     /// Triangles of the prediction all of whose corners are among these points, and what is nearest to them.
     Points(Vec<u32>),
     /// Triangles of the prediction whose corners were moved by more than this in the mean, in mm, and what
@@ -22,14 +22,14 @@ pub enum Region {
 
 /// A region on the triangles of a prediction.
 enum Part {
-    Place(Place),
+    SphereOrBox(SphereOrBox),
     Triangles(Vec<bool>),
 }
 
 impl Part {
     fn holds(&self, measured: &Measured) -> bool {
         match self {
-            Part::Place(place) => place.holds(&measured.point),
+            Part::SphereOrBox(place) => place.holds(&measured.point),
             Part::Triangles(belongs) => belongs[measured.triangle as usize],
         }
     }
@@ -56,7 +56,7 @@ impl MovedSurface<'_> {
 
     fn part(&self, name: &str, region: &Region) -> Result<Part, ComparisonError> {
         match region {
-            Region::Place(place) => Ok(Part::Place(*place)),
+            Region::SphereOrBox(place) => Ok(Part::SphereOrBox(*place)),
             Region::Points(points) => {
                 let mut is_in = vec![false; self.surface.points.len()];
                 points.iter().for_each(|&point| is_in[point as usize] = true);

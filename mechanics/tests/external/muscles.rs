@@ -8,7 +8,7 @@ use mechanics::prediction::{
     Activation, Case, CaseSegment, Muscle, MuscleCourse, Plan, Scene, Settings, predict,
 };
 use mechanics::progress::Unobserved;
-use mechanics::response::{Amounts, Asked, ResponseOrder, build_of, inner_loads};
+use mechanics::response::{Amounts, ColumnRequest, ResponseOrder, build_of, inner_loads};
 
 use crate::samples::{read_default, volume};
 use crate::scenes::{case_of, material, set};
@@ -126,7 +126,7 @@ impl Face {
         let rest = Scene::new(&self.case, &Plan::default(), &Settings::default()).unwrap();
         let names = ["ZYG_left", "ZYG_right"].map(str::to_owned);
         let inner = inner_loads(&rest, &[], &names).unwrap();
-        let asked = Asked { segments: &[], order: ResponseOrder::First, inner: &inner };
+        let asked = ColumnRequest { segments: &[], order: ResponseOrder::First, inner: &inner };
         let columns = build_of(&rest, &asked, &Unobserved).unwrap().to_response();
         let still = [mechanics::plan::RigidMovement::default()];
         let smile = columns.apply_all(&Amounts { movements: &still, inner: &[1.0, 1.0] });

@@ -11,7 +11,7 @@ use mechanics::mesh::jacobian::scaled_jacobian;
 use mechanics::mesh::quality::quality;
 use mechanics::mesh::{CellShape, Vector, VolumeMesh, Warning};
 use mechanics::model::fem::contact::{Contact, Effort};
-use mechanics::model::fem::force_series::{ForceSeries, Moved};
+use mechanics::model::fem::force_series::{ForceSeries, LinearState};
 use mechanics::model::fem::linear_system::Residual;
 use mechanics::model::spline::VolumeSpline;
 use mechanics::plan::{PlannedSegment, RigidMovement};
@@ -303,7 +303,7 @@ pub fn second_order(scene: &Scene, relative_residual: f64) -> Vec<Vector> {
     let cells = system.pressures.as_ref().map(|pressures| &pressures.cells);
     let series = ForceSeries::new(scene.tissue(), cells);
     let displacement = &solved.equilibrium.displacement;
-    let moved = Moved { displacement, pressures: &solved.pressures };
+    let moved = LinearState { displacement, pressures: &solved.pressures };
     let forces = series.second(&[moved], &[[0, 0]]).unwrap().remove(0);
     let residual = Residual {
         forces: forces.nodes.iter().map(|force| -force).collect(),

@@ -5,7 +5,7 @@ use mechanics::progress::Unobserved;
 use mechanics::registration::mirror::check_mirror;
 use mechanics::registration::performed::{BoneBefore, align_base, performed};
 use mechanics::registration::{
-    AlignmentError, IterativeClosestPoint, Place, RigidTransform, Start, ThinPlateSpline,
+    AlignmentError, IterativeClosestPoint, RigidTransform, SphereOrBox, Start, ThinPlateSpline,
     align_points, align_weighted_points,
 };
 
@@ -86,8 +86,8 @@ fn a_pair_of_weight_zero_does_not_count() {
 }
 
 /// The upper part of the head: 70 % of its points, the part that surgery leaves alone.
-fn upper_part() -> Place {
-    Place::Box { lower: Vector::new(-200.0, -200.0, -44.0), upper: Vector::repeat(200.0) }
+fn upper_part() -> SphereOrBox {
+    SphereOrBox::Box { lower: Vector::new(-200.0, -200.0, -44.0), upper: Vector::repeat(200.0) }
 }
 
 /// A head before, and the same head moved with its lower 30 % of points displaced by some mm.
@@ -127,7 +127,7 @@ fn a_masked_head_is_brought_back_although_a_third_of_it_has_changed() {
     assert!(degrees < 0.01 && shift < 0.01, "{degrees} degrees, {shift} mm, {found:?}");
     // The changed part alone leads elsewhere.
     let changed =
-        Place::Box { lower: Vector::repeat(-200.0), upper: Vector::new(200.0, 200.0, -44.0) };
+        SphereOrBox::Box { lower: Vector::repeat(-200.0), upper: Vector::new(200.0, 200.0, -44.0) };
     let method = IterativeClosestPoint { mask: Some(changed), ..IterativeClosestPoint::default() };
     let pulled = method.align(&fixed, &moving, &Unobserved).unwrap();
     let (_, shift) = difference(&pulled.transform, &wanted, &Vector::zeros());
@@ -229,7 +229,7 @@ fn a_sphere_or_a_plane_is_not_turned_about_nothing() {
 fn an_empty_mask_a_hasty_limit_and_a_cancelled_alignment_are_named() {
     let fixed = head(3);
     let moving = map(&fixed, |point| movement([7.0, -5.0, 11.0], [1.5, -0.7, 5.0]).apply(point));
-    let nowhere = Place::Sphere { centre: Vector::repeat(1e4), radius: 1.0 };
+    let nowhere = SphereOrBox::Sphere { centre: Vector::repeat(1e4), radius: 1.0 };
     let method = IterativeClosestPoint { mask: Some(nowhere), ..Default::default() };
     assert_eq!(method.align(&fixed, &moving, &Unobserved).unwrap_err(), AlignmentError::EmptyMask);
 
@@ -369,7 +369,7 @@ fn a_planted_operation_comes_back_from_bone_before_and_after_it() {
         let mut after = map(&joined(&later.base, &jaw), |point| scan.inverse().apply(point));
         after.triangles.retain(|t| t[1] % 41 != 0);
         // Nothing was done above the ears.
-        let mask = Some(Place::Box {
+        let mask = Some(SphereOrBox::Box {
             lower: Vector::new(-200.0, -200.0, 10.0),
             upper: Vector::repeat(200.0),
         });

@@ -13,7 +13,7 @@ use mechanics::prediction::{
 use mechanics::progress::Unobserved;
 use mechanics::response::linearity::LINEAR_RANGE_MM;
 use mechanics::response::{
-    Amounts, Asked, Linearity, ResponseError, ResponseOrder, build, build_of, coefficients,
+    Amounts, ColumnRequest, Linearity, ResponseError, ResponseOrder, build, build_of, coefficients,
     inner_loads,
 };
 use mechanics::study::methods;
@@ -314,7 +314,7 @@ fn growth_and_muscles_add_to_the_sum_of_columns_as_they_do_to_the_direct_solutio
         let settings = Settings { element, ..tight() };
         let rest = at_rest(&case, &settings);
         let inner = inner_loads(&rest, &["*".to_owned()], &["left".to_owned()]).unwrap();
-        let asked = Asked { segments: &[], order: ResponseOrder::First, inner: &inner };
+        let asked = ColumnRequest { segments: &[], order: ResponseOrder::First, inner: &inner };
         let columns = build_of(&rest, &asked, &Unobserved).unwrap();
         let plan = Plan {
             growth: vec![Growth { region: "*".to_owned(), volume_change: -0.05 }],
@@ -349,7 +349,7 @@ fn a_response_refuses_regions_and_muscles_that_are_not_there_and_a_second_order_
     let of_muscle = refused("tissue", "jaw");
     assert!(of_muscle.contains("\"jaw\"") && of_muscle.contains("right"), "{of_muscle}");
     let inner = inner_loads(&rest, &[], &["left".to_owned()]).unwrap();
-    let asked = Asked { segments: &[], order: ResponseOrder::Second, inner: &inner };
+    let asked = ColumnRequest { segments: &[], order: ResponseOrder::Second, inner: &inner };
     let refused = build_of(&rest, &asked, &Unobserved).unwrap_err();
     assert_eq!(refused, ResponseError::NoSecondOrderInside);
 }
@@ -359,7 +359,7 @@ fn inverse_planning_finds_the_plan_beside_growth_and_muscles_that_stay() {
     let case = head_with_muscles();
     let rest = at_rest(&case, &tight());
     let inner = inner_loads(&rest, &["*".to_owned()], &["right".to_owned()]).unwrap();
-    let asked = Asked { segments: &[], order: ResponseOrder::First, inner: &inner };
+    let asked = ColumnRequest { segments: &[], order: ResponseOrder::First, inner: &inner };
     let response = build_of(&rest, &asked, &Unobserved).unwrap().to_response();
     let planted = [Vector::new(1.0, -2.0, 3.0), Vector::new(-0.5, 4.0, 0.0)];
     let movements = planted

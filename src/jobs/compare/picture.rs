@@ -3,7 +3,7 @@
 use crate::jobs::report::SIGNED_RANGE_MM;
 use crate::jobs::result::pictures::outlook;
 use crate::schema::compare::result::ComparisonDocument;
-use mechanics::chart::drawing::{Document, Place, Style};
+use mechanics::chart::drawing::{Document, Rectangle, Style};
 use mechanics::chart::svg::svg;
 use mechanics::chart::{HistogramPicture, PngError, ViewRow, ViewValues, ViewsPicture};
 use mechanics::mesh::{Frame, TriangleSurface};
@@ -52,8 +52,8 @@ pub fn distance_picture(
     );
     document.text([MARGIN, 62.0], width, Style::of(13.0).faint(), &numbers);
     let [below, ends] = [HEAD + height + GAP, histogram.height];
-    document.drawing(Place { x: MARGIN, y: HEAD, width, height }, views);
-    let place = Place { x: MARGIN, y: below, width: histogram.width, height: ends };
+    document.drawing(Rectangle { x: MARGIN, y: HEAD, width, height }, views);
+    let place = Rectangle { x: MARGIN, y: below, width: histogram.width, height: ends };
     document.drawing(place, histogram);
     Ok(svg(&document, TITLE))
 }

@@ -15,7 +15,7 @@ use crate::schema::compare::document::{
 use crate::schema::compare::result::ComparisonDocument;
 use crate::schema::{Matrix4x4, Pointer, Problem};
 use mechanics::mesh::{Frame, TriangleSurface, Vector, Warning};
-use mechanics::registration::{Place, RigidTransform, Start, align_points};
+use mechanics::registration::{RigidTransform, SphereOrBox, Start, align_points};
 use mechanics::validation::distance::require_possible;
 use mechanics::validation::{
     Alignment, BoneSurfaces, Comparison, ComparisonError, ComparisonSettings, LandmarkPair,
@@ -91,7 +91,7 @@ impl Pair<'_> {
             return Ok(Region::MovedByMoreThan(length));
         }
         if let Some(place) = place_of(&region.place()) {
-            return Ok(Region::Place(place));
+            return Ok(Region::SphereOrBox(place));
         }
         let name = region.skin_region.as_deref().unwrap_or_default();
         let points = self.skin_regions.get(name).ok_or_else(|| {
@@ -182,11 +182,11 @@ fn transform_of(align: &AlignDocument) -> RigidTransform {
 }
 
 /// The part of space of a document that was checked.
-pub fn place_of(document: &PlaceDocument) -> Option<Place> {
+pub fn place_of(document: &PlaceDocument) -> Option<SphereOrBox> {
     if let Some(sphere) = document.sphere_mm {
         let [x, y, z, radius] = sphere.0;
-        return Some(Place::Sphere { centre: Vector::new(x, y, z), radius });
+        return Some(SphereOrBox::Sphere { centre: Vector::new(x, y, z), radius });
     }
     let [x0, y0, z0, x1, y1, z1] = document.box_mm?.0;
-    Some(Place::Box { lower: Vector::new(x0, y0, z0), upper: Vector::new(x1, y1, z1) })
+    Some(SphereOrBox::Box { lower: Vector::new(x0, y0, z0), upper: Vector::new(x1, y1, z1) })
 }

@@ -25,7 +25,7 @@ use crate::schema::predict::result::ResultDocument;
 use mechanics::learning::cohort::Pool;
 use mechanics::learning::curve::learning_curve;
 use mechanics::learning::hill_climb::{Climb, hill_climb};
-use mechanics::learning::learner::{Compared, Rule};
+use mechanics::learning::learner::{ComparedCases, Rule};
 use mechanics::learning::validation::{Column, Validated, validate};
 use mechanics::learning::{Cohort, Distance, LearnedModel, Method};
 use mechanics::progress::{Phase, Progress};
@@ -153,7 +153,7 @@ fn document(
 /// The search of Zhang et al. 2016 over all cases.
 fn climb(cohort: &Cohort, method: Method, distance: Distance) -> Climb {
     let all: Vec<usize> = (0..cohort.len()).collect();
-    let left_out = Compared::new(cohort, method.target, distance).leave_one_out(&all);
+    let left_out = ComparedCases::new(cohort, method.target, distance).leave_one_out(&all);
     hill_climb(|width| left_out.rmse(width), MOST_STEPS)
 }
 

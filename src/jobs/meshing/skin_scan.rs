@@ -14,7 +14,7 @@ use mechanics::anatomy::{AnatomyError, SkinScanError};
 use mechanics::domain::{ImageOptions, ScannedSkin};
 use mechanics::image::ImageVolume;
 use mechanics::mesh::{Frame, TriangleSurface, Vector};
-use mechanics::registration::{AlignmentError, Place};
+use mechanics::registration::{AlignmentError, SphereOrBox};
 
 /// Its file, where it lies in the CT.
 pub const SKIN_SCAN_FILE: &str = "skin-scan.vtp";
@@ -37,12 +37,14 @@ fn turned(point: Vector, frame: Frame) -> Vector {
     }
 }
 
-fn turned_place(place: Place, frame: Frame) -> Place {
+fn turned_place(place: SphereOrBox, frame: Frame) -> SphereOrBox {
     match place {
-        Place::Sphere { centre, radius } => Place::Sphere { centre: turned(centre, frame), radius },
-        Place::Box { lower, upper } => {
+        SphereOrBox::Sphere { centre, radius } => {
+            SphereOrBox::Sphere { centre: turned(centre, frame), radius }
+        }
+        SphereOrBox::Box { lower, upper } => {
             let [a, b] = [lower, upper].map(|corner| turned(corner, frame));
-            Place::Box { lower: a.inf(&b), upper: a.sup(&b) }
+            SphereOrBox::Box { lower: a.inf(&b), upper: a.sup(&b) }
         }
     }
 }

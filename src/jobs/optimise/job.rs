@@ -27,7 +27,7 @@ use mechanics::plan::doubt::PLAN_UNITS_SUSPECT;
 use mechanics::prediction::{Prediction, predict};
 use mechanics::progress::{Phase, Progress};
 use mechanics::response::{
-    Amounts, Asked, COLUMNS_PER_SEGMENT, ResponseError, ResponseOrder, build_of,
+    Amounts, COLUMNS_PER_SEGMENT, ColumnRequest, ResponseError, ResponseOrder, build_of,
 };
 
 /// A difference between full solution and response that is told, in mm: stored in single precision and
@@ -92,7 +92,7 @@ impl OptimiseInput {
         let scene = &prepared.rest.scene;
         let PreparedOptimisation { inner, amounts, .. } = prepared;
         let order = ResponseOrder::First;
-        let asked = Asked { segments: &self.spec.moving(), order, inner };
+        let asked = ColumnRequest { segments: &self.spec.moving(), order, inner };
         let columns = build_of(scene, &asked, clock).map_err(|error| match error {
             ResponseError::Prediction(error) => clock.judge(error),
             other => self.judge(other),

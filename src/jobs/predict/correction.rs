@@ -11,7 +11,7 @@ use crate::schema::{ErrorCode, Pointer, Problem};
 use mechanics::format::vtk::vtp;
 use mechanics::format::{ArrayValues, NamedValues, SurfaceOutput};
 use mechanics::learning::validation::lengths;
-use mechanics::learning::{Asked, Corrected, Refusal, measures};
+use mechanics::learning::{Corrected, PreoperativeCase, Refusal, measures};
 use mechanics::mesh::{Frame, Vector, Warning};
 use mechanics::prediction::Prediction;
 
@@ -73,7 +73,7 @@ pub fn corrected(
     let features = measures::features(scene, displacement);
     let (bone, predicted) =
         (measures::bone(scene, displacement), measures::skin(scene, displacement));
-    let asked = Asked { features: &features, bone: &bone, predicted: &predicted };
+    let asked = PreoperativeCase { features: &features, bone: &bone, predicted: &predicted };
     let mut document = CorrectedDocument {
         model: spec.model.clone(),
         helps: model.helps,

@@ -1,6 +1,6 @@
 //! Orientation of a face: whether it looks where its frame says that faces look.
 
-use mechanics::chart::{Outlook, clear_front};
+use mechanics::chart::{FaceDirection, clear_front};
 use mechanics::mesh::{Frame, TriangleSurface, Vector, Warning};
 
 /// A face may look this far beside its frame's front, in degrees: half a face looks 45 degrees to its side.
@@ -10,8 +10,8 @@ const MOST_BESIDE_DEG: f64 = 65.0;
 /// along +y, upright along +z in both.
 pub(super) fn looks_elsewhere(frame: Frame, skin: &TriangleSurface) -> Option<Warning> {
     let stated = match frame {
-        Frame::Lps => Outlook::lps(),
-        Frame::Ras => Outlook::ras(),
+        Frame::Lps => FaceDirection::lps(),
+        Frame::Ras => FaceDirection::ras(),
         Frame::Unspecified => return None,
     };
     let front = clear_front(&skin.points, &skin.triangles, stated.up)?;

@@ -10,7 +10,7 @@ use crate::schema::predict::adequacy::AdequacyDocument;
 use crate::schema::predict::refine::{RefineDocument, RefinementDocument};
 use crate::schema::{ErrorCode, Limits, Pointer, Problem};
 use mechanics::prediction::{
-    Accepted, AdaptiveError, Watched, predict, predict_adaptively, predict_adequately,
+    Accepted, AdaptiveError, TimedProgress, predict, predict_adaptively, predict_adequately,
 };
 use mechanics::progress::Progress;
 
@@ -51,7 +51,7 @@ fn adequately(
     clock: &Observed,
 ) -> Result<Predicted, JobError> {
     let stopwatch = || clock.elapsed_s();
-    let watched = Watched { stopwatch: &stopwatch, progress: clock };
+    let watched = TimedProgress { stopwatch: &stopwatch, progress: clock };
     let Prepared { case, plan, scene, .. } = &prepared;
     let adequate = predict_adequately(case, plan, scene, &accepted, watched)
         .map_err(|error| clock.judge(error))?;

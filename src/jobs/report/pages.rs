@@ -1,9 +1,9 @@
 //! A report as pages of A4, which are written as PDF.
 
 use mechanics::chart::colour::{GRID, INK, WARN_INK};
-use mechanics::chart::drawing::{Document, Place, Run, Style};
+use mechanics::chart::drawing::{Document, Rectangle, Run, Style};
 use mechanics::chart::helvetica::lines;
-use mechanics::chart::pdf::{About, pdf as written};
+use mechanics::chart::pdf::{PdfMetadata, pdf as written};
 
 use super::content::{Block, Figure, Report, Section, Table};
 
@@ -37,7 +37,7 @@ pub fn pdf(report: Report) -> Vec<u8> {
         let number = format!("{} / {count}", index + 1);
         page.text([WIDTH - MARGIN, foot[1]], 40.0, Style::of(7.5).faint().end(), &number);
     }
-    let about = About { title: &title, language: language.tag(), creator: "facies" };
+    let about = PdfMetadata { title: &title, language: language.tag(), creator: "facies" };
     written(&all, &about)
 }
 
@@ -104,7 +104,7 @@ impl Pages {
         let width = ROOM / names.len().max(1) as f64;
         for (at, name) in names.iter().enumerate() {
             let x = MARGIN + width * at as f64;
-            let place = Place { x, y: self.y - LINE, width: width - 14.0, height: 0.6 };
+            let place = Rectangle { x, y: self.y - LINE, width: width - 14.0, height: 0.6 };
             self.page.rectangle(place, INK, 0.0);
             self.page.text([x, self.y], width, Style::of(SIZE).faint(), name);
         }
@@ -117,7 +117,7 @@ impl Pages {
         self.need(height + LINE);
         let width = height * drawing.width / drawing.height;
         let x = MARGIN + (ROOM - width) / 2.0;
-        self.page.drawing(Place { x, y: self.y - 6.0, width, height }, drawing);
+        self.page.drawing(Rectangle { x, y: self.y - 6.0, width, height }, drawing);
         self.y += height + 6.0;
         self.sentence(&caption, Style::of(SIZE).faint(), 0.0);
     }
@@ -150,7 +150,7 @@ impl Pages {
         }
         self.y += height;
         let rule = self.y - LINE + 3.0;
-        let place = Place { x: MARGIN, y: rule, width: ROOM, height: 0.5 };
+        let place = Rectangle { x: MARGIN, y: rule, width: ROOM, height: 0.5 };
         self.page.rectangle(place, GRID, 0.0);
         self.y += 1.4;
     }

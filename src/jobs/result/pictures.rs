@@ -3,8 +3,8 @@
 use crate::schema::compare::result::StatDocument;
 use mechanics::anatomy::Anatomy;
 use mechanics::chart::{
-    ClassKind, ClassesPicture, DisplacementPicture, NodeClasses, Outlook, PngError, SlicesPicture,
-    front_of,
+    ClassKind, ClassesPicture, DisplacementPicture, FaceDirection, NodeClasses, PngError,
+    SlicesPicture, front_of,
 };
 use mechanics::mesh::{Frame, TriangleSurface, Vector};
 use mechanics::prediction::{NodeClass, Scene};
@@ -113,25 +113,25 @@ pub fn slices_picture(anatomy: &Anatomy, frame: Frame) -> Result<String, PngErro
         points: &mesh.nodes,
         tetrahedra: &cells,
         middle: (boxed.0 + boxed.1) / 2.0,
-        outlook: if frame == Frame::Ras { Outlook::ras() } else { Outlook::lps() },
+        outlook: if frame == Frame::Ras { FaceDirection::ras() } else { FaceDirection::lps() },
         frame: frame.name(),
     }
     .to_svg()
 }
 
 /// From where the face is seen; without a known frame its front is found from its skin.
-pub fn outlook(frame: Frame, skin: &TriangleSurface) -> Outlook {
+pub fn outlook(frame: Frame, skin: &TriangleSurface) -> FaceDirection {
     upright(frame, skin).facing(&skin.points, &skin.triangles)
 }
 
 /// The same of a head, which is upright in its frame however its skin looks.
-pub fn upright(frame: Frame, skin: &TriangleSurface) -> Outlook {
+pub fn upright(frame: Frame, skin: &TriangleSurface) -> FaceDirection {
     match frame {
-        Frame::Lps => Outlook::lps(),
-        Frame::Ras => Outlook::ras(),
+        Frame::Lps => FaceDirection::lps(),
+        Frame::Ras => FaceDirection::ras(),
         Frame::Unspecified => {
             let up = Vector::z();
-            Outlook { front: front_of(&skin.points, &skin.triangles, up), up }
+            FaceDirection { front: front_of(&skin.points, &skin.triangles, up), up }
         }
     }
 }

@@ -8,7 +8,7 @@ use utoipa::ToSchema;
 use crate::schema::code::ErrorCode;
 use crate::schema::wire::fault::{Faults, Pointer};
 use crate::schema::wire::limits::Limits;
-use mechanics::prediction::{Adapted, Level, Stop, Wanted};
+use mechanics::prediction::{AdaptivePrediction, Level, RefinementGoal, Stop};
 
 /// Errors that may be accepted, in mm.
 pub const ACCEPTED_MM: std::ops::RangeInclusive<f64> = 1e-3..=1e2;
@@ -89,14 +89,14 @@ impl RefineDocument {
     }
 
     /// What the path is asked for, with the bounds that hold.
-    pub fn wanted(&self, cells: usize, time_s: f64) -> Wanted {
+    pub fn wanted(&self, cells: usize, time_s: f64) -> RefinementGoal {
         let regions_mm = self.regions.clone();
-        Wanted { skin_mm: self.accept_mm, regions_mm, cells, time_s }
+        RefinementGoal { skin_mm: self.accept_mm, regions_mm, cells, time_s }
     }
 }
 
 impl RefinementDocument {
-    pub fn new(wanted: &Wanted, adapted: &Adapted) -> Self {
+    pub fn new(wanted: &RefinementGoal, adapted: &AdaptivePrediction) -> Self {
         RefinementDocument {
             accepted_mm: wanted.skin_mm,
             accepted_regions_mm: wanted.regions_mm.clone(),

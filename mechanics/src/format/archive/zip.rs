@@ -10,7 +10,7 @@ use flate2::Crc;
 use flate2::read::DeflateDecoder;
 
 use crate::format::cursor::Cursor;
-use crate::format::error::{FormatError, Place};
+use crate::format::error::{FilePosition, FormatError};
 use crate::format::limits::{MOST_BYTES_OF_ONE, ReadLimits, room_for};
 
 const FORMAT: &str = "zip";
@@ -66,7 +66,7 @@ struct End {
 }
 
 fn bad(at: u64, detail: impl Into<String>) -> FormatError {
-    FormatError::Parse { format: FORMAT, place: Place::Offset(at), detail: detail.into() }
+    FormatError::Parse { format: FORMAT, place: FilePosition::Offset(at), detail: detail.into() }
 }
 
 impl Entry {

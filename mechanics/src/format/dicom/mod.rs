@@ -17,7 +17,7 @@ mod stack;
 mod transfer_syntax;
 
 use super::ReadMesh;
-use super::error::{FormatError, Place};
+use super::error::{FilePosition, FormatError};
 use super::limits::ReadLimits;
 pub(super) use series::assemble;
 pub(super) use slice::{Part, read_part};
@@ -35,5 +35,5 @@ pub(super) fn read(bytes: &[u8], limits: &ReadLimits) -> Result<ReadMesh, Format
 }
 
 fn bad(at: u64, detail: impl Into<String>) -> FormatError {
-    FormatError::Parse { format: FORMAT, place: Place::Offset(at), detail: detail.into() }
+    FormatError::Parse { format: FORMAT, place: FilePosition::Offset(at), detail: detail.into() }
 }

@@ -32,7 +32,7 @@ pub(super) struct Stack {
 
 /// A slice and how high it stands along the normal, in mm.
 #[derive(Clone, Copy)]
-struct Placed {
+struct PositionedSlice {
     slice: usize,
     height: f64,
 }
@@ -41,8 +41,9 @@ impl Stack {
     pub fn of(slices: &[Slice], plane: &Plane) -> Result<Stack, FormatError> {
         let normal = plane.normal();
         let height = |slice: usize| slices[slice].position.dot(&normal);
-        let mut placed: Vec<Placed> =
-            (0..slices.len()).map(|slice| Placed { slice, height: height(slice) }).collect();
+        let mut placed: Vec<PositionedSlice> = (0..slices.len())
+            .map(|slice| PositionedSlice { slice, height: height(slice) })
+            .collect();
         placed.sort_by(|a, b| a.height.total_cmp(&b.height));
         let mut warnings = Vec::new();
         let spacing = spacing(&placed)?;
@@ -84,7 +85,7 @@ impl Stack {
 }
 
 /// The middle of all distances that are any.
-fn spacing(placed: &[Placed]) -> Result<f64, FormatError> {
+fn spacing(placed: &[PositionedSlice]) -> Result<f64, FormatError> {
     let apart = placed.windows(2).map(|pair| pair[1].height - pair[0].height);
     let largest = apart.clone().fold(0.0, f64::max);
     let mut apart: Vec<f64> = apart.filter(|&apart| apart > SAME_PLACE * largest).collect();
@@ -101,11 +102,11 @@ fn spacing(placed: &[Placed]) -> Result<f64, FormatError> {
 
 /// Of slices at one place all but one go where they are the same, or nobody knows which is meant.
 fn drop_doubled(
-    placed: &mut Vec<Placed>,
+    placed: &mut Vec<PositionedSlice>,
     slices: &[Slice],
     spacing: f64,
 ) -> Result<Option<Warning>, FormatError> {
-    let mut kept: Vec<Placed> = Vec::with_capacity(placed.len());
+    let mut kept: Vec<PositionedSlice> = Vec::with_capacity(placed.len());
     let mut doubled = 0;
     for next in placed.iter() {
         match kept.last() {
@@ -131,7 +132,7 @@ fn drop_doubled(
 
 /// The layers of an even stack, one of which may be made up.
 fn layers(
-    placed: &[Placed],
+    placed: &[PositionedSlice],
     spacing: f64,
     warnings: &mut Vec<Warning>,
 ) -> Result<Vec<Layer>, FormatError> {

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::format::cursor::Cursor;
-use crate::format::error::{FormatError, Place};
+use crate::format::error::{FilePosition, FormatError};
 use crate::format::limits::ReadLimits;
 use crate::format::scalar::{ByteOrder, Scalar};
 use crate::format::voxels::{Rescale, Storage};
@@ -87,7 +87,7 @@ pub(in crate::format) fn is_metaimage(bytes: &[u8]) -> bool {
 }
 
 fn bad_line(line: u64, detail: impl Into<String>) -> FormatError {
-    FormatError::Parse { format: FORMAT, place: Place::Line(line), detail: detail.into() }
+    FormatError::Parse { format: FORMAT, place: FilePosition::Line(line), detail: detail.into() }
 }
 
 /// The first word: in a damaged file, what follows may be the comment of another line.

@@ -2,7 +2,7 @@
 
 use std::io::Read;
 
-use super::orientation::{Forms, Placed};
+use super::orientation::{Forms, Orientation};
 use super::refusal::bad;
 use crate::format::error::FormatError;
 use crate::format::limits::ReadLimits;
@@ -139,7 +139,7 @@ impl Header {
         let fields = Fields::read(source)?;
         fields.check_magic()?;
         let size = fields.size(limits)?;
-        let Placed { placement, warning } = fields.forms(size).place()?;
+        let Orientation { placement, warning } = fields.forms(size).place()?;
         let layout = fields.layout;
         let voxels_at = fields.voxels_at()?;
         let storage = Storage {

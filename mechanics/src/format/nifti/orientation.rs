@@ -23,14 +23,14 @@ pub(super) struct Forms {
     pub size: [usize; 3],
 }
 
-pub(super) struct Placed {
+pub(super) struct Orientation {
     pub placement: Placement,
     pub warning: Option<Warning>,
 }
 
 impl Forms {
     /// The rows where they are meant, else the quaternion; without either nothing tells left from right.
-    pub fn place(&self) -> Result<Placed, FormatError> {
+    pub fn place(&self) -> Result<Orientation, FormatError> {
         let unit = self.unit_in_mm()?;
         let rows = self.by_rows.then(|| self.of_rows(unit));
         let quaternion = match self.by_quaternion {
@@ -43,7 +43,7 @@ impl Forms {
             (None, quaternion) => (quaternion?.ok_or_else(|| self.nowhere())?, None),
         };
         placement.check().map_err(|error| bad(self.codes_at, error.to_string()))?;
-        Ok(Placed { placement, warning })
+        Ok(Orientation { placement, warning })
     }
 
     fn nowhere(&self) -> FormatError {

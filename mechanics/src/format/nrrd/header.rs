@@ -7,7 +7,7 @@
 use std::collections::BTreeMap;
 
 use crate::format::cursor::Cursor;
-use crate::format::error::{FormatError, Place};
+use crate::format::error::{FilePosition, FormatError};
 use crate::format::limits::ReadLimits;
 use crate::format::scalar::{ByteOrder, Scalar};
 use crate::format::voxels::{Rescale, Storage};
@@ -144,7 +144,7 @@ impl Field {
 }
 
 fn bad_line(line: u64, detail: impl Into<String>) -> FormatError {
-    FormatError::Parse { format: FORMAT, place: Place::Line(line), detail: detail.into() }
+    FormatError::Parse { format: FORMAT, place: FilePosition::Line(line), detail: detail.into() }
 }
 
 impl Fields {

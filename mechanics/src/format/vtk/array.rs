@@ -15,7 +15,7 @@ use rayon::prelude::*;
 
 use super::document::{Appended, Content, DataArray, Document};
 use super::source::Source;
-use crate::format::error::{FormatError, Place};
+use crate::format::error::{FilePosition, FormatError};
 use crate::format::limits::{DecodeBudget, MOST_BYTES_OF_ONE, ReadLimits, room_for};
 use crate::format::scalar::Scalar;
 
@@ -39,7 +39,7 @@ impl<'d, 'a> Decoder<'d, 'a> {
     fn bad(&self, array: &DataArray<'_>, detail: impl std::fmt::Display) -> FormatError {
         FormatError::Parse {
             format: self.document.format,
-            place: Place::Offset(array.offset),
+            place: FilePosition::Offset(array.offset),
             detail: format!("array {:?} of {:?}: {detail}", array.name, array.section),
         }
     }

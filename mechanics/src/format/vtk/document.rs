@@ -9,7 +9,7 @@ use quick_xml::events::{BytesStart, Event};
 use quick_xml::reader::Reader;
 
 use crate::format::cursor::{Cursor, find};
-use crate::format::error::{FormatError, Place};
+use crate::format::error::{FilePosition, FormatError};
 use crate::format::scalar::{ByteOrder, Scalar};
 
 const DEEPEST: usize = 32;
@@ -90,7 +90,7 @@ impl<'a> Document<'a> {
         let (head, tail) = split_at_appended(bytes);
         let head = std::str::from_utf8(head).map_err(|error| FormatError::Parse {
             format,
-            place: Place::Offset(error.valid_up_to() as u64),
+            place: FilePosition::Offset(error.valid_up_to() as u64),
             detail: "the text is not UTF-8".into(),
         })?;
         let mut parser = Parser {
@@ -127,7 +127,7 @@ impl<'a> Document<'a> {
         self.arrays_in(section).find(|array| array.name.eq_ignore_ascii_case(name)).ok_or_else(
             || FormatError::Parse {
                 format: self.format,
-                place: Place::Offset(0),
+                place: FilePosition::Offset(0),
                 detail: format!("{section:?} has no array {name:?}"),
             },
         )
@@ -161,7 +161,7 @@ impl<'a> Parser<'a> {
     fn bad(&self, detail: impl Into<String>) -> FormatError {
         FormatError::Parse {
             format: self.document.format,
-            place: Place::Offset(self.reader.buffer_position()),
+            place: FilePosition::Offset(self.reader.buffer_position()),
             detail: detail.into(),
         }
     }

@@ -8,7 +8,7 @@ use crate::format::scalar::Scalar;
 use crate::mesh::ValuesOf;
 
 /// An array that is announced and not yet read.
-struct Announced {
+struct DeclaredArray {
     name: String,
     scalar: Scalar,
     components: u64,
@@ -60,7 +60,7 @@ impl LegacyReader<'_, '_> {
             "TENSORS6" => (self.scalar_type()?, 6),
             _ => (self.scalar_type()?, 1),
         };
-        self.read_values(Announced { name, scalar, components, tuples: self.tuples })
+        self.read_values(DeclaredArray { name, scalar, components, tuples: self.tuples })
     }
 
     /// `type [components]`, then a line with the lookup table.
@@ -115,7 +115,7 @@ impl LegacyReader<'_, '_> {
                 continue;
             }
             let scalar = self.scalar_type()?;
-            self.read_values(Announced { name, scalar, components, tuples })?;
+            self.read_values(DeclaredArray { name, scalar, components, tuples })?;
         }
         Ok(())
     }
@@ -171,8 +171,8 @@ impl LegacyReader<'_, '_> {
         Ok(length - mark)
     }
 
-    fn read_values(&mut self, announced: Announced) -> Result<(), FormatError> {
-        let Announced { name, scalar, components, tuples } = announced;
+    fn read_values(&mut self, announced: DeclaredArray) -> Result<(), FormatError> {
+        let DeclaredArray { name, scalar, components, tuples } = announced;
         let count = components.saturating_mul(tuples);
         let has_cells = self.keeps_cell_arrays();
         let kind = Kind::of(Some(scalar), components);

@@ -87,7 +87,7 @@ pub(super) fn at_array(
 ) -> FormatError {
     FormatError::Parse {
         format: document.format,
-        place: crate::format::error::Place::Offset(array.offset),
+        place: crate::format::error::FilePosition::Offset(array.offset),
         detail: detail.to_string(),
     }
 }

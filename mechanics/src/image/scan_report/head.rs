@@ -12,7 +12,7 @@ const MIDLINE: f64 = 4.0;
 
 /// An axis of the image, and which way along it something lies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Way {
+pub(super) struct AxisDirection {
     pub axis: usize,
     /// Whether the number of the voxel grows that way.
     pub grows: bool,
@@ -23,8 +23,8 @@ pub(super) struct Head<'a> {
     pub grid: Grid,
     pub thresholds: Thresholds,
     pub skin: OuterSkin,
-    pub up: Way,
-    pub front: Way,
+    pub up: AxisDirection,
+    pub front: AxisDirection,
     /// From right to left.
     across: usize,
     /// The voxel in the middle, along that axis.
@@ -52,16 +52,16 @@ impl<'a> Head<'a> {
             grid,
             thresholds,
             skin,
-            up: Way { axis: up, grows: directions[up].z > 0.0 },
+            up: AxisDirection { axis: up, grows: directions[up].z > 0.0 },
             // Posterior is positive.
-            front: Way { axis: front, grows: directions[front].y < 0.0 },
+            front: AxisDirection { axis: front, grows: directions[front].y < 0.0 },
             across,
             middle,
         }
     }
 
     /// The place in the row of an axis that is so many voxels away from its lower, or its back end.
-    fn place(&self, way: Way, steps: usize) -> usize {
+    fn place(&self, way: AxisDirection, steps: usize) -> usize {
         if way.grows { steps } else { self.grid.size[way.axis] - 1 - steps }
     }
 

@@ -15,14 +15,14 @@ use super::{Derivatives, Fibres, Invariants, Law};
 
 /// Fibres at a point: their law and their direction at rest, of length 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Along<'a> {
+pub struct FibreAtPoint<'a> {
     pub law: &'a Fibres,
     pub direction: Vector3<f64>,
 }
 
 /// A part of the bulk modulus that a pressure carries in place of the law: W + p ln J - c/2 ln^2 J instead of W.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Carried {
+pub struct PressureShare {
     /// p in kPa; c ln J where it is that of the point itself.
     pub pressure: f64,
     /// c in kPa.
@@ -76,7 +76,7 @@ pub struct Corner {
 impl Point {
     /// `f` has a positive determinant.
     #[inline]
-    pub fn new(law: &Law, fibres: Option<Along>, f: Matrix3<f64>) -> Point {
+    pub fn new(law: &Law, fibres: Option<FibreAtPoint>, f: Matrix3<f64>) -> Point {
         let invariants = Invariants::of(&f);
         let fibres = fibres.map(|along| {
             let turned = f * along.direction;
@@ -108,7 +108,7 @@ impl Point {
 
     /// The same point with a pressure for a part of its bulk modulus.
     #[inline]
-    pub fn carried(mut self, by: Carried) -> Point {
+    pub fn carried(mut self, by: PressureShare) -> Point {
         let (j, log) = (self.invariants.j, self.log_volume());
         let left = by.pressure - by.modulus * log;
         self.w.energy += (by.pressure - 0.5 * by.modulus * log) * log;

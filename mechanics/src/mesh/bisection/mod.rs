@@ -52,7 +52,7 @@ struct Support {
 }
 
 /// A cell during a refinement.
-struct Twig {
+struct BisectedCell {
     cell: MarkedTetrahedron,
     /// How many times it has yet to be halved because it was asked for.
     asked: u8,
@@ -109,10 +109,10 @@ impl Bisection {
         asked.iter().for_each(|&cell| asked_of[cell] = times);
         let count = self.cells.len();
         let cells = std::mem::take(&mut self.cells);
-        let mut twigs: Vec<Twig> = cells
+        let mut twigs: Vec<BisectedCell> = cells
             .into_iter()
             .zip(asked_of)
-            .map(|(cell, asked)| Twig { cell, asked, halves: None })
+            .map(|(cell, asked)| BisectedCell { cell, asked, halves: None })
             .collect();
 
         // 1. Until no cell is asked for and none has a node in the middle of an edge.
@@ -125,8 +125,9 @@ impl Bisection {
                     edge.iter().all(|&end| touched[end as usize]) && split.contains_key(&edge)
                 })
             };
-            let is_due =
-                |twig: &Twig| twig.halves.is_none() && (twig.asked > 0 || has_middle(&twig.cell));
+            let is_due = |twig: &BisectedCell| {
+                twig.halves.is_none() && (twig.asked > 0 || has_middle(&twig.cell))
+            };
             let due: Vec<usize> = (0..twigs.len()).filter(|&twig| is_due(&twigs[twig])).collect();
             if due.is_empty() {
                 break;
@@ -139,7 +140,7 @@ impl Bisection {
                 let asked = twigs[twig].asked.saturating_sub(1);
                 twigs[twig].halves = Some([twigs.len(), twigs.len() + 1]);
                 let halves = twigs[twig].cell.halves(middle);
-                twigs.extend(halves.map(|cell| Twig { cell, asked, halves: None }));
+                twigs.extend(halves.map(|cell| BisectedCell { cell, asked, halves: None }));
             }
         }
 

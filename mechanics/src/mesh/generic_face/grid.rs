@@ -59,7 +59,7 @@ pub(super) struct Grid {
 
 /// A point of a sheet.
 #[derive(Clone, Copy)]
-struct Spot {
+struct SheetPoint {
     line: usize,
     column: isize,
     lip: Lip,
@@ -96,18 +96,18 @@ impl Grid {
 
     /// Row by row, each from the middle outwards, so that the cut of cells, which begins at the lowest number, mirrors too;
     /// the lower lip has its line in the row, the upper one after all rows.
-    fn spots(&self) -> Vec<Spot> {
+    fn spots(&self) -> Vec<SheetPoint> {
         let of_line = |line: usize| (0..self.row_points()).map(move |place| (line, place));
-        let spot = |(line, place): (usize, usize)| Spot {
+        let spot = |(line, place): (usize, usize)| SheetPoint {
             line,
             column: column_at(place),
             lip: if line < self.lip_line { Lip::Lower } else { Lip::Upper },
         };
-        let mut spots: Vec<Spot> = (0..=self.rows).flat_map(of_line).map(spot).collect();
+        let mut spots: Vec<SheetPoint> = (0..=self.rows).flat_map(of_line).map(spot).collect();
         for place in 0..self.parted() {
             let column = column_at(place);
             spots[self.lip_line * self.row_points() + place].lip = Lip::Lower;
-            spots.push(Spot { line: self.lip_line, column, lip: Lip::Upper });
+            spots.push(SheetPoint { line: self.lip_line, column, lip: Lip::Upper });
         }
         spots
     }
@@ -146,7 +146,7 @@ impl Grid {
     }
 
     /// Layer by layer from the bone out.
-    fn nodes(&self, spots: &[Spot]) -> Vec<Vector> {
+    fn nodes(&self, spots: &[SheetPoint]) -> Vec<Vector> {
         let mut nodes = vec![Vector::zeros(); (LAYER_COUNT + 1) * spots.len()];
         for (number, spot) in spots.iter().enumerate() {
             let across = self.shape.column(self.row(spot.line), self.angle(spot.column), spot.lip);
@@ -202,12 +202,12 @@ impl Grid {
         labels
     }
 
-    fn node_sets(&self, spots: &[Spot]) -> BTreeMap<String, Vec<u32>> {
+    fn node_sets(&self, spots: &[SheetPoint]) -> BTreeMap<String, Vec<u32>> {
         let mut sets = NodeSets::default();
         for layer in 0..=LAYER_COUNT {
             for (number, spot) in spots.iter().enumerate() {
                 let node = (layer * spots.len() + number) as u32;
-                let Spot { line, column, lip } = *spot;
+                let SheetPoint { line, column, lip } = *spot;
                 let (row, angle) = (self.row(line), self.angle(column));
                 let is_rim = line == 0 || line == self.rows || column.abs() == self.half_columns;
                 let parts = line == self.lip_line && column.abs() <= self.corner;

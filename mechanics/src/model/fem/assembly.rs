@@ -5,7 +5,7 @@ use super::membrane::Membrane;
 use crate::material::elastic_tensor::add_isotropic_pair;
 use crate::material::{ElasticTensor, LinearElastic};
 use crate::mesh::{CellShape, Vector, VolumeMesh};
-use crate::model::dofs::Numbering;
+use crate::model::dofs::DofMap;
 use crate::model::problem::InvertedCell;
 use crate::progress::Progress;
 use crate::solver::Block;
@@ -63,7 +63,7 @@ impl Tissue<'_> {
     /// K over all nodes, held or not, in kPa mm.
     pub fn assemble(
         &self,
-        numbering: &Numbering,
+        numbering: &DofMap,
         progress: &dyn Progress,
     ) -> Result<Option<HalfMatrix<f64, 3>>, InvertedCell> {
         self.assemble_with(numbering, progress, &|cell| self.tensor(cell))
@@ -78,12 +78,12 @@ impl Tissue<'_> {
     /// K with another stiffness for each cell. The membrane is part of it.
     pub(super) fn assemble_with(
         &self,
-        numbering: &Numbering,
+        numbering: &DofMap,
         progress: &dyn Progress,
         tensor: &(dyn Fn(usize) -> ElasticTensor + Sync),
     ) -> Result<Option<HalfMatrix<f64, 3>>, InvertedCell> {
         let mut matrix = HalfMatrix::zeros(numbering.pattern.clone());
-        let order = &numbering.layout.clique_order;
+        let order = &numbering.layout.element_order;
         let simplex = |&cell: &u32| self.simplex(cell as usize, &tensor(cell as usize));
         let simplices: Vec<Option<Simplex>> =
             order.par_iter().map(simplex).collect::<Result<_, _>>()?;
@@ -95,7 +95,7 @@ impl Tissue<'_> {
             |at, chunk| add_rows(numbering, &simplices, chunk, at),
         );
         let others: Vec<usize> =
-            (0..order.len()).filter(|&clique| simplices[clique].is_none()).collect();
+            (0..order.len()).filter(|&element| simplices[element].is_none()).collect();
         let finished = numbering.add_cells(&mut matrix, &others, progress, |cell| {
             self.cell_matrix(cell, &tensor(cell))
         })?;
@@ -142,7 +142,7 @@ impl Simplex {
 /// Row by row: no two threads write to the same block, and cells are added in their order. `at` is
 /// scratch: where the block of each column of the row lies.
 fn add_rows(
-    numbering: &Numbering,
+    numbering: &DofMap,
     simplices: &[Option<Simplex>],
     chunk: RowChunk<f64, 3>,
     at: &mut [u32],
@@ -154,9 +154,9 @@ fn add_rows(
         for (k, &column) in numbering.pattern.columns(row).iter().enumerate() {
             at[column as usize] = (offset + k) as u32;
         }
-        for &clique in numbering.around.row(row) {
-            let Some(simplex) = &simplices[clique as usize] else { continue };
-            let members = numbering.cliques.row(clique as usize);
+        for &element in numbering.around.row(row) {
+            let Some(simplex) = &simplices[element as usize] else { continue };
+            let members = numbering.connectivity.row(element as usize);
             let Some(j) = members.iter().position(|&member| member as usize == row) else {
                 continue;
             };

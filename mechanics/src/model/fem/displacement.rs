@@ -8,7 +8,9 @@ use rayon::prelude::*;
 use super::assembly::Tissue;
 use crate::boundary::Hold;
 use crate::mesh::Vector;
-use crate::model::dofs::{Constrained, Known, Numbering, nodes_of_cells, number, product_at_holds};
+use crate::model::dofs::{
+    Constrained, DofMap, PrescribedValues, nodes_of_cells, number, product_at_holds,
+};
 use crate::model::problem::{Equilibrium, LoadCase, ModelError};
 use crate::progress::{Phase, Progress};
 use crate::solver::{Solution, SolverError, System, Tolerance, Unknowns};
@@ -39,7 +41,7 @@ impl Problem<'_> {
     }
 
     /// Of the nodes of the mesh.
-    pub(super) fn numbering(&self) -> Numbering {
+    pub(super) fn numbering(&self) -> DofMap {
         let mesh = self.tissue.mesh;
         number(&nodes_of_cells(mesh), &mesh.nodes, self.holds)
     }
@@ -59,7 +61,8 @@ pub(super) fn solve_displacement(
 ) -> Result<Vec<Equilibrium>, ModelError> {
     // 1. What is known, and the forces it leaves on the free unknowns.
     progress.phase(Phase::Solve);
-    let known: Vec<Known> = cases.par_iter().map(|case| constrained.known(case)).collect();
+    let known: Vec<PrescribedValues> =
+        cases.par_iter().map(|case| constrained.known(case)).collect();
     let right_hand_sides: Vec<Unknowns> =
         known.par_iter().map(|known| known.right_hand_side(system)).collect();
 
@@ -68,7 +71,7 @@ pub(super) fn solve_displacement(
         solve(system, &right_hand_sides).map_err(|error| constrained.in_nodes(error))?;
 
     // 3. Displacement and reactions, back along the axes of the coordinates.
-    let equilibrium = |(known, solution): (Known, Solution)| {
+    let equilibrium = |(known, solution): (PrescribedValues, Solution)| {
         let total = known.total(&solution.unknowns);
         let internal = product_at_holds(system, &total);
         Equilibrium {

@@ -26,7 +26,7 @@ use super::cell_stiffness::tetrahedron;
 use crate::material::ElasticTensor;
 use crate::material::elastic_tensor::PressurePart;
 use crate::mesh::{CellShape, Vector};
-use crate::model::dofs::{Constrained, Numbering};
+use crate::model::dofs::{Constrained, DofMap};
 use crate::model::problem::InvertedCell;
 use crate::progress::Progress;
 use crate::solver::mixed;
@@ -59,7 +59,7 @@ pub(super) fn megabytes(stiffness: &System, coupling: &Coupling) -> f64 {
 /// K: tetrahedra with what no pressure carries, 2 mu eps : eps where they are isotropic.
 pub(super) fn shear_stiffness(
     tissue: &Tissue,
-    numbering: &Numbering,
+    numbering: &DofMap,
     progress: &dyn Progress,
 ) -> Result<Option<HalfMatrix<f64, 3>>, InvertedCell> {
     let tensor = |cell: usize| {
@@ -95,7 +95,7 @@ pub struct PressureCells {
 
 impl PressureCells {
     /// Numbers the pressures: corners share one where they share node and material.
-    pub(super) fn new(tissue: &Tissue, numbering: &Numbering) -> Self {
+    pub(super) fn new(tissue: &Tissue, numbering: &DofMap) -> Self {
         let materials = tissue.materials;
         let used: BTreeSet<u16> = tissue.pressure_of_cell.iter().copied().collect();
         let same = |own: u16| {
@@ -104,7 +104,7 @@ impl PressureCells {
         };
         let kinds: BTreeMap<u16, u16> = used.iter().map(|&own| (own, same(own))).collect();
         let mut cells_of_kind: BTreeMap<u16, Vec<u32>> = BTreeMap::new();
-        for &cell in &numbering.layout.clique_order {
+        for &cell in &numbering.layout.element_order {
             let (cell, shape) = (cell as usize, tissue.mesh.cells.shape(cell as usize));
             let kind = kinds[&tissue.pressure_of_cell[cell]];
             if carries_pressure(shape, &tissue.tensor(cell)) {

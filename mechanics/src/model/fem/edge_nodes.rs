@@ -4,7 +4,7 @@ use crate::boundary::{Hold, midpoint};
 use crate::element::tetrahedron10;
 use crate::mesh::{Vector, VolumeMesh};
 use crate::model::problem::{Equilibrium, LoadCase};
-use crate::solver::cliques::Cliques;
+use crate::solver::element_connectivity::ElementConnectivity;
 use rayon::prelude::*;
 
 /// The middles of the edges of a mesh of tetrahedra, numbered after its nodes.
@@ -98,7 +98,7 @@ pub(super) struct WithEdges<'a> {
     /// Of all nodes at rest, in mm.
     pub positions: Vec<Vector>,
     /// The ten nodes of each cell.
-    pub cells: Cliques,
+    pub cells: ElementConnectivity,
 }
 
 impl<'a> WithEdges<'a> {
@@ -106,7 +106,7 @@ impl<'a> WithEdges<'a> {
     pub fn new(mesh: &VolumeMesh, given: &'a [Hold]) -> Self {
         let edges = EdgeNodes::new(mesh);
         let (holds, parents) = edges.holds(mesh, given);
-        let mut cells = Cliques::default();
+        let mut cells = ElementConnectivity::default();
         (0..mesh.cells.len()).for_each(|cell| cells.push(edges.of_cell(mesh, cell)));
         WithEdges { given, holds, parents, positions: edges.positions(mesh), cells, edges }
     }

@@ -43,7 +43,7 @@ pub struct InnerStress {
 
 /// The nodes on which inner stress acts, and what cells are.
 #[derive(Clone, Copy)]
-pub struct Acted<'a> {
+pub struct StressedTissue<'a> {
     pub tissue: &'a Tissue<'a>,
     /// Whether tetrahedra carry pressures.
     pub has_pressures: bool,
@@ -120,11 +120,15 @@ impl InnerStress {
     }
 
     /// Adds -int S0 grad N_a dV to the forces on nodes, in mN.
-    pub fn add_forces(&self, acted: &Acted, forces: &mut [Vector]) -> Result<(), InvertedCell> {
+    pub fn add_forces(
+        &self,
+        acted: &StressedTissue,
+        forces: &mut [Vector],
+    ) -> Result<(), InvertedCell> {
         if self.is_empty() {
             return Ok(());
         }
-        let Acted { tissue, has_pressures, edges } = *acted;
+        let StressedTissue { tissue, has_pressures, edges } = *acted;
         for cell in 0..tissue.mesh.cells.len() {
             let shape = tissue.mesh.cells.shape(cell);
             let carries = has_pressures && carries_pressure(shape, &tissue.tensor(cell));

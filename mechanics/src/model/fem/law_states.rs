@@ -14,7 +14,7 @@ use rayon::prelude::*;
 use super::assembly::Tissue;
 use super::cell_stiffness::Dilatation;
 use crate::material::ElasticTensor;
-use crate::material::hyperelastic::point::{Carried, Point};
+use crate::material::hyperelastic::point::{Point, PressureShare};
 use crate::material::hyperelastic::{Law, NeoHookean};
 use crate::mesh::Vector;
 use crate::model::cell_state::CellState;
@@ -59,13 +59,13 @@ pub fn at_second_order(
 ) -> Vec<Option<CellState>> {
     let state = |cell: usize| {
         let pressure = pressures.get(cell).copied().flatten();
-        of_cell(tissue, inner, cell, &Answered { displacement, pressure })
+        of_cell(tissue, inner, cell, &NodalAnswer { displacement, pressure })
     };
     (0..tissue.mesh.cells.len()).into_par_iter().map(state).collect()
 }
 
 /// Displacements of the nodes in mm, and the mean pressure of a cell in kPa where it has one.
-struct Answered<'a> {
+struct NodalAnswer<'a> {
     displacement: &'a [Vector],
     pressure: Option<f64>,
 }
@@ -74,7 +74,7 @@ fn of_cell(
     tissue: &Tissue,
     inner: &InnerStress,
     cell: usize,
-    &Answered { displacement, pressure }: &Answered,
+    &NodalAnswer { displacement, pressure }: &NodalAnswer,
 ) -> Option<CellState> {
     let (mesh, grown) = (tissue.mesh, inner.grown(cell));
     let (shape, nodes) = (mesh.cells.shape(cell), mesh.cells.nodes(cell));
@@ -97,7 +97,9 @@ fn of_cell(
         points.push((Point::new(&law, None, f).pulled(inner.pulls(cell)), at.volume));
     }
     let carried = match (pressure, (tissue.dilatation)(shape)) {
-        (Some(pressure), _) => Some(Carried { pressure, modulus: tensor.pressure_part().lambda }),
+        (Some(pressure), _) => {
+            Some(PressureShare { pressure, modulus: tensor.pressure_part().lambda })
+        }
         (None, Dilatation::Mean) => Some(of_mean(&points, tensor.split_volume().1.lambda)),
         (None, Dilatation::Pointwise) => None,
     };
@@ -116,8 +118,8 @@ fn of_cell(
 }
 
 /// c times the mean of ln J.
-fn of_mean(points: &[(Point, f64)], modulus: f64) -> Carried {
+fn of_mean(points: &[(Point, f64)], modulus: f64) -> PressureShare {
     let volume: f64 = points.iter().map(|(_, volume)| volume).sum();
     let log: f64 = points.iter().map(|(point, volume)| point.log_volume() * volume).sum();
-    Carried { pressure: modulus * log / volume, modulus }
+    PressureShare { pressure: modulus * log / volume, modulus }
 }

@@ -9,7 +9,7 @@ use super::displacement_pressure::{
 };
 use crate::boundary::Hold;
 use crate::mesh::Vector;
-use crate::model::dofs::{Constrained, Known, Numbering, product_at_holds};
+use crate::model::dofs::{Constrained, DofMap, PrescribedValues, product_at_holds};
 use crate::model::problem::{Equilibrium, LoadCase, ModelError};
 use crate::progress::{Phase, Progress};
 use crate::solver::lanes::Lanes;
@@ -20,7 +20,7 @@ use crate::solver::{Solver, SolverError, System, Tolerance, Unknowns, mixed};
 /// K, for tetrahedra with pressures B and C beside it, and what was made to solve with them.
 pub struct LinearSystem<'a> {
     pub holds: &'a [Hold],
-    pub numbering: Numbering,
+    pub numbering: DofMap,
     /// K; where there are pressures without what they carry.
     pub stiffness: System,
     pub pressures: Option<Pressures>,
@@ -120,7 +120,7 @@ impl<'a> LinearSystem<'a> {
 
     fn of(
         problem: &Problem<'a>,
-        numbering: Numbering,
+        numbering: DofMap,
         stiffness: System,
         pressures: Option<Pressures>,
     ) -> Self {
@@ -164,8 +164,9 @@ impl<'a> LinearSystem<'a> {
         // 1. What is known, and what it leaves to the free unknowns.
         progress.phase(Phase::Solve);
         let (constrained, stiffness) = (self.constrained(), &self.stiffness);
-        let known: Vec<Known> = cases.par_iter().map(|case| constrained.known(case)).collect();
-        let side = |(known, case): (&Known, &LoadCase)| {
+        let known: Vec<PrescribedValues> =
+            cases.par_iter().map(|case| constrained.known(case)).collect();
+        let side = |(known, case): (&PrescribedValues, &LoadCase)| {
             let mut volumes = vec![[0.0]; coupling.mass.len()];
             coupling.divergence.contract(&known.displacement, &mut volumes);
             volumes.iter_mut().for_each(|[volume]| *volume = -*volume);
@@ -180,7 +181,7 @@ impl<'a> LinearSystem<'a> {
         let solutions = mixed::solve(&system, &right_hand_sides, &self.tolerance, progress)?;
 
         // 3. Displacement and reactions, back along the axes of the coordinates.
-        let solved = |(known, mixed): (Known, MixedSolution)| {
+        let solved = |(known, mixed): (PrescribedValues, MixedSolution)| {
             let total = known.total(&mixed.solution.unknowns);
             let internal = self.internal_at_holds(&total, &mixed.pressures);
             let equilibrium = Equilibrium {

@@ -25,7 +25,7 @@ use nalgebra::Matrix3;
 use super::edge_nodes::EdgeNodes;
 use crate::material::{ElasticTensor, PlaneStress};
 use crate::mesh::{Vector, VolumeMesh};
-use crate::model::dofs::{Numbering, add_cell};
+use crate::model::dofs::{DofMap, add_cell};
 use crate::solver::{Block, HalfMatrix};
 
 /// A sheet on faces of the tissue.
@@ -56,7 +56,7 @@ impl Membrane {
     pub(super) fn add_linear(
         &self,
         matrix: &mut HalfMatrix<f64, 3>,
-        numbering: &Numbering,
+        numbering: &DofMap,
         mesh: &VolumeMesh,
     ) {
         for (triangle, nodes) in self.in_space(mesh) {
@@ -69,7 +69,7 @@ impl Membrane {
     pub(super) fn add_quadratic(
         &self,
         matrix: &mut HalfMatrix<f64, 3>,
-        numbering: &Numbering,
+        numbering: &DofMap,
         mesh: &VolumeMesh,
         edges: &EdgeNodes,
     ) {

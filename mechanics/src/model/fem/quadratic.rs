@@ -13,7 +13,7 @@ use super::edge_nodes::{EdgeNodes, WithEdges};
 use crate::element::tetrahedron10;
 use crate::material::ElasticTensor;
 use crate::mesh::Vector;
-use crate::model::dofs::Numbering;
+use crate::model::dofs::DofMap;
 use crate::model::dofs::{Constrained, number};
 use crate::model::problem::InvertedCell;
 use crate::model::problem::{Equilibrium, LoadCase, ModelError};
@@ -65,7 +65,7 @@ pub fn solve_with_edges(
 /// K over all nodes, in kPa mm.
 fn assemble(
     tissue: &Tissue,
-    numbering: &Numbering,
+    numbering: &DofMap,
     edges: &EdgeNodes,
     progress: &dyn Progress,
 ) -> Result<Option<HalfMatrix<f64, 3>>, InvertedCell> {

@@ -6,7 +6,7 @@
 //! places of the others. As |d| >= d . n, the springs cost no more than this step takes them to cost,
 //! so that no step raises the energy: it cannot diverge, and it is slow.
 
-use super::network::{Found, MassSpringSettings, Network, length};
+use super::network::{MassSpringSettings, Network, SpringEquilibrium, length};
 use super::springs::Spring;
 use crate::mesh::Vector;
 use crate::model::problem::ModelError;
@@ -19,8 +19,8 @@ pub(super) fn solve(
     wanted: f64,
     settings: &MassSpringSettings,
     progress: &dyn Progress,
-) -> Result<Found, ModelError> {
-    let around = Around::new(network);
+) -> Result<SpringEquilibrium, ModelError> {
+    let around = NodeSprings::new(network);
     let mut positions = network.start.clone();
     let mut history = Vec::new();
     let mut residual = 1.0;
@@ -46,7 +46,7 @@ pub(super) fn solve(
                 steps: 1,
                 newton: None,
             };
-            return Ok(Found { positions, solver });
+            return Ok(SpringEquilibrium { positions, solver });
         }
     }
     let iterations = settings.most_iterations;
@@ -54,15 +54,15 @@ pub(super) fn solve(
 }
 
 /// The springs of each node, side by side, each seen from that node: a sweep reads them in one stream.
-struct Around(Rows<Spring>);
+struct NodeSprings(Rows<Spring>);
 
-impl Around {
+impl NodeSprings {
     fn new(network: &Network) -> Self {
         let springs = &network.springs.springs;
         let mut lengths = vec![0; network.rest.len()];
         springs.iter().flat_map(|spring| spring.nodes).for_each(|node| lengths[node as usize] += 1);
         let Some(&any) = springs.first() else {
-            return Around(Rows::of_lengths(&lengths, Vec::new()));
+            return NodeSprings(Rows::of_lengths(&lengths, Vec::new()));
         };
         let mut sorting = Sorting::new(&lengths, any);
         for spring in springs {
@@ -70,7 +70,7 @@ impl Around {
             sorting.put(i as usize, *spring);
             sorting.put(j as usize, Spring { nodes: [j, i], ..*spring });
         }
-        Around(sorting.finish())
+        NodeSprings(sorting.finish())
     }
 
     /// Moves every node once; returns the norm of the forces that it met.

@@ -17,7 +17,7 @@ pub use springs::{Spring, Springs};
 use super::problem::{Equilibrium, LoadCase, ModelError};
 use crate::model::fem::displacement::{Problem, check_finite};
 use crate::progress::{Phase, Progress};
-use network::{Found, Network};
+use network::{Network, SpringEquilibrium};
 
 /// Solves a load case for rest.
 pub fn solve(
@@ -31,7 +31,7 @@ pub fn solve(
     progress.phase(Phase::Solve);
     let wanted = problem.tolerance.relative_residual;
     let found = match (network.scale > 0.0, settings.search) {
-        (false, _) => Found::nothing(&network, wanted),
+        (false, _) => SpringEquilibrium::nothing(&network, wanted),
         (true, Search::Newton) => newton::solve(&network, problem, settings, progress)?,
         (true, Search::Direct) => direct::solve(&network, wanted, settings, progress)?,
     };

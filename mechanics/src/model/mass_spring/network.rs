@@ -29,15 +29,15 @@ pub enum Search {
 }
 
 /// Where the nodes came to rest, and how.
-pub(super) struct Found {
+pub(super) struct SpringEquilibrium {
     pub(super) positions: Vec<Vector>,
     pub(super) solver: SolveReport,
 }
 
-impl Found {
+impl SpringEquilibrium {
     pub(super) fn nothing(network: &Network, wanted: f64) -> Self {
         let solver = SolveReport::at_rest(network.unknowns(), wanted);
-        Found { positions: network.start.clone(), solver }
+        SpringEquilibrium { positions: network.start.clone(), solver }
     }
 }
 

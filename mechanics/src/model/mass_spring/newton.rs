@@ -5,8 +5,8 @@
 //! is raised until it is positive definite. a = 1, halved until the energy falls by a part of what the slope
 //! promises (Nocedal, Wright, Numerical Optimization, 2nd ed., 2006, section 3.1).
 
-use super::network::{Found, MassSpringSettings, Network, length};
-use super::springs::Sideways;
+use super::network::{MassSpringSettings, Network, SpringEquilibrium, length};
+use super::springs::GeometricStiffness;
 use crate::mesh::Vector;
 use crate::model::dofs::nodes_of_cells;
 use crate::model::dofs::{Constrained, number};
@@ -35,7 +35,7 @@ pub(super) fn solve(
     problem: &Problem,
     settings: &MassSpringSettings,
     progress: &dyn Progress,
-) -> Result<Found, ModelError> {
+) -> Result<SpringEquilibrium, ModelError> {
     let mesh = problem.tissue.mesh;
     let numbering = number(&nodes_of_cells(mesh), &mesh.nodes, problem.holds);
     let constrained = Constrained { holds: problem.holds, numbering: &numbering };
@@ -94,7 +94,7 @@ impl Newton<'_> {
             self.positions.iter().zip(network.rest).map(|(p, x)| p - x).collect();
         let resistance = network.springs.linear_forces(network.rest, &moved);
         let unbalanced = network.unbalanced(&resistance);
-        let step = self.solve_tangent(network.rest, &unbalanced, Sideways::Exact)?;
+        let step = self.solve_tangent(network.rest, &unbalanced, GeometricStiffness::Exact)?;
         self.take(&step)
     }
 
@@ -132,7 +132,7 @@ impl Newton<'_> {
             unbalanced.iter().zip(direction).map(|(r, d)| r.dot(d)).sum()
         };
         if self.raised_ahead == 0 {
-            match self.solve_tangent(&positions, unbalanced, Sideways::Exact) {
+            match self.solve_tangent(&positions, unbalanced, GeometricStiffness::Exact) {
                 Ok(exact) if slope(&exact) > 0.0 => {
                     self.wait = 1;
                     let slope = slope(&exact);
@@ -149,7 +149,7 @@ impl Newton<'_> {
         }
         self.raised_ahead -= 1;
         self.tally.raised += 1;
-        let raised = self.solve_tangent(&positions, unbalanced, Sideways::Raised)?;
+        let raised = self.solve_tangent(&positions, unbalanced, GeometricStiffness::Raised)?;
         let slope = slope(&raised);
         Ok((raised, slope))
     }
@@ -159,7 +159,7 @@ impl Newton<'_> {
         &mut self,
         positions: &[Vector],
         unbalanced: &[Vector],
-        sideways: Sideways,
+        sideways: GeometricStiffness,
     ) -> Result<Vec<Vector>, SolverError> {
         let Problem { holds, tolerance, .. } = self.problem;
         let matrix = self.network.springs.tangent(positions, sideways, self.constrained.numbering);
@@ -190,7 +190,7 @@ impl Newton<'_> {
         }
     }
 
-    fn found(self) -> Found {
+    fn found(self) -> SpringEquilibrium {
         let Tally { inner, raised, halved } = self.tally;
         let solver = SolveReport {
             method: "newton",
@@ -207,6 +207,6 @@ impl Newton<'_> {
             steps: 1,
             newton: None,
         };
-        Found { positions: self.positions, solver }
+        SpringEquilibrium { positions: self.positions, solver }
     }
 }

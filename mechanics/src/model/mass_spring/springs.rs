@@ -7,7 +7,7 @@
 //! d2W/dp_j dp_j = k [ n n^T + g (I - n n^T) ],  g = 1 - L / l, negative in a spring that is pressed
 
 use crate::mesh::Vector;
-use crate::model::dofs::Numbering;
+use crate::model::dofs::DofMap;
 use crate::model::fem::assembly::Tissue;
 use crate::model::fem::cell_stiffness::tetrahedron;
 use crate::model::problem::InvertedCell;
@@ -31,7 +31,7 @@ pub struct Spring {
 
 /// How the tangent takes springs that are pressed and so push sideways.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Sideways {
+pub(super) enum GeometricStiffness {
     /// As they are: the matrix may be indefinite.
     Exact,
     /// At least `LEAST_SIDEWAYS` of their stiffness: the matrix is positive definite.
@@ -70,12 +70,12 @@ impl Spring {
         n * (self.stiffness * (l - self.length))
     }
 
-    fn tangent(&self, positions: &[Vector], sideways: Sideways) -> Block {
+    fn tangent(&self, positions: &[Vector], sideways: GeometricStiffness) -> Block {
         let (l, n) = self.span(positions);
         let exact = 1.0 - self.length / l.max(NO_LENGTH * self.length);
         let g = match sideways {
-            Sideways::Exact => exact,
-            Sideways::Raised => exact.max(LEAST_SIDEWAYS),
+            GeometricStiffness::Exact => exact,
+            GeometricStiffness::Raised => exact.max(LEAST_SIDEWAYS),
         };
         let (along, across) = (self.stiffness * (1.0 - g), self.stiffness * g);
         std::array::from_fn(|r| {
@@ -162,8 +162,8 @@ impl Springs {
     pub(super) fn tangent(
         &self,
         positions: &[Vector],
-        sideways: Sideways,
-        numbering: &Numbering,
+        sideways: GeometricStiffness,
+        numbering: &DofMap,
     ) -> HalfMatrix<f64, 3> {
         let mut matrix = HalfMatrix::zeros(numbering.pattern.clone());
         for spring in &self.springs {

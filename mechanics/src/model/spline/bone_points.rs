@@ -107,7 +107,7 @@ fn nearest_row(assembly: &Assembly, hold: &Hold) -> Option<Option<usize>> {
     let local = lattice.frame.local(&assembly.tissue.mesh.nodes[hold.node as usize]);
     let place = lattice.place(&local)?;
     let distance = |control: &u32| (lattice.points[*control as usize] - local).norm_squared();
-    let members = lattice.cliques.row(place.span).iter().copied();
+    let members = lattice.connectivity.row(place.span).iter().copied();
     let nearest = members.min_by(|a, b| distance(a).total_cmp(&distance(b)))?;
     Some((hold.count() == 3).then(|| assembly.numbering.row(nearest)))
 }

@@ -11,7 +11,7 @@
 
 use rayon::prelude::*;
 
-use super::lattice::{Lattice, Place};
+use super::lattice::{Lattice, LatticeCoordinates};
 use super::stiffness::Assembly;
 use crate::boundary::Hold;
 use crate::mesh::{Vector, Warning};
@@ -27,7 +27,7 @@ pub struct HeldPoints(Vec<HeldPoint>);
 
 #[derive(Clone)]
 struct HeldPoint {
-    place: Place,
+    place: LatticeCoordinates,
     /// Along the frame, with what each is held at in mm.
     directions: Vec<(Vector, f64)>,
     /// w in mN/mm.
@@ -52,7 +52,7 @@ impl HeldPoints {
                 (lattice.frame.axes.transpose() * axis, hold.values()[k])
             };
             let directions = (0..hold.count()).map(direction).collect();
-            let members = lattice.cliques.row(place.span).iter();
+            let members = lattice.connectivity.row(place.span).iter();
             let diagonals = members.map(|&control| {
                 let block = stiffness.diagonal[assembly.numbering.row(control)];
                 block[0][0].max(block[1][1]).max(block[2][2])
@@ -75,7 +75,8 @@ impl HeldPoints {
 
     /// The springs' stiffness over control points.
     pub fn stiffness(&self, assembly: &Assembly) -> Option<HalfMatrix<f64, 3>> {
-        let mut by_span: Vec<Vec<&HeldPoint>> = vec![Vec::new(); assembly.lattice.cliques.len()];
+        let mut by_span: Vec<Vec<&HeldPoint>> =
+            vec![Vec::new(); assembly.lattice.connectivity.len()];
         self.0.iter().for_each(|point| by_span[point.place.span].push(point));
         let (orders, members) = (assembly.lattice.orders(), assembly.lattice.members());
         assembly.sum_over_spans(&Unobserved, |span| {
@@ -129,8 +130,13 @@ impl HeldPoints {
 }
 
 /// Shares a force at a place out to the control points around it.
-pub fn add_at(assembly: &Assembly, place: &Place, force: &Vector, forces: &mut Unknowns) {
-    let members = assembly.lattice.cliques.row(place.span).iter();
+pub fn add_at(
+    assembly: &Assembly,
+    place: &LatticeCoordinates,
+    force: &Vector,
+    forces: &mut Unknowns,
+) {
+    let members = assembly.lattice.connectivity.row(place.span).iter();
     for (&control, value) in members.zip(place.products(assembly.lattice.orders())) {
         let sum = &mut forces[assembly.numbering.row(control)];
         (0..3).for_each(|k| sum[k] += force[k] * value);

@@ -12,7 +12,7 @@ use nalgebra::Matrix3;
 use super::basis::{Basis, Local};
 use super::tissue_points::TissuePoint;
 use crate::mesh::{Vector, VolumeMesh};
-use crate::solver::cliques::Cliques;
+use crate::solver::element_connectivity::ElementConnectivity;
 
 /// The spacing chosen is this many mean edges of the mesh at least: the points at which tissue is
 /// integrated then fill every span.
@@ -34,7 +34,7 @@ pub struct Frame {
 
 /// Where a point lies: its span by the number among those with tissue, and the functions along each axis.
 #[derive(Clone, Copy, Debug)]
-pub struct Place {
+pub struct LatticeCoordinates {
     pub span: usize,
     pub values: [Local; 3],
     pub gradients: [Local; 3],
@@ -59,7 +59,7 @@ pub struct Lattice {
     /// The key of each span with tissue, ascending.
     spans: Vec<u64>,
     /// The control points of each span, first axis fastest.
-    pub cliques: Cliques,
+    pub connectivity: ElementConnectivity,
     /// Control points at rest, in the frame.
     pub points: Vec<Vector>,
     /// For each the numbers along the axes.
@@ -167,26 +167,37 @@ impl Lattice {
             spans.iter().flat_map(|&span| control_keys(&bases, span)).collect();
         keys.sort_unstable();
         keys.dedup();
-        let mut cliques = Cliques::default();
+        let mut connectivity = ElementConnectivity::default();
         for &span in &spans {
             let number = |key| keys.partition_point(|other| *other < key) as u32;
-            cliques.push(control_keys(&bases, span).map(number));
+            connectivity.push(control_keys(&bases, span).map(number));
         }
         let greville = [0, 1, 2].map(|axis: usize| bases[axis].greville());
         let indices: Vec<[u32; 3]> = keys.iter().map(|&key| unpacked(key)).collect();
         let at = |index: &[u32; 3]| Vector::from_fn(|k, _| greville[k][index[k] as usize]);
-        Lattice { points: indices.iter().map(at).collect(), frame, bases, spans, cliques, indices }
+        Lattice {
+            points: indices.iter().map(at).collect(),
+            frame,
+            bases,
+            spans,
+            connectivity,
+            indices,
+        }
     }
 
     /// Where a point with these coordinates in the frame lies; `None` where no tissue is.
-    pub fn place(&self, local: &Vector) -> Option<Place> {
+    pub fn place(&self, local: &Vector) -> Option<LatticeCoordinates> {
         let key = span_key(&self.bases, local);
         let span = self.spans.binary_search(&key).ok()?;
         let along = unpacked(key);
         let each = |function: fn(&Basis, usize, f64) -> Local| {
             [0, 1, 2].map(|k: usize| function(&self.bases[k], along[k] as usize, local[k]))
         };
-        Some(Place { span, values: each(Basis::values), gradients: each(Basis::gradients) })
+        Some(LatticeCoordinates {
+            span,
+            values: each(Basis::values),
+            gradients: each(Basis::gradients),
+        })
     }
 
     /// The numbers along the axes of a span with tissue.
@@ -205,8 +216,8 @@ impl Lattice {
     }
 
     /// Displacement at a place from those of control points, along the axes of the frame.
-    pub fn displacement(&self, place: &Place, of_control: &[Vector]) -> Vector {
-        let members = self.cliques.row(place.span).iter();
+    pub fn displacement(&self, place: &LatticeCoordinates, of_control: &[Vector]) -> Vector {
+        let members = self.connectivity.row(place.span).iter();
         let values = place.products(self.orders());
         members.zip(values).fold(Vector::zeros(), |sum, (&control, value)| {
             sum + of_control[control as usize] * value
@@ -230,7 +241,7 @@ impl Lattice {
     }
 }
 
-impl Place {
+impl LatticeCoordinates {
     /// N_m(u) N_n(v) N_p(w), first axis fastest.
     pub fn products(&self, [a, b, c]: [usize; 3]) -> impl Iterator<Item = f64> + '_ {
         let [u, v, w] = &self.values;

@@ -13,7 +13,7 @@ pub mod stepping;
 pub mod stiffness;
 pub mod tissue_points;
 
-use super::dofs::Numbering;
+use super::dofs::DofMap;
 use super::problem::{Equilibrium, ModelError};
 use crate::mesh::{Vector, Warning};
 use crate::model::fem::displacement::{Problem, check_finite};
@@ -126,7 +126,7 @@ pub fn solve(
     let lattice = Lattice::fit(mesh, &points, spline.degrees, spline.control);
     check_memory(&lattice, problem)?;
     let nothing_held = vec![false; lattice.points.len()];
-    let numbering = Numbering::of(&lattice.cliques, &lattice.points, &nothing_held);
+    let numbering = DofMap::of(&lattice.connectivity, &lattice.points, &nothing_held);
     let assembly = Assembly::new(&lattice, &numbering, &problem.tissue, &points);
 
     // 2. What holds them together, and what holds the tissue.

@@ -18,10 +18,10 @@
 use rayon::prelude::*;
 
 use super::basis::MOST_DEGREE;
-use super::lattice::{Lattice, Place};
+use super::lattice::{Lattice, LatticeCoordinates};
 use super::tissue_points::TissuePoint;
 use crate::mesh::Vector;
-use crate::model::dofs::Numbering;
+use crate::model::dofs::DofMap;
 use crate::model::fem::assembly::Tissue;
 use crate::model::problem::InvertedCell;
 use crate::progress::Progress;
@@ -46,7 +46,7 @@ const AT_ONCE: usize = 4;
 /// Matrices over control points.
 pub struct Assembly<'a> {
     pub lattice: &'a Lattice,
-    pub numbering: &'a Numbering,
+    pub numbering: &'a DofMap,
     pub tissue: &'a Tissue<'a>,
     /// Of each span, by material.
     points: Rows<Located>,
@@ -66,7 +66,7 @@ struct Gradients([[[f64; MOST_MEMBERS]; 3]; AT_ONCE]);
 impl<'a> Assembly<'a> {
     pub fn new(
         lattice: &'a Lattice,
-        numbering: &'a Numbering,
+        numbering: &'a DofMap,
         tissue: &'a Tissue<'a>,
         points: &[TissuePoint],
     ) -> Self {
@@ -78,7 +78,7 @@ impl<'a> Assembly<'a> {
         };
         let mut points: Vec<Located> = points.par_iter().filter_map(locate).collect();
         points.sort_by_key(|point| (point.span, point.material));
-        let mut lengths = vec![0; lattice.cliques.len()];
+        let mut lengths = vec![0; lattice.connectivity.len()];
         points.iter().for_each(|point| lengths[point.span as usize] += 1);
         Assembly { lattice, numbering, tissue, points: Rows::of_lengths(&lengths, points) }
     }
@@ -87,7 +87,7 @@ impl<'a> Assembly<'a> {
         self.points.row(span)
     }
 
-    fn place(&self, point: &Located) -> Place {
+    fn place(&self, point: &Located) -> LatticeCoordinates {
         self.lattice.place(&point.local).expect("the point was found in its span before")
     }
 
@@ -159,7 +159,7 @@ impl<'a> Assembly<'a> {
         span_matrix: impl Fn(usize) -> Vec<Block> + Sync,
     ) -> Option<HalfMatrix<f64, 3>> {
         let mut matrix = HalfMatrix::zeros(self.numbering.pattern.clone());
-        let spans: Vec<usize> = (0..self.lattice.cliques.len()).collect();
+        let spans: Vec<usize> = (0..self.lattice.connectivity.len()).collect();
         for spans in spans.chunks(SPANS_AT_ONCE) {
             let matrix_of = |span| Ok::<_, InvertedCell>(span_matrix(span));
             let added = self.numbering.add_cells(&mut matrix, spans, progress, matrix_of);
@@ -232,7 +232,7 @@ impl<'a> Assembly<'a> {
 }
 
 impl Gradients {
-    fn set(&mut self, at: usize, place: &Place, orders: [usize; 3]) {
+    fn set(&mut self, at: usize, place: &LatticeCoordinates, orders: [usize; 3]) {
         for (member, gradient) in place.gradients(orders).enumerate() {
             for axis in 0..3 {
                 self.0[at][axis][member] = gradient[axis];

@@ -39,7 +39,7 @@ pub struct Adequate {
 
 /// Progress, and the time in s since some moment.
 #[derive(Clone, Copy)]
-pub struct Watched<'a> {
+pub struct TimedProgress<'a> {
     pub stopwatch: &'a dyn Fn() -> f64,
     pub progress: &'a dyn Progress,
 }
@@ -51,7 +51,7 @@ pub fn predict_adequately(
     plan: &Plan,
     linear: &Scene,
     accepted: &Accepted,
-    watched: Watched,
+    watched: TimedProgress,
 ) -> Result<Adequate, ModelError> {
     let mut climb = Climb {
         scene: linear,
@@ -78,7 +78,7 @@ struct Answers {
 struct Climb<'a> {
     scene: &'a Scene,
     accepted: &'a Accepted,
-    watched: Watched<'a>,
+    watched: TimedProgress<'a>,
     begun: f64,
     /// What the linear answer took, with its estimates.
     linear_s: f64,
@@ -101,7 +101,7 @@ enum Failure {
 impl Climb<'_> {
     fn run(&mut self, case: &Case, plan: &Plan) -> Result<Adequate, ModelError> {
         // 1. The linear answer, and what it tells of itself.
-        let Watched { progress, .. } = self.watched;
+        let TimedProgress { progress, .. } = self.watched;
         let solved = answer::linear(self.scene, progress)?;
         let known = match &solved {
             Linear::Solved(known) => Some(&**known),

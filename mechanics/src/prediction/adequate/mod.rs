@@ -15,6 +15,6 @@ mod duration;
 mod rung;
 
 pub use accepted::{Accepted, MeanErrors, USUALLY_ACCEPTED_MM};
-pub use climb::{Adequate, Watched, predict_adequately};
+pub use climb::{Adequate, TimedProgress, predict_adequately};
 pub use duration::{NEWTON_MAY_TAKE, SECOND_ORDER_TAKES};
 pub use rung::{Considered, Errors, Rung};

@@ -1,6 +1,6 @@
 //! Groups of neighbouring rows.
 
-use super::ties::Ties;
+use super::strength_of_connection::StrengthOfConnection;
 
 /// Not in a group yet.
 const NONE: u32 = u32::MAX;
@@ -8,7 +8,7 @@ const NONE: u32 = u32::MAX;
 /// For each row its group: grown from the lowest free row over its neighbours up to `size` rows.
 /// A group of less than a quarter of that joins the neighbour it is tied to most. Groups are numbered in the
 /// order of their lowest rows.
-pub(super) fn aggregate(ties: &Ties, size: usize) -> (Vec<u32>, usize) {
+pub(super) fn aggregate(ties: &StrengthOfConnection, size: usize) -> (Vec<u32>, usize) {
     let mut group = vec![NONE; ties.rows()];
     let mut sizes: Vec<usize> = Vec::new();
     let mut members: Vec<usize> = Vec::with_capacity(size);
@@ -43,7 +43,12 @@ pub(super) fn aggregate(ties: &Ties, size: usize) -> (Vec<u32>, usize) {
 }
 
 /// The group to which the members are tied most; `None` where they have no neighbour in another group.
-fn strongest_neighbour(ties: &Ties, members: &[usize], group: &[u32], own: u32) -> Option<u32> {
+fn strongest_neighbour(
+    ties: &StrengthOfConnection,
+    members: &[usize],
+    group: &[u32],
+    own: u32,
+) -> Option<u32> {
     let mut sums: Vec<(u32, f32)> = Vec::new();
     for &row in members {
         for (column, tie) in ties.of(row) {

@@ -12,7 +12,7 @@ use nalgebra::{Matrix6, Vector3};
 use rayon::prelude::*;
 
 use super::prolongator::{Weight, Weights};
-use crate::solver::cliques::{Cliques, renumbered};
+use crate::solver::element_connectivity::{ElementConnectivity, renumbered};
 use crate::solver::half_matrix::{HalfMatrix, Pattern};
 use crate::solver::layout::Layout;
 use crate::solver::vectorised::vectorised;
@@ -21,7 +21,7 @@ use crate::solver::vectorised::vectorised;
 const ROOM: usize = 16;
 
 /// B rows of six movements.
-pub(super) type Wide<const B: usize> = [[f64; 6]; B];
+pub(super) type RigidRows<const B: usize> = [[f64; 6]; B];
 
 /// For each aggregate the aggregates it meets, and a block for each.
 struct Accumulator {
@@ -87,14 +87,14 @@ where
     ranges.push(layout.separator());
     let sums: Vec<Accumulator> =
         ranges.into_par_iter().map(|rows| accumulate(fine, rows, weights)).collect();
-    let mut pairs = Cliques::default();
+    let mut pairs = ElementConnectivity::default();
     for (aggregate, partner, _) in sums.iter().flat_map(Accumulator::entries) {
         pairs.push([aggregate as u32, partner]);
     }
     let aggregates = weights.aggregates;
     let around = pairs.inverted(aggregates);
     let layout = Layout::new(&pairs, &around, &vec![false; aggregates], 6, 0);
-    let renumbered = renumbered(&pairs, &layout.clique_order, &layout.place);
+    let renumbered = renumbered(&pairs, &layout.element_order, &layout.place);
     let around = renumbered.inverted(aggregates);
     let pattern = Arc::new(Pattern::new(&renumbered, &around, aggregates));
     let mut coarse = HalfMatrix::zeros(pattern);
@@ -137,7 +137,7 @@ where
     F: Fn(usize, usize, &[[f64; B]; B]) -> [[f64; B]; B],
 {
     let mut sums = Accumulator::new(weights.aggregates);
-    let mut products: Vec<(u32, Wide<B>)> = Vec::new();
+    let mut products: Vec<(u32, RigidRows<B>)> = Vec::new();
     vectorised(
         #[inline(always)]
         || {
@@ -168,7 +168,7 @@ where
 /// displacement and, on coarse levels, on rotation.
 #[inline(always)]
 fn add_product<const B: usize>(
-    products: &mut Vec<(u32, Wide<B>)>,
+    products: &mut Vec<(u32, RigidRows<B>)>,
     block: &[[f64; B]; B],
     arm: &Vector3<f64>,
     weights: &[Weight],
@@ -194,7 +194,7 @@ fn add_product<const B: usize>(
 }
 
 #[inline(always)]
-fn add_scaled<const B: usize>(sum: &mut Wide<B>, factor: f64, values: &Wide<B>) {
+fn add_scaled<const B: usize>(sum: &mut RigidRows<B>, factor: f64, values: &RigidRows<B>) {
     for (sum, values) in sum.iter_mut().zip(values) {
         for k in 0..6 {
             sum[k] += factor * values[k];
@@ -204,7 +204,7 @@ fn add_scaled<const B: usize>(sum: &mut Wide<B>, factor: f64, values: &Wide<B>) 
 
 /// T^T product.
 #[inline(always)]
-fn transposed_product<const B: usize>(arm: &Vector3<f64>, product: &Wide<B>) -> [[f64; 6]; 6] {
+fn transposed_product<const B: usize>(arm: &Vector3<f64>, product: &RigidRows<B>) -> [[f64; 6]; 6] {
     let mut block = [[0.0; 6]; 6];
     for c in 0..3 {
         let (a, b) = ((c + 1) % 3, (c + 2) % 3);

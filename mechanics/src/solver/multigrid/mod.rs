@@ -14,7 +14,7 @@ mod galerkin;
 mod inverse;
 mod prolongator;
 mod smoother;
-mod ties;
+mod strength_of_connection;
 
 use std::sync::Arc;
 
@@ -25,7 +25,7 @@ use galerkin::{Coarse, Fine, galerkin};
 use inverse::{DenseInverse, inverse_block};
 use prolongator::{Prolongator, Weights};
 use smoother::Smoother;
-use ties::Ties;
+use strength_of_connection::StrengthOfConnection;
 
 use super::lanes::Lanes;
 use super::vector::{norm, ratio};
@@ -50,11 +50,11 @@ const MOST_DENSE_ROWS: usize = 500;
 pub struct Multigrid {
     finest: Smoother<3>,
     partly_held: Vec<PartlyHeld>,
-    below: Below,
+    below: CoarseLevels,
 }
 
 /// All that lies below the finest level.
-struct Below {
+struct CoarseLevels {
     /// From the finest to the first coarse level.
     first: Prolongator,
     levels: Vec<CoarseLevel>,
@@ -116,27 +116,27 @@ impl<const N: usize> CoarseWorkspace<N> {
 impl Multigrid {
     /// Builds the hierarchy, unless it is stopped.
     pub fn new(system: &System, progress: &dyn Progress) -> Result<Self, SolverError> {
-        let special = Special::new(system);
+        let special = SpecialRows::new(system);
         let mask = |row: usize, column: usize, block: &mut [[f64; 3]; 3]| {
             special.mask(row, column, block);
         };
         let (finest, below) = rayon::join(
             || Smoother::new(&system.matrix, system.layout.clone(), mask),
-            || Below::new(system, &special, progress),
+            || CoarseLevels::new(system, &special, progress),
         );
         let partly_held = system.partly_held.clone();
         Ok(Multigrid { finest, partly_held, below: below? })
     }
 
     pub fn megabytes(&self) -> f64 {
-        let Below { first, levels, .. } = &self.below;
+        let CoarseLevels { first, levels, .. } = &self.below;
         let coarse = levels.iter().map(|l| l.smoother.megabytes() + l.below.megabytes());
         self.finest.megabytes() + first.megabytes() + coarse.sum::<f64>()
     }
 
     pub fn workspace<const N: usize>(&self) -> Workspace<N> {
         let zeros = || vec![[[0.0; N]; 3]; self.finest.rows()];
-        let Below { first, levels, coarsest_rows, .. } = &self.below;
+        let CoarseLevels { first, levels, coarsest_rows, .. } = &self.below;
         let rows = levels.iter().map(|level| level.smoother.rows());
         let above = [first].into_iter().chain(levels.iter().map(|level| &level.below));
         let coarse = above
@@ -179,16 +179,17 @@ impl Multigrid {
     }
 }
 
-impl Below {
+impl CoarseLevels {
     fn new(
         system: &System,
-        special: &Special,
+        special: &SpecialRows,
         progress: &dyn Progress,
     ) -> Result<Self, SolverError> {
         let free = &system.positions[..system.layout.free];
         let origin = mean(free);
         go_on(progress)?;
-        let ties = Ties::new(&system.matrix, &system.layout, |row| special.axes(row));
+        let ties =
+            StrengthOfConnection::new(&system.matrix, &system.layout, |row| special.axes(row));
         go_on(progress)?;
         let weights = Weights::new(&ties, free, FIRST_AGGREGATE);
         go_on(progress)?;
@@ -221,7 +222,7 @@ impl Below {
             true => Coarsest::Whole(dense(&current.matrix)),
             false => Coarsest::ByRow(current.matrix.diagonal.iter().map(inverse_block).collect()),
         };
-        Ok(Below { first, levels, coarsest, coarsest_rows })
+        Ok(CoarseLevels { first, levels, coarsest, coarsest_rows })
     }
 
     fn descend<const N: usize>(&self, depth: usize, workspace: &mut [CoarseWorkspace<N>]) {
@@ -254,7 +255,7 @@ fn coarsen(
     centres: &[Vector3<f64>],
     origin: &Vector3<f64>,
 ) -> Option<(Weights, Coarse)> {
-    let ties = Ties::new(&current.matrix, &current.layout, |_| None);
+    let ties = StrengthOfConnection::new(&current.matrix, &current.layout, |_| None);
     let weights = Weights::new(&ties, centres, LATER_AGGREGATE);
     if weights.aggregates >= current.matrix.rows() {
         return None;
@@ -301,19 +302,19 @@ fn dense(matrix: &super::HalfMatrix<f64, 6>) -> DenseInverse {
 }
 
 /// The few rows that are partly held or have axes of their own.
-struct Special<'a> {
+struct SpecialRows<'a> {
     rows: &'a [PartlyHeld],
     /// For each free row its entry in `rows`, or `u32::MAX`.
     of_row: Vec<u32>,
 }
 
-impl<'a> Special<'a> {
+impl<'a> SpecialRows<'a> {
     fn new(system: &'a System) -> Self {
         let mut of_row = vec![u32::MAX; system.matrix.rows()];
         for (index, partly) in system.partly_held.iter().enumerate() {
             of_row[partly.row] = index as u32;
         }
-        Special { rows: &system.partly_held, of_row }
+        SpecialRows { rows: &system.partly_held, of_row }
     }
 
     fn of(&self, row: usize) -> Option<&'a PartlyHeld> {

@@ -11,7 +11,7 @@ use rayon::prelude::*;
 
 use super::aggregation::aggregate;
 use super::smoother::Vector;
-use super::ties::Ties;
+use super::strength_of_connection::StrengthOfConnection;
 use crate::rows::Rows;
 use crate::solver::lanes::Lanes;
 use crate::solver::layout::Layout;
@@ -52,7 +52,7 @@ pub(super) struct Weights {
 impl Weights {
     /// w = (I - omega D^-1 L) w_0, with w_0 one on the row's own aggregate and ties to held rows kept in
     /// D, which draw weights to zero there.
-    pub fn new(ties: &Ties, positions: &[Vector3<f64>], size: usize) -> Self {
+    pub fn new(ties: &StrengthOfConnection, positions: &[Vector3<f64>], size: usize) -> Self {
         let (group, aggregates) = aggregate(ties, size);
         let chunks: Vec<Rows<Weight>> = (0..ties.rows().div_ceil(CHUNK))
             .into_par_iter()
@@ -105,7 +105,7 @@ fn centres(group: &[u32], count: usize, positions: &[Vector3<f64>]) -> Vec<Vecto
     sums.into_iter().map(|(sum, members)| sum / members).collect()
 }
 
-fn smooth(row: usize, group: &[u32], ties: &Ties, weights: &mut Vec<Weight>) {
+fn smooth(row: usize, group: &[u32], ties: &StrengthOfConnection, weights: &mut Vec<Weight>) {
     weights.clear();
     weights.push(Weight { partner: group[row], weight: 0.0 });
     let mut sum = ties.held[row];

@@ -18,7 +18,7 @@ pub(super) const FINER: &str = "linear finite elements, quadratic, every edge ha
 pub(super) const FINER_OF_ITS_STRAIN: &str = "linear finite elements, quadratic, every edge halved; for methods of finite \
     strain nonlinear ones, stabilised, on the same mesh";
 
-pub(super) type Found = Result<Option<Probe>, Refusal>;
+pub(super) type ProbeOutcome = Result<Option<Probe>, Refusal>;
 
 pub(super) fn values(list: &[(f64, &str)]) -> Vec<(f64, String)> {
     list.iter().map(|(value, words)| (*value, (*words).to_owned())).collect()
@@ -49,7 +49,7 @@ pub(crate) fn material(
     })
 }
 
-pub(super) fn found(case: Case, plan: Plan, variant: &Variant) -> Found {
+pub(super) fn found(case: Case, plan: Plan, variant: &Variant) -> ProbeOutcome {
     Ok(Some(Probe { case, plan, settings: variant.settings.clone() }))
 }
 

@@ -30,8 +30,9 @@ fn sweep(axis: &Axis, variants: &[Variant], bounds: &Bounds) -> AxisMap {
     let is_finite = |variant: &Variant| variant.settings.method.properties().laws != Laws::AtRest;
     let finite_truth = axis.finite_truth.filter(|_| variants.iter().any(is_finite));
     for (value, _) in &axis.values {
-        let truth = Known::of((axis.truth)(*value), &mut first);
-        let finite = finite_truth.map(|truth| Known::of(truth(*value), &mut first_finite));
+        let truth = ReferenceAnswer::of((axis.truth)(*value), &mut first);
+        let finite =
+            finite_truth.map(|truth| ReferenceAnswer::of(truth(*value), &mut first_finite));
         for (row, variant) in findings.iter_mut().zip(variants) {
             let truth = if is_finite(variant) { finite.as_ref() } else { Some(&truth) };
             row.push(truth.and_then(|truth| match (axis.probe)(*value, variant) {
@@ -54,33 +55,36 @@ fn sweep(axis: &Axis, variants: &[Variant], bounds: &Bounds) -> AxisMap {
 }
 
 /// Displacement by place.
-type Places = Rc<BTreeMap<[i64; 3], Vector>>;
+type DisplacementByPosition = Rc<BTreeMap<[i64; 3], Vector>>;
 
 /// The right answer, solved where it had to be.
-enum Known {
+enum ReferenceAnswer {
     Formula(Box<dyn Fn(&Vector) -> Vector + Send + Sync>),
-    Solved { answer: Places, times: f64 },
+    Solved { answer: DisplacementByPosition, times: f64 },
     Impossible,
 }
 
-impl Known {
+impl ReferenceAnswer {
     /// `first` keeps what was solved for the first value of an axis.
-    fn of(truth: Truth, first: &mut Option<Places>) -> Self {
+    fn of(truth: Truth, first: &mut Option<DisplacementByPosition>) -> Self {
         let (answer, times) = match truth {
-            Truth::Formula(formula) => return Known::Formula(formula),
-            Truth::Impossible => return Known::Impossible,
+            Truth::Formula(formula) => return ReferenceAnswer::Formula(formula),
+            Truth::Impossible => return ReferenceAnswer::Impossible,
             Truth::First { times } => (first.clone(), times),
             Truth::Solved(probe) => (solve(&probe), 1.0),
         };
         first.clone_from(&answer);
-        answer.map_or(Known::Impossible, |answer| Known::Solved { answer, times })
+        answer
+            .map_or(ReferenceAnswer::Impossible, |answer| ReferenceAnswer::Solved { answer, times })
     }
 
     fn at(&self, point: &Vector) -> Option<Vector> {
         match self {
-            Known::Formula(formula) => Some(formula(point)),
-            Known::Solved { answer, times } => answer.get(&place(point)).map(|u| u * *times),
-            Known::Impossible => None,
+            ReferenceAnswer::Formula(formula) => Some(formula(point)),
+            ReferenceAnswer::Solved { answer, times } => {
+                answer.get(&place(point)).map(|u| u * *times)
+            }
+            ReferenceAnswer::Impossible => None,
         }
     }
 }
@@ -89,13 +93,13 @@ fn place(point: &Vector) -> [i64; 3] {
     [point.x, point.y, point.z].map(|c| (c / APART).round() as i64)
 }
 
-fn solve(probe: &Probe) -> Option<Places> {
+fn solve(probe: &Probe) -> Option<DisplacementByPosition> {
     let scene = Scene::new(&probe.case, &probe.plan, &probe.settings).ok()?;
     let answer = predict(&scene, &Unobserved).ok()?;
     Some(Rc::new(probe.case.volume.nodes.iter().map(place).zip(answer.displacement).collect()))
 }
 
-fn judged(probe: &Probe, truth: &Known, bound_mm: f64, bounds: &Bounds) -> Finding {
+fn judged(probe: &Probe, truth: &ReferenceAnswer, bound_mm: f64, bounds: &Bounds) -> Finding {
     let scene = match Scene::new(&probe.case, &probe.plan, &probe.settings) {
         Ok(scene) => scene,
         Err(errors) => {
@@ -117,7 +121,12 @@ fn judged(probe: &Probe, truth: &Known, bound_mm: f64, bounds: &Bounds) -> Findi
     }
 }
 
-fn answered(scene: &Scene, prediction: Prediction, truth: &Known, bound_mm: f64) -> Finding {
+fn answered(
+    scene: &Scene,
+    prediction: Prediction,
+    truth: &ReferenceAnswer,
+    bound_mm: f64,
+) -> Finding {
     let answer = measured(scene, prediction, truth);
     // An error that is not a number is beyond any bound.
     let within = answer.error_mm.is_some_and(|error| error <= bound_mm);
@@ -130,7 +139,7 @@ fn answered(scene: &Scene, prediction: Prediction, truth: &Known, bound_mm: f64)
     Finding { verdict, answer: Some(answer), refusal: None }
 }
 
-fn measured(scene: &Scene, prediction: Prediction, truth: &Known) -> Answer {
+fn measured(scene: &Scene, prediction: Prediction, truth: &ReferenceAnswer) -> Answer {
     let nodes = scene.skin.nodes().iter();
     let errors: Option<Vec<f64>> = nodes
         .map(|&node| {

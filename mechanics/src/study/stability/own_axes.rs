@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::axis::{
-    FINER, Found, RING, TENTH_OF_MOVEMENT, finer, found, moved, numbers, usual_case, values,
+    FINER, ProbeOutcome, RING, TENTH_OF_MOVEMENT, finer, found, moved, numbers, usual_case, values,
 };
 use super::scenes::{LEVELS, POISSON_RATIO, YOUNG_MODULUS, jaw, shape_for, shift, with_region};
 use super::{Axis, Probe, Refusal, Truth, Variant};
@@ -53,7 +53,7 @@ fn fibre_ratio_of_paper() -> Axis {
     }
 }
 
-fn fibred_probe(ratio: f64, law: FibreLaw, variant: &Variant) -> Found {
+fn fibred_probe(ratio: f64, law: FibreLaw, variant: &Variant) -> ProbeOutcome {
     if !variant.settings.method.properties().knows_fibres {
         return Ok(None);
     }
@@ -124,7 +124,7 @@ fn explicit_time_step() -> Axis {
 }
 
 /// None for what is no spline of the tissue's own elasticity.
-fn stepped(step: f64, scheme: Scheme, variant: &Variant) -> Found {
+fn stepped(step: f64, scheme: Scheme, variant: &Variant) -> ProbeOutcome {
     let is_galerkin = matches!(
         &variant.settings.method,
         Method::VolumeSpline(spline) if spline.stiffness == Stiffness::Galerkin

@@ -7,7 +7,7 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use flate2::Compression;
 use flate2::write::ZlibEncoder;
-use mechanics::format::{FormatError, Member, MeshFormat, Place, ReadLimits, read};
+use mechanics::format::{FilePosition, FormatError, Member, MeshFormat, ReadLimits, read};
 
 use crate::samples::{
     GMSH_2, GMSH_4, OBJ, PLY, STL, TETRAHEDRON, TRIANGLE, VTK, ascii_vtu, binary_stl, code_of,
@@ -71,7 +71,7 @@ fn text_that_ends_early_is_refused_with_its_line() {
     let FormatError::Parse { place, .. } = &error else {
         panic!("{error}");
     };
-    assert_eq!(*place, Place::Line(6));
+    assert_eq!(*place, FilePosition::Line(6));
     assert!(error.members().contains(&("line", Member::Count(6))));
 }
 

@@ -1,6 +1,6 @@
 //! NRRD: what is read, where it stands, and what is refused at which line.
 
-use mechanics::format::{FormatError, Mesh, Place, ReadLimits, ReadMesh, nrrd, read};
+use mechanics::format::{FilePosition, FormatError, Mesh, ReadLimits, ReadMesh, nrrd, read};
 use mechanics::image::{ImageVolume, Voxels};
 use mechanics::mesh::{Frame, Vector};
 
@@ -241,7 +241,7 @@ fn voxels_that_are_missing_or_too_many_are_counted() {
     assert!(error_of(&file(&gzipped, &long)).ends_with("48 bytes declared, more are there"));
     let whole = gzip(&voxel_bytes());
     let error = read(&file(&gzipped, &whole[..whole.len() / 2]), &ReadLimits::default());
-    let place = Place::Offset(data - 1);
+    let place = FilePosition::Offset(data - 1);
     assert!(matches!(error, Err(FormatError::Parse { place: at, .. }) if at == place), "{error:?}");
 }
 

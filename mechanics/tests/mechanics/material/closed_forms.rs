@@ -3,7 +3,7 @@
 //! (docs/verification.md#printed-values), and what every law has to leave alone.
 
 use mechanics::material::LinearElastic;
-use mechanics::material::hyperelastic::point::{Along, Point};
+use mechanics::material::hyperelastic::point::{FibreAtPoint, Point};
 use mechanics::material::hyperelastic::{
     Fibres, Fung, Law, MooneyRivlin, NeoHookean, NeoHookeanIsochoric, Ogden, OgdenTerm,
     PolyconvexBarrier, RubinBodner, SaintVenantKirchhoff, VerondaWestmann, Volumetric,
@@ -101,7 +101,7 @@ fn incompressible_tissue_is_pulled_stretched_and_sheared_as_printed() {
 fn incompressible_tissue_with_fibres_is_pulled_along_and_across_as_printed() {
     let law = Law::NeoHookeanIsochoric(NeoHookeanIsochoric { mu: 5.0, volumetric: BULK });
     let fibres = Fibres { k1: 3.0, k2: 2.0 };
-    let along = Some(Along { law: &fibres, direction: Vector3::x() });
+    let along = Some(FibreAtPoint { law: &fibres, direction: Vector3::x() });
     let at = |f: Matrix3<f64>| Point::new(&law, along, f).stress();
     for (stretch, printed) in [(0.8, -3812.5), (1.1, 2881.567), (1.3, 17488.359), (1.5, 261_326.6)]
     {
@@ -197,7 +197,7 @@ fn turning_costs_no_energy_and_turns_the_stress() {
     let turn = Rotation3::from_axis_angle(&axis, 37_f64.to_radians()).into_inner();
     for row in rows() {
         let fibres = Fibres { k1: 3.0, k2: 2.0 };
-        let along = row.fibres.map(|direction| Along { law: &fibres, direction });
+        let along = row.fibres.map(|direction| FibreAtPoint { law: &fibres, direction });
         let [at, turned] = [f, turn * f].map(|f| Point::new(&row.law, along, f));
         assert!((at.energy() - turned.energy()).abs() < 1e-12 * at.energy(), "{}", row.name);
         let apart = (turn * at.stress() - turned.stress()).amax();

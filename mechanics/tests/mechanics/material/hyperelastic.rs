@@ -1,6 +1,6 @@
 //! Hyperelastic laws: printed values (docs/verification.md#printed-values), derivatives against differences, rest and turning.
 
-use mechanics::material::hyperelastic::point::{Along, Point};
+use mechanics::material::hyperelastic::point::{FibreAtPoint, Point};
 use mechanics::material::hyperelastic::{
     Fibres, Fung, Law, MooneyRivlin, NeoHookean, NeoHookeanIsochoric, Ogden, OgdenTerm,
     PolyconvexBarrier, SaintVenantKirchhoff, VerondaWestmann, Volumetric,
@@ -89,7 +89,7 @@ pub fn rows() -> Vec<Row> {
 }
 
 fn point(row: &Row, direction: Option<Vector3<f64>>, f: Matrix3<f64>) -> Point {
-    Point::new(&row.law, direction.map(|direction| Along { law: &FIBRES, direction }), f)
+    Point::new(&row.law, direction.map(|direction| FibreAtPoint { law: &FIBRES, direction }), f)
 }
 
 fn sample() -> Matrix3<f64> {

@@ -2,7 +2,7 @@
 
 use mechanics::boundary::NodeSelection;
 use mechanics::material::LinearElastic;
-use mechanics::material::hyperelastic::point::{Along, Point};
+use mechanics::material::hyperelastic::point::{FibreAtPoint, Point};
 use mechanics::material::hyperelastic::{Fung, Law, Volumetric};
 use mechanics::mesh::sample::block;
 use mechanics::mesh::{CellShape, Vector};
@@ -144,7 +144,7 @@ fn fibres_stiffen_the_region_that_has_them_and_only_along() {
     assert!(oblique > 1.02 * without, "{oblique} {without}");
     let point = Point::new(
         &plain().law,
-        Some(Along { law: &FIBRES, direction }),
+        Some(FibreAtPoint { law: &FIBRES, direction }),
         Matrix3::from_diagonal(&Vector::new(1.2, 1.0, 1.0)),
     );
     assert!(point.energy() > 0.0);

@@ -9,7 +9,7 @@ use mechanics::model::fem::assembly::Tissue;
 use mechanics::model::fem::cell_stiffness::Dilatation;
 use mechanics::model::fem::displacement::Problem;
 use mechanics::model::fem::finite_strain::{Elements, FibreField, FiniteStrain};
-use mechanics::model::fem::force_series::{ForceSeries, Forces, Moved};
+use mechanics::model::fem::force_series::{ForceSeries, Forces, LinearState};
 use mechanics::model::fem::inner_stress::InnerStress;
 use mechanics::model::fem::membrane::Membrane;
 use mechanics::model::problem::LoadCase;
@@ -41,8 +41,8 @@ fn series(tissue: Tissue<'_>) -> ForceSeries<'_> {
     ForceSeries::new(tissue, None)
 }
 
-fn moved(displacement: &[Vector]) -> Moved<'_> {
-    Moved { displacement, pressures: &[] }
+fn moved(displacement: &[Vector]) -> LinearState<'_> {
+    LinearState { displacement, pressures: &[] }
 }
 
 fn largest(forces: &[Vector]) -> f64 {
@@ -213,7 +213,7 @@ fn pressures_give_the_forces_of_plain_cells_where_the_gradient_is_one() {
         pressure_count: mesh.nodes.len(),
         inner: InnerStress::default(),
     };
-    let state = Moved { displacement: &u, pressures: &pressures };
+    let state = LinearState { displacement: &u, pressures: &pressures };
     let Forces { nodes, volumes } = mixed.second(&[state], &[[0, 0]]).unwrap().remove(0);
     // The volume that is left over raises the pressure by p2 = lambda times it, which acts as B^T p2.
     let second_pressure = materials[0].lambda() * -0.5 * (gradient * gradient).trace();

@@ -2,7 +2,7 @@
 
 use mechanics::mesh::sample::block;
 use mechanics::mesh::{CellShape, Vector, VolumeMesh};
-use mechanics::model::dofs::Numbering;
+use mechanics::model::dofs::DofMap;
 use mechanics::model::fem::assembly::Tissue;
 use mechanics::model::fem::cell_stiffness::Dilatation;
 use mechanics::model::fem::mass_tensor::{Iterations, MassTensorSettings};
@@ -245,7 +245,7 @@ fn the_tensors_are_the_blocks_of_the_stiffness_matrix() {
     let materials: Vec<_> = (0..20).map(|region| case.materials[&region.to_string()]).collect();
     let of_cell: Vec<u16> = mesh.cell_labels["patch"].iter().map(|&label| label as u16).collect();
     let tissue = Tissue::isotropic(mesh, &materials, &of_cell, |_| Dilatation::Pointwise);
-    let numbering = Numbering::new(mesh, &vec![false; mesh.nodes.len()]);
+    let numbering = DofMap::new(mesh, &vec![false; mesh.nodes.len()]);
     let mut assembled = tissue.assemble(&numbering, &Unobserved).unwrap().unwrap();
     let mut sums = std::collections::BTreeMap::new();
     for cell in 0..mesh.cells.len() {

@@ -7,7 +7,7 @@ use mechanics::model::spline::stepping::{Clock, Damping, Motion, Scheme};
 use mechanics::model::spline::{Stiffness, VolumeSpline};
 use mechanics::prediction::{ModelError, Scene, Settings, SolverError, predict};
 use mechanics::progress::Unobserved;
-use mechanics::solver::cliques::Cliques;
+use mechanics::solver::element_connectivity::ElementConnectivity;
 use mechanics::solver::half_matrix::{HalfMatrix, Pattern};
 use mechanics::solver::layout::Layout;
 use mechanics::solver::{System, Unknowns};
@@ -43,13 +43,13 @@ fn time_arrives_at_the_static_limit_whatever_mass_and_damping_are() {
 
 /// A row of three equal unknowns: k in mN/mm, m in mg.
 fn single(value: f64) -> System {
-    let mut cliques = Cliques::default();
-    cliques.push([0]);
-    let around = cliques.inverted(1);
-    let mut matrix = HalfMatrix::zeros(Arc::new(Pattern::new(&cliques, &around, 1)));
+    let mut connectivity = ElementConnectivity::default();
+    connectivity.push([0]);
+    let around = connectivity.inverted(1);
+    let mut matrix = HalfMatrix::zeros(Arc::new(Pattern::new(&connectivity, &around, 1)));
     (0..3).for_each(|k| matrix.diagonal[0][k][k] = value);
     System {
-        layout: Arc::new(Layout::new(&cliques, &around, &[false], 3, 0)),
+        layout: Arc::new(Layout::new(&connectivity, &around, &[false], 3, 0)),
         matrix,
         partly_held: Vec::new(),
         positions: vec![Vector::zeros()],

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use mechanics::mesh::half_head::half_head;
 use mechanics::mesh::{CellShape, Vector, VolumeMesh, sample};
-use mechanics::model::dofs::Numbering;
+use mechanics::model::dofs::DofMap;
 use mechanics::model::fem::assembly::Tissue;
 use mechanics::model::fem::cell_stiffness::Dilatation;
 use mechanics::model::spline::lattice::Lattice;
@@ -45,7 +45,7 @@ pub fn largest_difference(a: &[Vector], b: &[Vector]) -> f64 {
 fn galerkin(
     mesh: &VolumeMesh,
     spacing: f64,
-    check: impl FnOnce(&Lattice, &Numbering, &HalfMatrix<f64, 3>),
+    check: impl FnOnce(&Lattice, &DofMap, &HalfMatrix<f64, 3>),
 ) {
     let materials = [material(15.0, 0.3)];
     let material_of_cell = vec![0; mesh.cells.len()];
@@ -54,14 +54,14 @@ fn galerkin(
     let points = tissue_points(mesh).unwrap();
     let lattice = Lattice::fit(mesh, &points, [3; 3], ControlPoints::Spaced(spacing));
     let free = vec![false; lattice.points.len()];
-    let numbering = Numbering::of(&lattice.cliques, &lattice.points, &free);
+    let numbering = DofMap::of(&lattice.connectivity, &lattice.points, &free);
     let assembly = Assembly::new(&lattice, &numbering, &tissue, &points);
     let stiffness = assembly.galerkin(&Unobserved).unwrap();
     check(&lattice, &numbering, &stiffness);
 }
 
 /// K d for displacements of control points.
-fn forces(numbering: &Numbering, k: &HalfMatrix<f64, 3>, d: &[Vector]) -> Vec<Vector> {
+fn forces(numbering: &DofMap, k: &HalfMatrix<f64, 3>, d: &[Vector]) -> Vec<Vector> {
     let by_row: Vec<_> = numbering.by_row(d).iter().map(|d| [[d.x], [d.y], [d.z]]).collect();
     let mut product = by_row.clone();
     k.multiply(&numbering.layout, &by_row, &mut product);

@@ -7,8 +7,8 @@ use mechanics::mesh::Vector;
 use mechanics::mesh::refinement::refine;
 use mechanics::mesh::sample::block;
 use mechanics::prediction::{
-    Activation, Adapted, Case, ElementChoice, Muscle, MuscleCourse, Plan, Scene, Settings, Stop,
-    Wanted, predict, predict_adaptively,
+    Activation, AdaptivePrediction, Case, ElementChoice, Muscle, MuscleCourse, Plan,
+    RefinementGoal, Scene, Settings, Stop, predict, predict_adaptively,
 };
 use mechanics::progress::Unobserved;
 use mechanics::study::scenes::slab;
@@ -21,11 +21,11 @@ fn scene() -> (Case, Plan) {
     (Case { materials, ..slab.case }, slab.plans[0].1.clone())
 }
 
-fn wanted(skin_mm: f64, cells: usize) -> Wanted {
-    Wanted { skin_mm, regions_mm: BTreeMap::new(), cells, time_s: f64::INFINITY }
+fn wanted(skin_mm: f64, cells: usize) -> RefinementGoal {
+    RefinementGoal { skin_mm, regions_mm: BTreeMap::new(), cells, time_s: f64::INFINITY }
 }
 
-fn adapted(case: &Case, plan: &Plan, wanted: &Wanted) -> Adapted {
+fn adapted(case: &Case, plan: &Plan, wanted: &RefinementGoal) -> AdaptivePrediction {
     let scene = Scene::new(case, plan, &Settings::default()).unwrap();
     predict_adaptively(&scene, wanted, &|| 0.0, &Unobserved).unwrap()
 }
@@ -120,8 +120,10 @@ fn a_part_of_the_skin_with_a_limit_of_its_own_is_refined_for() {
         ..Plan::default()
     };
     let cells = 4 * case.volume.cells.len();
-    let own =
-        Wanted { regions_mm: BTreeMap::from([("left".to_owned(), 1e-3)]), ..wanted(100.0, cells) };
+    let own = RefinementGoal {
+        regions_mm: BTreeMap::from([("left".to_owned(), 1e-3)]),
+        ..wanted(100.0, cells)
+    };
     let adapted = adapted(&case, &plan, &own);
     assert!(adapted.levels.len() > 1);
     assert!(adapted.levels.iter().all(|level| level.regions_mm.contains_key("left")));

@@ -5,7 +5,7 @@ use mechanics::mesh::refinement::refine;
 use mechanics::mesh::{CellShape, Vector};
 use mechanics::prediction::{
     Accepted, Adequate, Case, ContactKind, ElementChoice, FibreDirection, MeanErrors, Method, Plan,
-    Prediction, Rung, Scene, Settings, SkinMembrane, Watched, predict, predict_adequately,
+    Prediction, Rung, Scene, Settings, SkinMembrane, TimedProgress, predict, predict_adequately,
 };
 use mechanics::progress::{Progress, Unobserved};
 
@@ -22,7 +22,7 @@ fn ticking() -> impl Fn() -> f64 {
 
 fn adequate(case: &Case, plan: &Plan, settings: &Settings, accepted: Accepted) -> Adequate {
     let scene = Scene::new(case, plan, settings).unwrap();
-    let watched = Watched { stopwatch: &ticking(), progress: &Unobserved };
+    let watched = TimedProgress { stopwatch: &ticking(), progress: &Unobserved };
     predict_adequately(case, plan, &scene, &accepted, watched).unwrap()
 }
 
@@ -205,7 +205,7 @@ fn a_search_for_a_model_stops_when_it_is_told_to() {
     let plan = plan_of(&case, &movements(1.0));
     let scene = Scene::new(&case, &plan, &Settings::default()).unwrap();
     let stops: &dyn Progress = &StopsAfter::iterations(2);
-    let watched = Watched { stopwatch: &ticking(), progress: stops };
+    let watched = TimedProgress { stopwatch: &ticking(), progress: stops };
     assert!(predict_adequately(&case, &plan, &scene, &within(0.3), watched).is_err());
 }
 

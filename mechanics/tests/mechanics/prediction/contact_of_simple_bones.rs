@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use mechanics::mesh::sample::block;
 use mechanics::mesh::{CellShape, SurfaceSearch, TriangleSurface, Vector, Warning};
-use mechanics::model::fem::contact::Pressed;
+use mechanics::model::fem::contact::PressingRow;
 use mechanics::plan::{PlannedSegment, RigidMovement};
 use mechanics::prediction::{Bone, Case, CaseSegment, Method, Plan, Prediction, Settings};
 
@@ -100,7 +100,7 @@ fn assert_met(case: &Case, found: &Prediction, by: f64, told: &str) {
     assert_eq!(contact.effort.kept, 0, "{told}");
     let largest = contact.pressed.iter().map(|pressed| pressed.force).fold(0.0, f64::max);
     assert!(largest > 0.0, "{told}");
-    for Pressed { row, force } in &contact.pressed {
+    for PressingRow { row, force } in &contact.pressed {
         let gap = contact.gaps[&row.node];
         assert!(*force > -1e-8 * largest && gap.abs() < 1e-8, "{told}: {force} {gap}");
     }

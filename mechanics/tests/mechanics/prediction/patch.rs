@@ -3,7 +3,7 @@
 use mechanics::boundary::Hold;
 use mechanics::mesh::sample::block;
 use mechanics::mesh::{CellShape, Vector, VolumeMesh};
-use mechanics::model::dofs::Numbering;
+use mechanics::model::dofs::DofMap;
 use mechanics::model::fem::assembly::Tissue;
 use mechanics::model::fem::cell_stiffness::{Dilatation, cell_stiffness};
 use mechanics::prediction::{ElementChoice, Settings};
@@ -73,7 +73,7 @@ fn an_affine_field_has_the_same_principal_strains_in_every_cell() {
 /// A matrix whose rows are not in the order of the nodes.
 struct Assembled {
     matrix: HalfMatrix<f64, 3>,
-    numbering: Numbering,
+    numbering: DofMap,
 }
 
 impl Assembled {
@@ -81,7 +81,7 @@ impl Assembled {
         let materials = [material(15.0, 0.49)];
         let material_of_cell = vec![0; mesh.cells.len()];
         let tissue = Tissue::isotropic(mesh, &materials, &material_of_cell, dilatation);
-        let numbering = Numbering::new(mesh, &vec![false; mesh.nodes.len()]);
+        let numbering = DofMap::new(mesh, &vec![false; mesh.nodes.len()]);
         let matrix = tissue.assemble(&numbering, &Unobserved).unwrap().unwrap();
         Assembled { matrix, numbering }
     }

@@ -3,7 +3,7 @@
 use mechanics::material::LinearElastic;
 use mechanics::mesh::sample::{ThickSphere, block, thick_sphere_octant};
 use mechanics::mesh::{CellShape, Vector, VolumeMesh};
-use mechanics::model::dofs::Numbering;
+use mechanics::model::dofs::DofMap;
 use mechanics::model::fem::assembly::Tissue;
 use mechanics::model::fem::cell_stiffness::Dilatation;
 use mechanics::progress::Unobserved;
@@ -31,7 +31,7 @@ pub fn system_of(
     let tissue = Tissue::isotropic(mesh, materials, material_of_cell, |_| Dilatation::Mean);
     let mut held = vec![false; mesh.nodes.len()];
     mesh.node_set(set).unwrap().iter().for_each(|&node| held[node as usize] = true);
-    let numbering = Numbering::new(mesh, &held);
+    let numbering = DofMap::new(mesh, &held);
     let matrix = tissue.assemble(&numbering, &Unobserved).unwrap().unwrap();
     let positions = numbering.by_row(&mesh.nodes);
     System { layout: numbering.layout, matrix, partly_held: Vec::new(), positions }

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use mechanics::mesh::{TriangleSurface, Vector};
 use mechanics::progress::Unobserved;
-use mechanics::registration::{Place, RigidTransform};
+use mechanics::registration::{RigidTransform, SphereOrBox};
 use mechanics::validation::{
     Alignment, Comparison, ComparisonError, ComparisonSettings, LandmarkPair, NodeWise, Region,
     compare,
@@ -21,7 +21,7 @@ fn assert_near(found: f64, wanted: f64, tolerance: f64) {
     assert!((found - wanted).abs() <= tolerance, "{found} instead of {wanted}");
 }
 
-fn icp(mask: Option<Place>) -> ComparisonSettings {
+fn icp(mask: Option<SphereOrBox>) -> ComparisonSettings {
     ComparisonSettings {
         alignment: Alignment::ClosestPoint { mask },
         ..ComparisonSettings::default()
@@ -167,15 +167,18 @@ fn regions_measure_their_part_and_an_empty_one_is_refused() {
     let prediction = sphere(70.0, Vector::zeros(), 4);
     // The upper half has grown by 3 mm.
     let actual = map(&prediction, |p| if p.z > 0.0 { p * (73.0 / 70.0) } else { *p });
-    let top = Region::Place(Place::Sphere { centre: Vector::new(0.0, 0.0, 75.0), radius: 30.0 });
-    let bottom = Place::Box {
+    let top = Region::SphereOrBox(SphereOrBox::Sphere {
+        centre: Vector::new(0.0, 0.0, 75.0),
+        radius: 30.0,
+    });
+    let bottom = SphereOrBox::Box {
         lower: Vector::new(-80.0, -80.0, -80.0),
         upper: Vector::new(80.0, 80.0, -20.0),
     };
     let mut settings = ComparisonSettings {
         regions: BTreeMap::from([
             ("top".to_owned(), top),
-            ("bottom".to_owned(), Region::Place(bottom)),
+            ("bottom".to_owned(), Region::SphereOrBox(bottom)),
         ]),
         ..ComparisonSettings::default()
     };
@@ -184,8 +187,8 @@ fn regions_measure_their_part_and_an_empty_one_is_refused() {
     assert!(found.regions["bottom"].both.hausdorff < 1e-9);
     assert!(found.regions["top"].to_actual.area < found.distances.to_actual.area);
 
-    let nowhere = Place::Sphere { centre: Vector::repeat(500.0), radius: 1.0 };
-    settings.regions.insert("nose".to_owned(), Region::Place(nowhere));
+    let nowhere = SphereOrBox::Sphere { centre: Vector::repeat(500.0), radius: 1.0 };
+    settings.regions.insert("nose".to_owned(), Region::SphereOrBox(nowhere));
     let error = compare(&prediction, &actual, &settings, &Unobserved).unwrap_err();
     assert_eq!(error, ComparisonError::EmptyRegion { name: "nose".to_owned() });
     assert_eq!(error.code(), "empty-region");
@@ -194,12 +197,12 @@ fn regions_measure_their_part_and_an_empty_one_is_refused() {
 #[test]
 fn a_region_that_the_scan_does_not_reach_is_left_out_with_a_warning() {
     let (prediction, actual) = (square(100.0, 0.0, 10), square(20.0, 1.0, 2));
-    let edge = Place::Box {
+    let edge = SphereOrBox::Box {
         lower: Vector::repeat(30.0) - Vector::z() * 60.0,
         upper: Vector::repeat(60.0),
     };
     let settings = ComparisonSettings {
-        regions: BTreeMap::from([("edge".to_owned(), Region::Place(edge))]),
+        regions: BTreeMap::from([("edge".to_owned(), Region::SphereOrBox(edge))]),
         ..ComparisonSettings::default()
     };
     let found = compare(&prediction, &actual, &settings, &Unobserved).unwrap();
@@ -236,7 +239,7 @@ fn alignments_that_cannot_be_are_refused_by_one_code() {
     let pair = |point: Vector| LandmarkPair { prediction: point, actual: point };
     let on_a_line = (0..4).map(|i| pair(Vector::new(10.0, 0.0, 0.0) * f64::from(i))).collect();
     let outside = [[0.0; 3], [10.0, 0.0, 0.0], [0.0, 900.0, 0.0]].map(|p| pair(Vector::from(p)));
-    let nowhere = Place::Sphere { centre: Vector::repeat(500.0), radius: 1.0 };
+    let nowhere = SphereOrBox::Sphere { centre: Vector::repeat(500.0), radius: 1.0 };
     for alignment in [
         Alignment::Landmarks(vec![pair(Vector::zeros()); 2]),
         Alignment::Landmarks(on_a_line),

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use mechanics::mesh::{TriangleSurface, Vector, Warning};
 use mechanics::progress::Unobserved;
-use mechanics::registration::{Place, Start};
+use mechanics::registration::{SphereOrBox, Start};
 use mechanics::validation::penetration::overlap;
 use mechanics::validation::{
     Alignment, BoneSurfaces, Comparison, ComparisonError, ComparisonSettings, LandmarkPair, Region,
@@ -79,7 +79,7 @@ fn bone_decides_where_the_skin_goes_and_the_operation_is_left() {
     let skull = skull();
     let bones = |start: Start| {
         let moving = map(&skull, |point| scan_frame.inverse().apply(point));
-        let mask = Some(Place::Box {
+        let mask = Some(SphereOrBox::Box {
             lower: Vector::repeat(-200.0),
             upper: Vector::new(200.0, 200.0, 200.0),
         });

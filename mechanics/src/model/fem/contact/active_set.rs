@@ -2,7 +2,7 @@
 
 use crate::progress::Progress;
 use crate::solver::SolverError;
-use crate::solver::constrained::{Equations, Found, Point, Wanted};
+use crate::solver::constrained::{ConstrainedSolution, ConstraintTarget, Equations, Point};
 
 /// Passes after which no set is expected to repeat.
 const MOST_PASSES: usize = 30;
@@ -25,7 +25,7 @@ pub struct ActiveSet {
 }
 
 /// A set that repeats.
-pub struct Settled {
+pub struct SettledSet {
     pub point: Point,
     /// The rows that press, in the order of the multipliers.
     pub rows: Vec<usize>,
@@ -68,13 +68,13 @@ impl ActiveSet {
         equations: &mut Equations,
         task: &Task,
         start: Point,
-    ) -> Result<Settled, SolverError> {
+    ) -> Result<SettledSet, SolverError> {
         let mut multiplier_of = match start.multipliers.is_empty() {
             true => task.before.to_vec(),
             false => start.multipliers,
         };
         multiplier_of.resize(self.presses.len(), 0.0);
-        let mut settled = Settled {
+        let mut settled = SettledSet {
             point: Point { x: start.x, multipliers: Vec::new() },
             rows: Vec::new(),
             passes: 0,
@@ -93,7 +93,7 @@ impl ActiveSet {
             let values: Vec<f64> = rows.iter().map(|&row| -task.gaps[row]).collect();
             let multipliers = rows.iter().map(|&row| multiplier_of[row]).collect();
             let start = Point { x: std::mem::take(&mut settled.point.x), multipliers };
-            let asked = Wanted {
+            let asked = ConstraintTarget {
                 rows: &rows,
                 values: &values,
                 less: &taken_away,
@@ -131,7 +131,7 @@ impl ActiveSet {
         equations: &Equations,
         task: &Task,
         rows: &[usize],
-        found: &Found,
+        found: &ConstrainedSolution,
     ) -> usize {
         let largest = found.point.multipliers.iter().fold(0.0_f64, |most, m| most.max(m.abs()));
         let mut pulls = vec![false; self.presses.len()];

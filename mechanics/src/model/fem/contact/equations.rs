@@ -4,19 +4,19 @@ use std::collections::BTreeMap;
 
 use crate::boundary::Hold;
 use crate::boundary::contact::ContactRow;
-use crate::model::dofs::{Numbering, partly_held};
+use crate::model::dofs::{DofMap, partly_held};
 use crate::solver::PartlyHeld;
 use crate::solver::preconditioned::Equation;
 
 /// Free unknowns by node.
 #[derive(Clone)]
 pub(in crate::model::fem) struct FreeUnknowns<'a> {
-    numbering: &'a Numbering,
+    numbering: &'a DofMap,
     partly_held: BTreeMap<usize, PartlyHeld>,
 }
 
 impl<'a> FreeUnknowns<'a> {
-    pub fn new(holds: &[Hold], numbering: &'a Numbering) -> Self {
+    pub fn new(holds: &[Hold], numbering: &'a DofMap) -> Self {
         let partly = partly_held(holds, numbering);
         let partly_held = partly.into_iter().map(|partly| (partly.row, partly)).collect();
         FreeUnknowns { numbering, partly_held }

@@ -3,7 +3,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::touch::{Contact, Pressed};
+use super::touch::{Contact, PressingRow};
 use crate::boundary::contact::ContactRow;
 use crate::mesh::Vector;
 
@@ -76,7 +76,8 @@ impl KeptRows {
         displacement: &[Vector],
     ) -> Contact {
         let pressing: Vec<(usize, f64)> = pressing.collect();
-        let pressed = |&(row, force): &(usize, f64)| Pressed { row: self.rows[row].clone(), force };
+        let pressed =
+            |&(row, force): &(usize, f64)| PressingRow { row: self.rows[row].clone(), force };
         Contact {
             pressed: pressing.iter().map(pressed).collect(),
             gaps: self.gaps(displacement, 1.0),

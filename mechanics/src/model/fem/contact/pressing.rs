@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 
-use super::active_set::{ActiveSet, Settled, Task};
+use super::active_set::{ActiveSet, SettledSet, Task};
 use super::equations::FreeUnknowns;
 use super::kept_rows::{KeptRows, Round};
 use super::touch::{Contact, Effort};
@@ -13,7 +13,7 @@ use crate::model::fem::linear_system::{Correction, LinearSystem, Residual, Solve
 use crate::model::problem::{Equilibrium, LoadCase, ModelError};
 use crate::progress::Progress;
 use crate::solver::SolverError;
-use crate::solver::constrained::{Equations, Point, Wanted};
+use crate::solver::constrained::{ConstraintTarget, Equations, Point};
 
 /// Beyond this, in mm, an answer is none.
 const UNSETTLED_MM: f64 = 0.1;
@@ -125,7 +125,8 @@ impl Pressing<'_> {
     ) -> Result<Correction, ModelError> {
         let less = self.system.taken_away(residual);
         let values = vec![0.0; self.rows.len()];
-        let wanted = Wanted { rows: &self.rows, values: &values, less: &less, relative_residual };
+        let wanted =
+            ConstraintTarget { rows: &self.rows, values: &values, less: &less, relative_residual };
         let found = self.equations.solve(&wanted, Point::default(), progress)?;
         let iterations = found.iterations;
         Ok(self.system.correction(&found.point.x, iterations, found.relative_residual))
@@ -231,7 +232,7 @@ impl<'a, 'b> Rounds<'a, 'b> {
             let (passes, moved_mm) = (self.effort.passes, f64::INFINITY);
             return Err(ModelError::ContactUnsettled { passes, moved_mm });
         }
-        let Settled { point, rows: active, .. } = settled;
+        let SettledSet { point, rows: active, .. } = settled;
         (self.added, self.active) = (point, active);
         let forces = self.pressing().map(|(row, force)| (self.kept_rows.rows[row].node, force));
         self.pressed = forces.collect();

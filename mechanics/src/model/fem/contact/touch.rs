@@ -2,13 +2,13 @@
 
 use std::collections::BTreeMap;
 
-use super::active_set::Settled;
+use super::active_set::SettledSet;
 use crate::boundary::contact::ContactRow;
 use crate::mesh::Vector;
 
 /// A row that presses.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Pressed {
+pub struct PressingRow {
     pub row: ContactRow,
     /// In mN, never below 0 but for rounding.
     pub force: f64,
@@ -17,7 +17,7 @@ pub struct Pressed {
 /// How tissue presses on what it touches.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Contact {
-    pub pressed: Vec<Pressed>,
+    pub pressed: Vec<PressingRow>,
     /// For each node that faces another part of the boundary, the gap in mm.
     pub gaps: BTreeMap<u32, f64>,
     /// In mN, for each node.
@@ -43,7 +43,7 @@ pub struct Effort {
 
 impl Effort {
     /// Counts one more round.
-    pub fn count(&mut self, settled: &Settled) {
+    pub fn count(&mut self, settled: &SettledSet) {
         self.rounds += 1;
         self.passes += settled.passes;
         self.changes += settled.changes;

@@ -27,7 +27,7 @@ pub(super) struct Cells<'a> {
 
 /// Displacements in mm and pressures in kPa, and eps_g of each cell of tissue that grows.
 #[derive(Clone, Copy)]
-pub(super) struct Answered<'a> {
+pub(super) struct CellAnswer<'a> {
     pub displacement: &'a [Vector],
     pub pressures: &'a [f64],
     pub growth: &'a [f64],
@@ -43,7 +43,7 @@ impl<'a> Cells<'a> {
     pub fn new(
         tissue: &'a Tissue<'a>,
         system: &LinearSystem,
-        Answered { displacement, pressures, growth }: Answered<'a>,
+        CellAnswer { displacement, pressures, growth }: CellAnswer<'a>,
     ) -> Self {
         let mut numbers = vec![None; tissue.mesh.cells.len()];
         if let Some(all) = &system.pressures {

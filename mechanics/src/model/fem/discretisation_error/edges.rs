@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use super::edge_functions::MAX_EDGES;
 use crate::mesh::{Vector, VolumeMesh};
-use crate::model::dofs::Numbering;
+use crate::model::dofs::DofMap;
 use crate::model::problem::InvertedCell;
 
 /// Cells computed side by side before they are added in their order, which keeps the bits independent of the number
@@ -14,7 +14,7 @@ const CHUNK: usize = 512;
 /// An edge couples its two ends in the pattern: its place among the blocks below the diagonal is its number.
 pub(super) struct Edges<'a> {
     mesh: &'a VolumeMesh,
-    numbering: &'a Numbering,
+    numbering: &'a DofMap,
     /// Of each cell, in the order of the layout.
     of_cells: Vec<CellEdges>,
 }
@@ -27,9 +27,9 @@ pub(super) struct CellEdges {
 }
 
 impl<'a> Edges<'a> {
-    pub fn new(mesh: &'a VolumeMesh, numbering: &'a Numbering) -> Self {
+    pub fn new(mesh: &'a VolumeMesh, numbering: &'a DofMap) -> Self {
         let mut edges = Edges { mesh, numbering, of_cells: Vec::new() };
-        let order = numbering.layout.clique_order.par_iter();
+        let order = numbering.layout.element_order.par_iter();
         edges.of_cells = order.map(|&cell| edges.of_cell(cell as usize)).collect();
         edges
     }
@@ -69,7 +69,7 @@ impl<'a> Edges<'a> {
         compute: impl Fn(usize, &CellEdges, &mut T) -> Result<(), InvertedCell> + Sync,
         mut add: impl FnMut(usize, &CellEdges, &T),
     ) -> Result<(), InvertedCell> {
-        let order = &self.numbering.layout.clique_order;
+        let order = &self.numbering.layout.element_order;
         let mut room = vec![blank; CHUNK.min(order.len())];
         for (cells, of_cells) in order.chunks(CHUNK).zip(self.of_cells.chunks(CHUNK)) {
             let places = room.par_iter_mut().zip(cells).zip(of_cells);

@@ -9,7 +9,7 @@
 //! Source: Becker, Rannacher, An optimal control approach to a posteriori error estimation, Acta Numerica 10, 2001, section 4;
 //! marking: Doerfler, A convergent adaptive algorithm for Poisson's equation, SIAM Journal on Numerical Analysis 33, 1996.
 
-use super::cell::Answered;
+use super::cell::CellAnswer;
 use super::edges::Edges;
 use super::{Correction, Estimate, tolerance};
 use crate::mesh::{Vector, VolumeMesh};
@@ -80,7 +80,7 @@ impl Estimate<'_> {
         let relative = tolerance(self.tissue.materials, self.system.pressures.is_some());
         let dual = self.system.solve_for(&[residual], relative, progress)?.remove(0);
         let Correction { displacement, pressures, .. } = &dual;
-        let cells = self.cells(Answered { displacement, pressures, growth: &[] });
+        let cells = self.cells(CellAnswer { displacement, pressures, growth: &[] });
         let mut weights = self.two_level(&cells).equations(&edges)?.residual;
         goal.add_to(mesh, &edges, &mut weights);
 

@@ -38,7 +38,7 @@ use crate::mesh::Vector;
 use crate::mesh::volume::BoundaryFace;
 use crate::model::problem::ModelError;
 use crate::progress::{Phase, Progress};
-use cell::{Answered, Cells};
+use cell::{CellAnswer, Cells};
 
 pub(super) use edge_equations::EdgeEquation;
 pub(super) use edge_functions::{Corners, MAX_EDGES, at_point};
@@ -126,13 +126,13 @@ impl Estimate<'_> {
         Ok(DiscretisationError { missing, squared_energy_norm, iterations })
     }
 
-    fn answered<'b>(&'b self, solved: &'b Solved) -> Answered<'b> {
+    fn answered<'b>(&'b self, solved: &'b Solved) -> CellAnswer<'b> {
         let Solved { equilibrium, pressures } = solved;
         let growth = &self.loads.inner.growth;
-        Answered { displacement: &equilibrium.displacement, pressures, growth }
+        CellAnswer { displacement: &equilibrium.displacement, pressures, growth }
     }
 
-    fn cells<'b>(&'b self, answered: Answered<'b>) -> Cells<'b> {
+    fn cells<'b>(&'b self, answered: CellAnswer<'b>) -> Cells<'b> {
         Cells::new(&self.tissue, self.system, answered)
     }
 

@@ -16,7 +16,7 @@ use crate::model::fem::membrane::{Membrane, Stretched, Triangle};
 pub(super) struct Sheet<'a> {
     membrane: &'a Membrane,
     mesh: &'a VolumeMesh,
-    moved: Moved<'a>,
+    moved: SheetState<'a>,
     edges: &'a Edges<'a>,
     /// For each diagonal the edges around it.
     around: BTreeMap<usize, Vec<usize>>,
@@ -24,7 +24,7 @@ pub(super) struct Sheet<'a> {
 
 /// An answer.
 #[derive(Clone, Copy)]
-pub(super) struct Moved<'a> {
+pub(super) struct SheetState<'a> {
     /// Of the nodes, in mm.
     pub displacement: &'a [Vector],
     /// Whether it is one of finite strain.
@@ -73,7 +73,7 @@ impl<'a> Sheet<'a> {
     /// `is_edge` tells edges of cells from other pairs of their nodes.
     pub fn new(
         (membrane, mesh): (&'a Membrane, &'a VolumeMesh),
-        moved: Moved<'a>,
+        moved: SheetState<'a>,
         edges: &'a Edges<'a>,
         is_edge: impl Fn(usize) -> bool,
     ) -> Self {

@@ -5,12 +5,12 @@ use super::edge_functions::MAX_EDGES;
 use super::edges::Edges;
 use super::held_edges::HeldEdges;
 use super::loads::DistributedLoads;
-use super::sheet::{Moved, Sheet};
+use super::sheet::{Sheet, SheetState};
 use crate::boundary::Hold;
 use crate::element::MAX_NODES;
 use crate::mesh::Vector;
 use crate::mesh::volume::BoundaryFace;
-use crate::model::dofs::Numbering;
+use crate::model::dofs::DofMap;
 use crate::model::fem::assembly::Tissue;
 use crate::model::fem::linear_system::Residual;
 use crate::model::problem::InvertedCell;
@@ -43,7 +43,7 @@ pub(in crate::model::fem) trait EnrichedCells: Sync {
 /// An answer, and its cells with functions on their edges.
 pub(in crate::model::fem) struct TwoLevel<'a, C> {
     pub tissue: &'a Tissue<'a>,
-    pub numbering: &'a Numbering,
+    pub numbering: &'a DofMap,
     pub boundary: &'a [BoundaryFace],
     pub holds: &'a [Hold],
     pub loads: &'a DistributedLoads,
@@ -91,7 +91,7 @@ impl<C: EnrichedCells> TwoLevel<'_, C> {
         let is_edge = |edge: usize| equations.stiffness[edge][(0, 0)] > 0.0;
         let (displacement, is_finite) = (self.displacement, self.cells.is_finite());
         let skin = self.tissue.membrane?;
-        let moved = Moved { displacement, is_finite };
+        let moved = SheetState { displacement, is_finite };
         Some(Sheet::new((skin, self.tissue.mesh), moved, edges, is_edge))
     }
 

@@ -6,15 +6,15 @@ use std::sync::Arc;
 use nalgebra::Matrix3;
 use rayon::prelude::*;
 
-use super::elements::{Kept, rounded};
+use super::elements::{CellBulkModulus, rounded};
 use super::fibres::FibreField;
 use super::problem::FiniteStrain;
 use super::step_length::Volume;
 use crate::element::tetrahedron10;
 use crate::material::hyperelastic::Law;
-use crate::material::hyperelastic::point::{Carried, Corner, Point};
+use crate::material::hyperelastic::point::{Corner, Point, PressureShare};
 use crate::mesh::{CellShape, Vector, VolumeMesh};
-use crate::model::dofs::Numbering;
+use crate::model::dofs::DofMap;
 use crate::model::fem::cell_stiffness::tetrahedron;
 use crate::model::fem::inner_stress::{Grown, InnerStress};
 use crate::model::problem::InvertedCell;
@@ -73,7 +73,7 @@ pub(super) struct Bricks<'a> {
     inner: Arc<InnerStress>,
     bricks: Vec<Brick>,
     /// Their places in the order of the numbering, and for each cell of the mesh its brick.
-    cliques: Vec<usize>,
+    own_elements: Vec<usize>,
     of_cell: Vec<u32>,
 }
 
@@ -92,19 +92,19 @@ pub(super) struct DeformedBricks<'a> {
 impl<'a> Bricks<'a> {
     pub fn new(
         problem: &FiniteStrain<'a>,
-        numbering: &Numbering,
-        kept: &Kept,
+        numbering: &DofMap,
+        kept: &CellBulkModulus,
     ) -> Result<Self, InvertedCell> {
         let FiniteStrain { mesh, laws, law_of_cell, elements, fibres, .. } = *problem;
         let inner = Arc::clone(&problem.inner);
-        let order = &numbering.layout.clique_order;
-        let is_brick = |&clique: &usize| {
-            elements.quadratic || mesh.cells.shape(order[clique] as usize) != CellShape::Tet4
+        let order = &numbering.layout.element_order;
+        let is_brick = |&element: &usize| {
+            elements.quadratic || mesh.cells.shape(order[element] as usize) != CellShape::Tet4
         };
-        let cliques: Vec<usize> = (0..order.len()).filter(is_brick).collect();
-        let brick = |&clique: &usize| {
-            let cell = order[clique] as usize;
-            let rows = numbering.cliques.row(clique).to_vec();
+        let own_elements: Vec<usize> = (0..order.len()).filter(is_brick).collect();
+        let brick = |&element: &usize| {
+            let cell = order[element] as usize;
+            let rows = numbering.connectivity.row(element).to_vec();
             let law = law_of_cell[cell];
             let mut brick = Brick::new(mesh, cell, rows, law)?;
             if elements.mean_dilatation {
@@ -112,12 +112,12 @@ impl<'a> Bricks<'a> {
             }
             Ok(brick.grown(inner.grown(cell)))
         };
-        let bricks = cliques.par_iter().map(brick).collect::<Result<Vec<_>, _>>()?;
+        let bricks = own_elements.par_iter().map(brick).collect::<Result<Vec<_>, _>>()?;
         let mut of_cell = vec![u32::MAX; if bricks.is_empty() { 0 } else { order.len() }];
-        for (brick, &clique) in cliques.iter().enumerate() {
-            of_cell[order[clique] as usize] = brick as u32;
+        for (brick, &element) in own_elements.iter().enumerate() {
+            of_cell[order[element] as usize] = brick as u32;
         }
-        Ok(Bricks { laws, fibres, inner, bricks, cliques, of_cell })
+        Ok(Bricks { laws, fibres, inner, bricks, own_elements, of_cell })
     }
 
     pub fn is_empty(&self) -> bool {
@@ -162,7 +162,7 @@ impl<'a> Bricks<'a> {
         let logs = brick.points.iter().zip(&points);
         let mean: f64 = logs.map(|(at, point)| at.volume * point.log_volume()).sum();
         let pressure = brick.carried * mean / brick.volume;
-        let by = Carried { pressure, modulus: brick.carried };
+        let by = PressureShare { pressure, modulus: brick.carried };
         let points = points.into_iter().map(|point| point.carried(by)).collect();
         DeformedBrick { points, pressure }
     }
@@ -279,12 +279,12 @@ impl DeformedBricks<'_> {
     pub fn add_tangent(
         &self,
         matrix: &mut HalfMatrix<f64, 3>,
-        numbering: &Numbering,
+        numbering: &DofMap,
         progress: &dyn Progress,
     ) -> Result<(), SolverError> {
         let of_cell = |cell: usize| Ok(self.tangent_of(self.bricks.of_cell[cell] as usize));
         // The cells are known to be sound.
-        match numbering.add_cells(matrix, &self.bricks.cliques, progress, of_cell) {
+        match numbering.add_cells(matrix, &self.bricks.own_elements, progress, of_cell) {
             Ok(true) => Ok(()),
             Ok(false) | Err(InvertedCell { .. }) => Err(SolverError::Stopped),
         }

@@ -2,9 +2,9 @@
 
 use super::pressures::Pressures;
 use super::tissue::Deformed;
-use super::touching::{Ahead, Touching};
+use super::touching::{Touching, TrialState};
 use crate::mesh::Vector;
-use crate::model::dofs::{Constrained, Known};
+use crate::model::dofs::{Constrained, PrescribedValues};
 use crate::model::problem::LoadCase;
 use crate::progress::{Inner, Progress};
 use crate::solver::conjugate_gradient::{self, Enough};
@@ -87,7 +87,7 @@ pub(super) struct Directions {
 }
 
 /// What iterations found.
-struct Found {
+struct StepSolution {
     unknowns: Unknowns,
     pressures: Vec<f64>,
     iterations: usize,
@@ -140,7 +140,7 @@ impl Directions {
             let displacement: Vec<Vector> =
                 displacement.iter().zip(&by_node).map(|(u, step)| u + step).collect();
             let displacement = &displacement;
-            let ahead = Ahead { displacement, share, unbalanced, relative, progress: &inner };
+            let ahead = TrialState { displacement, share, unbalanced, relative, progress: &inner };
             let matrix = Preconditioned::new(
                 &system,
                 coupling,
@@ -241,7 +241,7 @@ impl Directions {
 
 impl Hierarchy {
     /// Counts a system that it served.
-    fn serve(&mut self, found: &Found) {
+    fn serve(&mut self, found: &StepSolution) {
         if self.served == 0 {
             self.fresh = found.iterations;
         }
@@ -257,12 +257,12 @@ fn alone(
     right_hand_side: &Unknowns,
     relative_residual: f64,
     progress: &Inner,
-) -> Result<Found, SolverError> {
+) -> Result<StepSolution, SolverError> {
     let enough = Enough { relative_residual, most_iterations: MOST_INNER };
     let found =
         conjugate_gradient::direction(system, multigrid, right_hand_side, enough, progress)?;
     let conjugate_gradient::Direction { unknowns, iterations, is_convex } = found;
-    Ok(Found { unknowns, pressures: Vec::new(), iterations, is_convex, is_met: true })
+    Ok(StepSolution { unknowns, pressures: Vec::new(), iterations, is_convex, is_met: true })
 }
 
 /// Displacements and pressures.
@@ -271,16 +271,16 @@ fn together(
     right_hand_side: &MixedRightHandSide,
     relative_residual: f64,
     progress: &Inner,
-) -> Result<Found, SolverError> {
+) -> Result<StepSolution, SolverError> {
     let enough = Enough { relative_residual, most_iterations: MOST_INNER_MIXED };
     let found = mixed::direction(system, right_hand_side, enough, progress)?;
     let mixed::MixedDirection { unknowns, pressures, iterations, is_met } = found;
     let pressures = pressures.into_iter().map(|[pressure]| pressure).collect();
-    Ok(Found { unknowns, pressures, iterations, is_convex: true, is_met })
+    Ok(StepSolution { unknowns, pressures, iterations, is_convex: true, is_met })
 }
 
 /// -r - B d of the rows of pressures, d what is known of the step.
-fn left_volumes(known: &Known, coupling: &Coupling, residual: &[f64]) -> Vec<[f64; 1]> {
+fn left_volumes(known: &PrescribedValues, coupling: &Coupling, residual: &[f64]) -> Vec<[f64; 1]> {
     let mut volumes = vec![[0.0]; residual.len()];
     coupling.divergence.contract(&known.displacement, &mut volumes);
     let pairs = volumes.iter().zip(residual);

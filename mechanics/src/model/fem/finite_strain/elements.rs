@@ -27,23 +27,23 @@ pub struct Elements {
 
 /// The bulk modulus that stays in cells.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Kept {
+pub(super) struct CellBulkModulus {
     /// As a multiple of mu.
     share: f64,
     /// For each cell of the mesh whether it keeps that, the others nothing; all keep it where none is named.
     only: Option<Vec<bool>>,
 }
 
-impl Kept {
+impl CellBulkModulus {
     /// On the way, in all cells.
-    pub const FIRST: Kept = Kept { share: 1.0, only: None };
+    pub const FIRST: CellBulkModulus = CellBulkModulus { share: 1.0, only: None };
     /// After a standstill.
-    pub const MORE: Kept = Kept { share: 2.0, only: None };
+    pub const MORE: CellBulkModulus = CellBulkModulus { share: 2.0, only: None };
 
     /// Near rest in pressed cells only. Of the others, and of tissue none of whose cells is pressed, the tangent at rest is the
     /// matrix of linear elements.
-    pub fn in_pressed(share: f64, pressed: Vec<bool>) -> Kept {
-        Kept { share, only: Some(pressed) }
+    pub fn in_pressed(share: f64, pressed: Vec<bool>) -> CellBulkModulus {
+        CellBulkModulus { share, only: Some(pressed) }
     }
 
     pub fn is_of_pressed(&self) -> bool {

@@ -32,7 +32,7 @@ pub(super) struct Enriched<'a> {
 }
 
 /// Pressures, and where they belong.
-pub(super) struct Pressed<'a> {
+pub(super) struct NodalPressures<'a> {
     pub pressures: Option<&'a Pressures>,
     pub values: &'a [f64],
 }
@@ -43,7 +43,7 @@ impl<'a> Enriched<'a> {
         laws: &[Law],
         tissue: &Tissue,
         deformed: &'a Deformed<'a>,
-        pressed: &Pressed<'a>,
+        pressed: &NodalPressures<'a>,
     ) -> Self {
         let mesh = linear.mesh;
         let mut simplex_of_cell = vec![u32::MAX; mesh.cells.len()];

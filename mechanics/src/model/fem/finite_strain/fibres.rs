@@ -1,7 +1,7 @@
 //! The course of fibres through the cells of a mesh.
 
 use crate::material::hyperelastic::Fibres;
-use crate::material::hyperelastic::point::Along;
+use crate::material::hyperelastic::point::FibreAtPoint;
 use crate::mesh::Vector;
 
 /// Fibres that only pull: those of each law, and for each cell their direction at rest, of length 1 or zero where it has none.
@@ -15,9 +15,9 @@ pub struct FibreField<'a> {
 impl<'a> FibreField<'a> {
     /// Those of a cell of a law.
     #[inline]
-    pub fn along(&self, law: u16, cell: usize) -> Option<Along<'a>> {
+    pub fn along(&self, law: u16, cell: usize) -> Option<FibreAtPoint<'a>> {
         let law = self.of_law.get(usize::from(law))?.as_ref()?;
         let direction = *self.of_cell.get(cell)?;
-        (direction != Vector::zeros()).then_some(Along { law, direction })
+        (direction != Vector::zeros()).then_some(FibreAtPoint { law, direction })
     }
 }

@@ -1,7 +1,7 @@
 //! Discretisation error of an answer at finite strain: the two-level step of `discretisation_error` at its last tangent.
 
 use super::direction::Remaining;
-use super::enriched::{Enriched, Pressed};
+use super::enriched::{Enriched, NodalPressures};
 use super::newton_state::Rest;
 use super::tissue::Tissue;
 use crate::material::hyperelastic::Law;
@@ -16,7 +16,7 @@ use crate::model::problem::{LoadCase, ModelError};
 use crate::progress::{Phase, Progress};
 
 /// What a finer mesh would see of a problem.
-pub struct Finer<'a> {
+pub struct FinerProblem<'a> {
     /// The same tissue as linear elements see it.
     pub tissue: assembly::Tissue<'a>,
     pub laws: &'a [Law],
@@ -37,7 +37,7 @@ pub enum NoMeshError {
     NotSolved,
 }
 
-impl Finer<'_> {
+impl FinerProblem<'_> {
     pub(super) fn of(
         &self,
         tissue: &Tissue,
@@ -57,7 +57,7 @@ impl Finer<'_> {
         // 1. What the edge functions do to the equations of the corners; edges that press do not move across what they press on.
         let pressures = directions.pressures.as_ref();
         let deformed = tissue.at(positions, values, pressures);
-        let pressed = Pressed { pressures, values };
+        let pressed = NodalPressures { pressures, values };
         let holds_and_contact = touching.as_ref().map(|touching| touching.held(holds));
         let two_level = TwoLevel {
             tissue: &self.tissue,

@@ -43,16 +43,16 @@ use crate::model::fem::edge_nodes::WithEdges;
 use crate::model::problem::{Equilibrium, LoadCase, ModelError};
 use crate::progress::{Phase, Progress};
 use crate::solver::SolverError;
-use crate::solver::cliques::Cliques;
+use crate::solver::element_connectivity::ElementConnectivity;
 use another_rest::another_rest;
 use direction::{Directions, Tally};
+use elements::CellBulkModulus;
 pub use elements::Elements;
-use elements::Kept;
 pub use fibres::FibreField;
-pub use mesh_error::{Finer, MeshError, NoMeshError};
+pub use mesh_error::{FinerProblem, MeshError, NoMeshError};
 pub use newton::MOST_STEPS;
 use newton::Newton;
-use newton_state::{Ending, Question, Rest, Start, Until};
+use newton_state::{Ending, NewtonExits, Question, Rest, Start};
 pub use problem::FiniteStrain;
 use states::cell_states;
 use tissue::Tissue;
@@ -90,7 +90,7 @@ impl<'a> FiniteStrain<'a> {
     pub fn solve_and(
         &self,
         case: &LoadCase,
-        finer: Option<&Finer>,
+        finer: Option<&FinerProblem>,
         progress: &dyn Progress,
     ) -> Result<(Equilibrium, Option<MeshError>), ModelError> {
         progress.phase(Phase::Assemble);
@@ -117,9 +117,9 @@ impl<'a> FiniteStrain<'a> {
 
     fn solve_on(
         &self,
-        cells: &Cliques,
+        cells: &ElementConnectivity,
         case: &LoadCase,
-        finer: Option<&Finer>,
+        finer: Option<&FinerProblem>,
         progress: &dyn Progress,
     ) -> Result<(Equilibrium, Option<MeshError>), ModelError> {
         self.check_held_cells(case)?;
@@ -134,7 +134,7 @@ impl<'a> FiniteStrain<'a> {
 
     fn mesh_error(
         &self,
-        finer: Option<&Finer>,
+        finer: Option<&FinerProblem>,
         tissue: &Tissue,
         rest: &mut Rest,
         question: &Question,
@@ -149,7 +149,7 @@ impl<'a> FiniteStrain<'a> {
         &self,
         case: &LoadCase,
         MayTouch { free, surfaces }: MayTouch,
-        finer: Option<&Finer>,
+        finer: Option<&FinerProblem>,
         progress: &dyn Progress,
     ) -> Result<Option<InContact>, ModelError> {
         let steps = surfaces.steps(&free.displacement, STEP);
@@ -244,8 +244,13 @@ impl<'a> FiniteStrain<'a> {
             (tissue, Ending::Near(near, pressed)) => (tissue.bulk_in_cells, near, pressed),
             (_, Ending::Jam(_)) => unreachable!("with more bulk modulus nothing is a jam"),
         };
-        let until = Until { jammed: true, near: false };
-        match self.newton(&Kept::in_pressed(share, pressed), question, near.clone(), until) {
+        let until = NewtonExits { jammed: true, near: false };
+        match self.newton(
+            &CellBulkModulus::in_pressed(share, pressed),
+            question,
+            near.clone(),
+            until,
+        ) {
             Ok((tissue, Ending::Rest(rest))) => return Ok((tissue, *rest)),
             Ok((_, Ending::Jam(_) | Ending::Near(..))) | Err(ModelError::Standstill { .. }) => {}
             Err(ModelError::Solver(SolverError::NotConverged { .. })) => {}
@@ -264,27 +269,35 @@ impl<'a> FiniteStrain<'a> {
         start: Start<'a>,
         near: bool,
     ) -> Result<(Tissue<'a>, Ending<'a>), ModelError> {
-        match self.newton(&Kept::FIRST, question, start, Until { jammed: true, near })? {
-            (_, Ending::Jam(reached)) => {
-                self.newton(&Kept::MORE, question, reached, Until { jammed: false, near })
-            }
+        match self.newton(
+            &CellBulkModulus::FIRST,
+            question,
+            start,
+            NewtonExits { jammed: true, near },
+        )? {
+            (_, Ending::Jam(reached)) => self.newton(
+                &CellBulkModulus::MORE,
+                question,
+                reached,
+                NewtonExits { jammed: false, near },
+            ),
             ended => Ok(ended),
         }
     }
 
     fn newton(
         &self,
-        kept: &Kept,
+        kept: &CellBulkModulus,
         question: Question<'a>,
         start: Start<'a>,
-        until: Until,
+        until: NewtonExits,
     ) -> Result<(Tissue<'a>, Ending<'a>), ModelError> {
         let tissue = Tissue::new(self, question.constrained.numbering, kept)?;
         let pressures = tissue.pressures(self, kept, self.axes_by_row(question));
         let memory_mb = self.tolerance.memory_mb - tissue.megabytes();
         question.progress.phase(Phase::Solve);
         let directions = Directions::new(pressures, start.tally, memory_mb);
-        let until = Until { near: until.near && tissue.bulk_in_cells > 0.0, ..until };
+        let until = NewtonExits { near: until.near && tissue.bulk_in_cells > 0.0, ..until };
         let ending = Newton::new(&tissue, directions, question, start).solve(until)?;
         Ok((tissue, ending))
     }

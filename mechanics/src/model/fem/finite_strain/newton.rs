@@ -6,7 +6,7 @@
 
 use super::balance::Balance;
 use super::direction::{Direction, Directions, Remaining};
-use super::newton_state::{Ending, Question, Rest, Start, Until};
+use super::newton_state::{Ending, NewtonExits, Question, Rest, Start};
 use super::tissue::{Deformed, Rounding, Tissue};
 use super::touching::Touching;
 use crate::mesh::Vector;
@@ -98,7 +98,7 @@ impl<'a, 'b> Newton<'a, 'b> {
     }
 
     /// Goes on until rest is found or what else ends it, or says why it is not found.
-    pub fn solve(mut self, until: Until) -> Result<Ending<'a>, ModelError> {
+    pub fn solve(mut self, until: NewtonExits) -> Result<Ending<'a>, ModelError> {
         let Question { constrained, tolerance, progress, .. } = self.question;
         let wanted = tolerance.relative_residual;
         loop {

@@ -10,7 +10,7 @@ use crate::solver::{SolveReport, Tolerance};
 
 /// What ends Newton's method beside rest.
 #[derive(Clone, Copy)]
-pub(super) struct Until {
+pub(super) struct NewtonExits {
     /// Tissue with pressures that goes on in short steps only.
     pub jammed: bool,
     /// Tissue near rest.

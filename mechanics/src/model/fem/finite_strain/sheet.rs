@@ -3,7 +3,7 @@
 use super::elements::rounded;
 use super::problem::FiniteStrain;
 use crate::mesh::Vector;
-use crate::model::dofs::{Numbering, add_cell};
+use crate::model::dofs::{DofMap, add_cell};
 use crate::model::fem::membrane::{Stretched, Triangle};
 use crate::solver::Block;
 use crate::solver::half_matrix::HalfMatrix;
@@ -20,7 +20,7 @@ pub(super) struct Sheet {
 }
 
 impl Sheet {
-    pub fn new(problem: &FiniteStrain, numbering: &Numbering) -> Self {
+    pub fn new(problem: &FiniteStrain, numbering: &DofMap) -> Self {
         let triangles = problem.membrane.iter().flat_map(|skin| skin.in_space(problem.mesh));
         let parts = triangles.map(|(triangle, nodes)| {
             let rows = nodes.map(|node| numbering.row(node) as u32);

@@ -5,14 +5,14 @@ use std::sync::Arc;
 use nalgebra::Matrix3;
 use rayon::prelude::*;
 
-use super::elements::{Kept, rounded};
+use super::elements::{CellBulkModulus, rounded};
 use super::fibres::FibreField;
 use super::problem::FiniteStrain;
 use super::step_length::Volume;
 use crate::material::hyperelastic::Law;
-use crate::material::hyperelastic::point::{Carried, Point};
+use crate::material::hyperelastic::point::{Point, PressureShare};
 use crate::mesh::{CellShape, Vector};
-use crate::model::dofs::Numbering;
+use crate::model::dofs::DofMap;
 use crate::model::fem::cell_stiffness::tetrahedron;
 use crate::model::fem::inner_stress::InnerStress;
 use crate::model::problem::InvertedCell;
@@ -41,8 +41,8 @@ pub(super) struct Simplices<'a> {
     fibres: FibreField<'a>,
     inner: Arc<InnerStress>,
     pub cells: Vec<Simplex>,
-    /// For each clique of the numbering its tetrahedron, or `u32::MAX`; empty where all cliques are tetrahedra.
-    of_clique: Vec<u32>,
+    /// For each element of the numbering its tetrahedron, or `u32::MAX`; empty where all elements are tetrahedra.
+    of_element: Vec<u32>,
 }
 
 pub(super) struct DeformedSimplices<'a> {
@@ -53,23 +53,23 @@ pub(super) struct DeformedSimplices<'a> {
 impl<'a> Simplices<'a> {
     pub fn new(
         problem: &FiniteStrain<'a>,
-        numbering: &Numbering,
-        kept: &Kept,
+        numbering: &DofMap,
+        kept: &CellBulkModulus,
     ) -> Result<Self, InvertedCell> {
         let FiniteStrain { mesh, laws, law_of_cell, elements, fibres, .. } = *problem;
         let inner = Arc::clone(&problem.inner);
-        let order = &numbering.layout.clique_order;
-        let is_simplex = |&clique: &usize| {
-            !elements.quadratic && mesh.cells.shape(order[clique] as usize) == CellShape::Tet4
+        let order = &numbering.layout.element_order;
+        let is_simplex = |&element: &usize| {
+            !elements.quadratic && mesh.cells.shape(order[element] as usize) == CellShape::Tet4
         };
-        let cliques: Vec<usize> = (0..order.len()).filter(is_simplex).collect();
-        let cell = |&clique: &usize| {
-            let cell = order[clique] as usize;
+        let own_elements: Vec<usize> = (0..order.len()).filter(is_simplex).collect();
+        let cell = |&element: &usize| {
+            let cell = order[element] as usize;
             let (volume, gradients) = tetrahedron(mesh, cell)?;
             let grown = inner.grown(cell);
             let (volume, gradients) =
                 (volume * grown.volume, gradients.map(|g| grown.gradient(&g)));
-            let members = numbering.cliques.row(clique);
+            let members = numbering.connectivity.row(element);
             let (rows, law) = (std::array::from_fn(|k| members[k]), law_of_cell[cell]);
             let carried = match elements.stabilised {
                 true => kept.of(&laws[usize::from(law)], cell).carried.max(0.0),
@@ -77,15 +77,15 @@ impl<'a> Simplices<'a> {
             };
             Ok(Simplex { rows, gradients, volume, law, cell: cell as u32, carried })
         };
-        let cells = cliques.par_iter().map(cell).collect::<Result<Vec<_>, _>>()?;
-        let mut of_clique = Vec::new();
+        let cells = own_elements.par_iter().map(cell).collect::<Result<Vec<_>, _>>()?;
+        let mut of_element = Vec::new();
         if cells.len() < order.len() {
-            of_clique = vec![u32::MAX; order.len()];
-            for (simplex, &clique) in cliques.iter().enumerate() {
-                of_clique[clique] = simplex as u32;
+            of_element = vec![u32::MAX; order.len()];
+            for (simplex, &element) in own_elements.iter().enumerate() {
+                of_element[element] = simplex as u32;
             }
         }
-        Ok(Simplices { laws, fibres, inner, cells, of_clique })
+        Ok(Simplices { laws, fibres, inner, cells, of_element })
     }
 
     pub fn megabytes(&self) -> f64 {
@@ -106,7 +106,7 @@ impl<'a> Simplices<'a> {
         let point = Point::new(&self.laws[usize::from(cell.law)], fibres, cell.gradient(x));
         let point = point.pulled(self.inner.pulls(cell.cell as usize));
         match cell.carried > 0.0 {
-            true => point.carried(Carried { pressure, modulus: cell.carried }),
+            true => point.carried(PressureShare { pressure, modulus: cell.carried }),
             false => point,
         }
     }
@@ -143,9 +143,9 @@ impl<'a> Simplices<'a> {
         self.cells.par_chunks(CHUNK).map(longest).reduce(|| 1.0, f64::min)
     }
 
-    fn of_clique(&self, clique: u32) -> Option<usize> {
-        match self.of_clique.get(clique as usize) {
-            None => Some(clique as usize),
+    fn of_element(&self, element: u32) -> Option<usize> {
+        match self.of_element.get(element as usize) {
+            None => Some(element as usize),
             Some(&u32::MAX) => None,
             Some(&simplex) => Some(simplex as usize),
         }
@@ -166,14 +166,14 @@ impl Simplex {
 
 impl DeformedSimplices<'_> {
     /// Internal forces in mN, one for each row.
-    pub fn forces(&self, numbering: &Numbering) -> Vec<Vector> {
+    pub fn forces(&self, numbering: &DofMap) -> Vec<Vector> {
         let cells = &self.simplices.cells;
         let pairs = cells.par_iter().zip(&self.points);
         let stresses: Vec<Matrix3<f64>> =
             pairs.map(|(cell, point)| point.stress() * cell.volume).collect();
         let force = |row: usize| -> Vector {
             let around = numbering.around.row(row).iter();
-            let own = around.filter_map(|&clique| self.simplices.of_clique(clique));
+            let own = around.filter_map(|&element| self.simplices.of_element(element));
             own.map(|cell| stresses[cell] * cells[cell].gradients[cells[cell].corner_of(row)]).sum()
         };
         (0..numbering.pattern.rows()).into_par_iter().with_min_len(CHUNK).map(force).collect()
@@ -182,7 +182,7 @@ impl DeformedSimplices<'_> {
     /// The derivatives of the internal forces by the positions, in kPa mm.
     pub fn tangent(
         &self,
-        numbering: &Numbering,
+        numbering: &DofMap,
         progress: &dyn Progress,
     ) -> Result<HalfMatrix<f64, 3>, SolverError> {
         let mut matrix = HalfMatrix::zeros(numbering.pattern.clone());
@@ -201,7 +201,7 @@ impl DeformedSimplices<'_> {
 
     /// Row by row: no two threads write to the same block, and cells are added in their order. `at` is scratch: where
     /// the block of each column of the row lies.
-    fn add_rows(&self, numbering: &Numbering, chunk: RowChunk<f64, 3>, at: &mut [u32]) {
+    fn add_rows(&self, numbering: &DofMap, chunk: RowChunk<f64, 3>, at: &mut [u32]) {
         let begin = numbering.pattern.range(chunk.first).start;
         for (local, diagonal) in chunk.diagonal.iter_mut().enumerate() {
             let row = chunk.first + local;
@@ -209,8 +209,8 @@ impl DeformedSimplices<'_> {
             for (k, &column) in numbering.pattern.columns(row).iter().enumerate() {
                 at[column as usize] = (offset + k) as u32;
             }
-            for &clique in numbering.around.row(row) {
-                let Some(cell) = self.simplices.of_clique(clique) else { continue };
+            for &element in numbering.around.row(row) {
+                let Some(cell) = self.simplices.of_element(element) else { continue };
                 let (cell, point) = (&self.simplices.cells[cell], &self.points[cell]);
                 let own = point.corner(&cell.gradients[cell.corner_of(row)]);
                 for (&column, g) in cell.rows.iter().zip(&cell.gradients) {

@@ -5,14 +5,14 @@ use std::collections::BTreeMap;
 use nalgebra::Matrix3;
 
 use super::bricks::{Bricks, DeformedBricks};
-use super::elements::{Elements, Kept};
+use super::elements::{CellBulkModulus, Elements};
 use super::pressures::{PressureCell, Pressures};
 use super::problem::FiniteStrain;
 use super::sheet::{DeformedSheet, Sheet};
 use super::simplices::{DeformedSimplices, Simplices};
 use crate::material::hyperelastic::Law;
 use crate::mesh::Vector;
-use crate::model::dofs::Numbering;
+use crate::model::dofs::DofMap;
 use crate::model::problem::InvertedCell;
 use crate::progress::Progress;
 use crate::solver::SolverError;
@@ -28,7 +28,7 @@ const SOFT: f64 = 12.0;
 
 /// The elements of a mesh.
 pub(super) struct Tissue<'a> {
-    pub numbering: &'a Numbering,
+    pub numbering: &'a DofMap,
     simplices: Simplices<'a>,
     bricks: Bricks<'a>,
     sheet: Sheet,
@@ -58,8 +58,8 @@ pub(super) struct Deformed<'a> {
 impl<'a> Tissue<'a> {
     pub fn new(
         problem: &FiniteStrain<'a>,
-        numbering: &'a Numbering,
-        kept: &Kept,
+        numbering: &'a DofMap,
+        kept: &CellBulkModulus,
     ) -> Result<Self, InvertedCell> {
         let FiniteStrain { nodes, laws, .. } = *problem;
         let simplices = Simplices::new(problem, numbering, kept)?;
@@ -94,7 +94,7 @@ impl<'a> Tissue<'a> {
     pub fn pressures(
         &self,
         problem: &FiniteStrain,
-        kept: &Kept,
+        kept: &CellBulkModulus,
         axes: BTreeMap<u32, Matrix3<f64>>,
     ) -> Option<Pressures> {
         // Pressures are continuous within tissue of one law, whatever its regions are called.
@@ -196,7 +196,7 @@ impl Deformed<'_> {
     /// For each cell of the mesh whether det F of one of its points is below a limit.
     pub fn pressed(&self, limit: f64) -> Vec<bool> {
         let least = self.simplices.least_volumes().chain(self.bricks.least_volumes());
-        let mut pressed = vec![false; self.tissue.numbering.layout.clique_order.len()];
+        let mut pressed = vec![false; self.tissue.numbering.layout.element_order.len()];
         least.for_each(|(cell, volume)| pressed[cell] = volume < limit);
         pressed
     }

@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 use crate::boundary::Hold;
 use crate::boundary::contact::{CLOSED_MM, FacingSurfaces, with_pressing};
 use crate::mesh::Vector;
-use crate::model::dofs::Numbering;
+use crate::model::dofs::DofMap;
 use crate::model::fem::contact::{ActiveSet, Contact, Effort, FreeUnknowns, KeptRows, Task};
 use crate::model::problem::ModelError;
 use crate::progress::Progress;
@@ -54,7 +54,7 @@ pub(super) struct Change {
 }
 
 /// A state that contact is looked for at.
-pub(super) struct Ahead<'a> {
+pub(super) struct TrialState<'a> {
     /// Displacements after the step without a change of contact, by node.
     pub displacement: &'a [Vector],
     /// The share of the movement of bones after it.
@@ -69,7 +69,7 @@ impl<'a> Touching<'a> {
     pub fn new(
         surfaces: &'a FacingSurfaces<'a>,
         holds: &[Hold],
-        numbering: &'a Numbering,
+        numbering: &'a DofMap,
         most_ahead: f64,
     ) -> Self {
         Touching {
@@ -132,7 +132,7 @@ impl<'a> Touching<'a> {
     pub fn change(
         &mut self,
         matrix: Preconditioned,
-        ahead: &Ahead,
+        ahead: &TrialState,
     ) -> Result<Option<Change>, SolverError> {
         let rows = &self.kept_rows.rows;
         let gaps: Vec<f64> =

@@ -19,7 +19,7 @@ use crate::model::reference_cell;
 /// What a solution of the linear elements holds: a displacement in mm for each node, a pressure in kPa for each unknown
 /// that is one.
 #[derive(Clone, Copy, Debug)]
-pub struct Moved<'a> {
+pub struct LinearState<'a> {
     pub displacement: &'a [Vector],
     pub pressures: &'a [f64],
 }
@@ -30,9 +30,9 @@ pub(super) struct Cell {
     count: usize,
     volume: f64,
     /// What counts at each point.
-    at_points: Parts,
+    at_points: CellModuli,
     /// What counts with the mean volume change of the cell, where there is such a part.
-    of_mean: Option<Parts>,
+    of_mean: Option<CellModuli>,
     /// Means of the gradients of the shape functions, where they are used.
     mean_gradients: [Vector; MAX_NODES],
     /// What the stated law adds at each point.
@@ -43,7 +43,7 @@ pub(super) struct Cell {
 }
 
 /// lambda and mu in kPa, and what fibres add to them.
-struct Parts {
+struct CellModuli {
     lambda: f64,
     mu: f64,
     fibres: Option<ElasticTensor>,
@@ -51,7 +51,7 @@ struct Parts {
 
 /// Gradients and tensions of each state at each point, the mean gradient and the pressure of each state. Where tissue grows
 /// they are those of F_e, and the states the orders of one path.
-pub(super) struct Strained {
+pub(super) struct CellStrains {
     points: usize,
     at: Vec<Stretch>,
     means: Vec<Matrix3<f64>>,
@@ -71,15 +71,15 @@ struct LogVolumes {
     mean: f64,
 }
 
-impl From<ElasticTensor> for Parts {
+impl From<ElasticTensor> for CellModuli {
     fn from(tensor: ElasticTensor) -> Self {
         let ElasticTensor { lambda, mu, fibre } = tensor;
         let fibres = fibre.map(|_| ElasticTensor { lambda: 0.0, mu: 0.0, fibre });
-        Parts { lambda, mu, fibres }
+        CellModuli { lambda, mu, fibres }
     }
 }
 
-impl Strained {
+impl CellStrains {
     fn of(&self, state: usize) -> &[Stretch] {
         &self.at[state * self.points..(state + 1) * self.points]
     }
@@ -149,9 +149,9 @@ impl Cell {
         &self,
         nodes: &[u32],
         pressures: Option<&[u32; 4]>,
-        states: &[Moved],
-    ) -> Strained {
-        let mut strained = Strained {
+        states: &[LinearState],
+    ) -> CellStrains {
+        let mut strained = CellStrains {
             points: self.points.len(),
             at: Vec::new(),
             means: Vec::new(),
@@ -211,7 +211,7 @@ impl Cell {
     }
 
     /// N2 of a pair of states.
-    pub fn second(&self, strained: &Strained, pair: [usize; 2]) -> CellTerms {
+    pub fn second(&self, strained: &CellStrains, pair: [usize; 2]) -> CellTerms {
         let [a, b] = pair.map(|state| strained.of(state));
         let logs = self.log_volumes(|q| second_log_volume(&a[q].gradient, &b[q].gradient));
         let mut terms = CellTerms { volume: self.volume / 4.0 * logs.mean, ..CellTerms::nothing() };
@@ -247,7 +247,7 @@ impl Cell {
 
     /// Adds to the forces of an order along a path what growth adds beside the gradients of F_e, as multiples of
     /// C : G of the states; `super` has the derivation.
-    fn add_growth(&self, strained: &Strained, of_states: &[f64], terms: &mut CellTerms) {
+    fn add_growth(&self, strained: &CellStrains, of_states: &[f64], terms: &mut CellTerms) {
         let growth = self.growth;
         for (state, factor) in of_states.iter().enumerate() {
             for (point, at) in self.points.iter().zip(strained.of(state)) {
@@ -278,7 +278,7 @@ impl Cell {
     }
 
     /// What growth and muscles add to the second order along a path.
-    pub fn second_of_inner(&self, strained: &Strained, terms: &mut CellTerms) {
+    pub fn second_of_inner(&self, strained: &CellStrains, terms: &mut CellTerms) {
         if self.growth != 0.0 {
             self.add_growth(strained, &[self.growth], terms);
         }
@@ -289,7 +289,7 @@ impl Cell {
     }
 
     /// What they add to the third.
-    pub fn third_of_inner(&self, strained: &Strained, terms: &mut CellTerms) {
+    pub fn third_of_inner(&self, strained: &CellStrains, terms: &mut CellTerms) {
         let growth = self.growth;
         if growth != 0.0 {
             self.add_growth(strained, &[growth * growth, growth], terms);
@@ -308,7 +308,7 @@ impl Cell {
     }
 
     /// N3 of the first state.
-    pub fn third(&self, strained: &Strained) -> CellTerms {
+    pub fn third(&self, strained: &CellStrains) -> CellTerms {
         let a = strained.of(0);
         let second = self.log_volumes(|q| second_log_volume(&a[q].gradient, &a[q].gradient));
         let third = self.log_volumes(|q| third_log_volume(&a[q].gradient));

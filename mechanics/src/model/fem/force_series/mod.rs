@@ -30,8 +30,8 @@ use super::displacement_pressure::PressureCells;
 use super::inner_stress::InnerStress;
 use crate::mesh::Vector;
 use crate::model::problem::InvertedCell;
-pub use cell::Moved;
-use cell::{Cell, CellTerms, Strained};
+pub use cell::LinearState;
+use cell::{Cell, CellStrains, CellTerms};
 
 /// Cells whose forces are computed side by side before they are added in cell order, which keeps the bits independent of
 /// the number of threads.
@@ -78,8 +78,8 @@ impl<'a> ForceSeries<'a> {
     }
 
     /// The second order along s u1: N2(u1, u1), with what grows and pulls.
-    pub fn second_along(&self, first: Moved) -> Result<Forces, InvertedCell> {
-        let of_cell = |cell: &Cell, strained: &Strained| {
+    pub fn second_along(&self, first: LinearState) -> Result<Forces, InvertedCell> {
+        let of_cell = |cell: &Cell, strained: &CellStrains| {
             let mut terms = cell.second(strained, [0, 0]);
             cell.second_of_inner(strained, &mut terms);
             vec![terms]
@@ -95,10 +95,10 @@ impl<'a> ForceSeries<'a> {
     /// N2(u, v), bilinear and symmetric, for pairs of states, of tissue in which nothing grows or pulls.
     pub fn second(
         &self,
-        states: &[Moved],
+        states: &[LinearState],
         pairs: &[[usize; 2]],
     ) -> Result<Vec<Forces>, InvertedCell> {
-        let of_cell = |cell: &Cell, strained: &Strained| {
+        let of_cell = |cell: &Cell, strained: &CellStrains| {
             pairs.iter().map(|&pair| cell.second(strained, pair)).collect()
         };
         let mut sums = self.sum(states, pairs.len(), &of_cell)?;
@@ -112,8 +112,8 @@ impl<'a> ForceSeries<'a> {
     }
 
     /// The third order along s u1 + s^2 u2: 2 N2(u1, u2) + N3(u1, u1, u1).
-    pub fn third(&self, first: Moved, second: Moved) -> Result<Forces, InvertedCell> {
-        let of_cell = |cell: &Cell, strained: &Strained| {
+    pub fn third(&self, first: LinearState, second: LinearState) -> Result<Forces, InvertedCell> {
+        let of_cell = |cell: &Cell, strained: &CellStrains| {
             let (mut all, cross) = (cell.third(strained), cell.second(strained, [0, 1]));
             all.add(&cross, 2.0);
             cell.third_of_inner(strained, &mut all);
@@ -131,9 +131,9 @@ impl<'a> ForceSeries<'a> {
 
     fn sum(
         &self,
-        states: &[Moved],
+        states: &[LinearState],
         count: usize,
-        of_cell: &(dyn Fn(&Cell, &Strained) -> Vec<CellTerms> + Sync),
+        of_cell: &(dyn Fn(&Cell, &CellStrains) -> Vec<CellTerms> + Sync),
     ) -> Result<Vec<Forces>, InvertedCell> {
         let mesh = self.tissue.mesh;
         let nothing = Forces {

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use super::tensors::{Constants, Differences, Tensors};
 use crate::material::LinearElastic;
 use crate::mesh::{Vector, VolumeMesh};
-use crate::model::dofs::Numbering;
+use crate::model::dofs::DofMap;
 use crate::model::problem::InvertedCell;
 use crate::progress::Progress;
 use crate::solver::SolverError;
@@ -78,7 +78,7 @@ impl<'a> Tetrahedra<'a> {
     pub fn tangent(
         &self,
         u: &[Vector],
-        numbering: &Numbering,
+        numbering: &DofMap,
         progress: &dyn Progress,
     ) -> Result<HalfMatrix<f64, 3>, SolverError> {
         let mut matrix = HalfMatrix::zeros(numbering.pattern.clone());

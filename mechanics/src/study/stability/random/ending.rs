@@ -5,7 +5,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use nalgebra::Matrix3;
 
 use crate::boundary::Hold;
-use crate::material::hyperelastic::point::{Along, Point};
+use crate::material::hyperelastic::point::{FibreAtPoint, Point};
 use crate::material::hyperelastic::{Hyperelastic, Law, SaintVenantKirchhoff};
 use crate::mesh::Vector;
 use crate::model::fem::strain::gradient_at_centre;
@@ -150,7 +150,7 @@ fn internal_forces(
     for (cell, (_, nodes)) in scene.mesh.cells.iter().enumerate() {
         let tissue = &tissues[usize::from(scene.material_of_cell[cell])];
         let direction = scene.fibres.get(cell).copied().unwrap_or_default();
-        let fibres = tissue.fibres.as_ref().map(|law| Along { law, direction });
+        let fibres = tissue.fibres.as_ref().map(|law| FibreAtPoint { law, direction });
         let x: Vec<Vector> = scene.mesh.corners(cell).collect();
         let edges = Matrix3::from_columns(&[x[1] - x[0], x[2] - x[0], x[3] - x[0]]);
         let gradients = edges.try_inverse()?;

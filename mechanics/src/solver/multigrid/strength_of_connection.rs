@@ -7,14 +7,14 @@ use crate::solver::half_matrix::HalfMatrix;
 use crate::solver::layout::Layout;
 
 /// Minus the trace of the displacement part of each block, clipped at 0, both ways round.
-pub(super) struct Ties {
+pub(super) struct StrengthOfConnection {
     /// The columns of each row, and how strongly each is tied to it.
     rows: Rows<(u32, f32)>,
     /// The sum of the ties to rows that are held altogether.
     pub held: Vec<f32>,
 }
 
-impl Ties {
+impl StrengthOfConnection {
     /// Between the free rows of a matrix. `axes` are those of a row, where it has axes of its own.
     pub fn new<'a, const B: usize>(
         matrix: &HalfMatrix<f64, B>,
@@ -42,7 +42,7 @@ impl Ties {
                 }
             }
         }
-        Ties { rows: sorting.finish(), held }
+        StrengthOfConnection { rows: sorting.finish(), held }
     }
 
     pub fn rows(&self) -> usize {
