@@ -77,7 +77,7 @@ pub(super) async fn successful(
         JobStatus::Failed | JobStatus::Dismissed => {
             let error = job.error.as_deref().unwrap_or("null");
             let error: serde_json::Value = serde_json::from_str(error).unwrap_or_default();
-            let detail = format!("the job has {} and has no results", job.status.name());
+            let detail = format!("the job is {} and has no results", job.status.name());
             Err(Problem::new(ErrorCode::JobFailed, detail)
                 .with("job_status", job.status.name())
                 .with("error", error)

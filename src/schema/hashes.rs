@@ -28,14 +28,9 @@ pub fn predict_hash(
     spec: &PredictDocument,
     content_of: &dyn Fn(&str) -> Option<String>,
 ) -> String {
-    let mut case = case.clone();
-    case.name = None;
-    case.tags.clear();
     let mut plan = plan.unnamed();
     let mut spec = spec.clone();
-    let case_meshes = case.mesh_references_mut().into_iter();
-    let plan_meshes = plan.surface_references_mut().into_iter();
-    for (_, id) in case_meshes.chain(plan_meshes) {
+    for (_, id) in plan.surface_references_mut() {
         replace(id, content_of);
     }
     if let Some(compare_to) = &mut spec.compare_to {
@@ -44,10 +39,26 @@ pub fn predict_hash(
         }
     }
     hash(json!({
-        "case": to_value(&case),
+        "case": stated(case, content_of),
         "plan": to_value(&plan),
         "spec": spec.content(),
     }))
+}
+
+/// The hash of what a case states: contents of meshes in place of their ids, name and tags left out.
+pub fn case_hash(case: &CaseDocument, content_of: &dyn Fn(&str) -> Option<String>) -> String {
+    hash(json!({ "case": stated(case, content_of) }))
+}
+
+/// A case with contents of meshes in place of their ids, without name and tags.
+fn stated(case: &CaseDocument, content_of: &dyn Fn(&str) -> Option<String>) -> Value {
+    let mut case = case.clone();
+    case.name = None;
+    case.tags.clear();
+    for (_, id) in case.mesh_references_mut() {
+        replace(id, content_of);
+    }
+    to_value(&case)
 }
 
 /// The hash of inverse planning: contents of meshes in place of their ids, names and tags left out.
@@ -56,18 +67,12 @@ pub fn optimise_hash(
     spec: &OptimiseDocument,
     content_of: &dyn Fn(&str) -> Option<String>,
 ) -> String {
-    let mut case = case.clone();
-    case.name = None;
-    case.tags.clear();
     let mut spec = spec.clone();
-    for (_, id) in case.mesh_references_mut() {
-        replace(id, content_of);
-    }
     for id in spec.surfaces_mut() {
         replace(id, content_of);
     }
     hash(json!({
-        "case": to_value(&case),
+        "case": stated(case, content_of),
         "spec": spec.content(),
     }))
 }

@@ -103,7 +103,7 @@ fn rows_that_are_kept_are_judged_anew_and_not_solved_again() {
     let (code, told, first) = keep(&[]);
     assert_eq!(code, 0, "{told}");
     let cost =
-        "the truth of slab is solved by `fem_linear` on 2 meshes, 1 times each, the finest with";
+        "the truth of slab is solved by `fem_linear` on 2 meshes, once on each, the finest with";
     assert!(told.contains(cost) && told.contains("s on one thread"), "{told}");
     let (code, told, second) = keep(&["--threshold-p95-mm", "1e-6"]);
     assert_eq!(code, 1, "{told}");

@@ -137,7 +137,12 @@ pub(super) fn turned_about(
     Some((first, segment))
 }
 
-/// Bounded cuts with bone of one segment on both of their sides.
+/// Of the bone of a segment in front of and behind the extent of a cut, the share on the side that is not the segment's from which on
+/// the segment has come around the cut.
+const FAR_SHARE: f64 = 0.1;
+
+/// Bounded cuts with bone of one segment on both of their sides, be it that the saw goes through it there, or that the segment lies
+/// beyond the extent too, although nothing of it does next to it.
 pub(super) fn bridges(osteotomy: &Osteotomy, grid: &Grid<'_>, labels: &BoneLabels) -> Vec<Bridge> {
     let bounded = (0..osteotomy.cuts().len()).filter(|&cut| osteotomy.cuts()[cut].is_bounded());
     bounded.flat_map(|cut| VoxelPairs::new(osteotomy, grid, labels, cut).bridges(grid)).collect()
@@ -148,6 +153,8 @@ struct VoxelPairs<'a> {
     osteotomy: &'a Osteotomy,
     cut: usize,
     parted: BTreeMap<usize, Sum>,
+    /// Of segments that are to lie on one side: the voxels in front of the extent or behind it, on their side and on the other.
+    sides: BTreeMap<usize, [Sum; 2]>,
     beside: BTreeMap<usize, Vec<(usize, Neighbour)>>,
 }
 
@@ -158,9 +165,10 @@ impl<'a> VoxelPairs<'a> {
         labels: &BoneLabels,
         cut: usize,
     ) -> VoxelPairs<'a> {
-        let mut across =
-            VoxelPairs { osteotomy, cut, parted: BTreeMap::new(), beside: BTreeMap::new() };
         let bounded = &osteotomy.cuts()[cut];
+        let sides = sides(osteotomy, grid, labels, cut);
+        let (parted, beside) = (BTreeMap::new(), BTreeMap::new());
+        let mut across = VoxelPairs { osteotomy, cut, parted, sides, beside };
         for (voxel, neighbour) in pairs(grid) {
             let (one, other) = (labels.owner(voxel), labels.owner(neighbour.voxel));
             let (Some(Owner::Segment(segment)), true) = (one, one == other) else { continue };
@@ -180,6 +188,11 @@ impl<'a> VoxelPairs<'a> {
     }
 
     fn bridges(&self, grid: &Grid<'_>) -> Vec<Bridge> {
+        let far = self.sides.iter().filter(|(segment, [own, other])| {
+            let is_parted = self.parted.contains_key(segment);
+            !is_parted && other.faces as f64 > FAR_SHARE * own.faces as f64
+        });
+        let far = far.map(|(segment, [_, other])| (segment, other));
         let bridge = |(&segment, parted): (&usize, &Sum)| {
             let sum = self.nearest_patch(grid, segment, &parted.centre());
             Bridge {
@@ -190,7 +203,7 @@ impl<'a> VoxelPairs<'a> {
                 centre: if sum.faces > 0 { sum.centre() } else { parted.centre() },
             }
         };
-        self.parted.iter().map(bridge).collect()
+        self.parted.iter().chain(far).map(bridge).collect()
     }
 
     /// Of the patches of bone beside the extent the one that comes nearest to its middle.
@@ -210,6 +223,31 @@ impl<'a> VoxelPairs<'a> {
         }
         sum
     }
+}
+
+/// The voxels of each segment that a bounded cut leaves on one side, in front of its extent or behind it: on that side, and on the other.
+/// A piece of a line has no sides far from itself.
+fn sides(
+    osteotomy: &Osteotomy,
+    grid: &Grid<'_>,
+    labels: &BoneLabels,
+    cut: usize,
+) -> BTreeMap<usize, [Sum; 2]> {
+    let mut sums: BTreeMap<usize, [Sum; 2]> = BTreeMap::new();
+    let bounded = &osteotomy.cuts()[cut];
+    if bounded.chain().is_some() {
+        return sums;
+    }
+    for voxel in 0..grid.len() {
+        let Some(Owner::Segment(segment)) = labels.owner(voxel) else { continue };
+        let own = osteotomy.segments()[segment].sides.iter().find(|side| side.cut == cut);
+        let (Some(own), centre) = (own, grid.centre(voxel)) else { continue };
+        if bounded.reaches(&centre) {
+            let is_other = bounded.is_above(&centre) != (own.side == Side::Above);
+            sums.entry(segment).or_default()[usize::from(is_other)].add(0.0, centre);
+        }
+    }
+    sums
 }
 
 /// Faces whose voxels touch, be it at a corner.

@@ -110,6 +110,11 @@ impl Plan {
     pub fn states_loads(&self) -> bool {
         !(self.loads.is_empty() && self.growth.is_empty() && self.activations.is_empty())
     }
+
+    /// Whether some tissue is stated to change its volume, by more than nothing.
+    pub fn grows(&self) -> bool {
+        self.growth.iter().any(|growth| growth.volume_change != 0.0)
+    }
 }
 
 /// Tissue that gains volume or loses it: swelling, weight change, atrophy.

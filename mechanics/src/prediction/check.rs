@@ -241,7 +241,7 @@ impl<'a> Check<'a> {
             self.problems.add("/plan/loads", SceneErrorCode::MethodNotAvailable, detail);
         }
         let inner = [
-            ("growth", "tissue that grows", plan.growth.is_empty()),
+            ("growth", "tissue that grows", !plan.grows()),
             ("activations", "muscles that pull", plan.activations.is_empty()),
         ];
         for (member, what, _) in inner.into_iter().filter(|(_, _, is_empty)| !is_empty) {

@@ -18,6 +18,9 @@ pub const TRUTH_WITHOUT_CONTACT: &str = "truth-without-contact";
 /// The code of answers that are nearer to the truth than that is known: how good they are is not.
 pub const WITHIN_TRUTH_ERROR: &str = "within-truth-error";
 
+/// The share by which two errors that are one and the same may differ.
+const ROUNDING: f64 = 1e-6;
+
 /// The code of rows whose skin moves where a scan has nothing opposite.
 const PARTIAL: &str = "partial-coverage";
 
@@ -53,7 +56,7 @@ impl SceneTruths {
             Some(with) => with.words.clone(),
         };
         let errors = [Some(&without), with.as_ref()].into_iter().flatten();
-        let errors = errors.filter_map(|truths| truths.error_mm);
+        let errors = errors.filter_map(Truths::largest_error);
         let error_mm = errors.max_by(|one, other| one[0].total_cmp(&other[0]));
         Ok(SceneTruths { without, with, words, error_mm })
     }
@@ -67,7 +70,7 @@ impl SceneTruths {
     ) -> TrueSkins<'a> {
         let held = |truths: &'a Truths| ReferenceSkin {
             skin: DisplacedSkin::of(skin, &truths.skins[plan][materials], scene.truth.strain()),
-            own_error: truths.error_mm.map(|[mean, _]| mean),
+            own_error: truths.error(plan, materials),
         };
         TrueSkins::Displaced {
             without: Box::new(held(&self.without)),
@@ -77,10 +80,10 @@ impl SceneTruths {
     }
 }
 
-/// A true skin, and how far it is off itself in the mean, in mm, as far as that is known.
+/// A true skin, and how far it is off itself, mean and p95 in mm, as far as that is known.
 pub(super) struct ReferenceSkin<'a> {
     skin: Result<DisplacedSkin<'a>, Refusal>,
-    own_error: Option<f64>,
+    own_error: Option<[f64; 2]>,
 }
 
 /// What the answers to one plan with one set of materials are held against.
@@ -101,12 +104,12 @@ impl TrueSkins<'_> {
             TrueSkins::Scanned(skin) => {
                 let skin = skin.as_ref().map_err(Refusal::clone)?;
                 let measured = skin.measure(&answer.displacement)?;
-                Ok(solved(answer, measured, &[]))
+                Ok(solved(answer, measured, &[], (None, false)))
             }
             TrueSkins::Displaced { without, with, is_formula } => {
-                let held = match with {
-                    Some(with) if is_touching => &**with,
-                    Some(_) | None => &**without,
+                let (held, truth_contact) = match with {
+                    Some(with) if is_touching => (&**with, true),
+                    Some(_) | None => (&**without, false),
                 };
                 let ReferenceSkin { skin, own_error } = held;
                 let skin = skin.as_ref().map_err(Refusal::clone)?;
@@ -114,19 +117,26 @@ impl TrueSkins<'_> {
                 let measured =
                     measured.map_err(|error| Refusal::new("not-measured", error.to_string()))?;
                 let is_linear = skin.strain == Some(Strain::Small);
-                let within = own_error.is_some_and(|own| measured.error.mean < own);
+                // One mesh before the truth an error may be that of the truth, to the last digits.
+                let is_within = |[own, _]: [f64; 2]| measured.error.mean <= own * (1.0 + ROUNDING);
+                let within = own_error.is_some_and(is_within);
                 let codes = [
                     (LINEAR_TRUTH, is_linear && answer.strain == Strain::Finite),
                     (TRUTH_WITHOUT_CONTACT, *is_formula && is_touching),
                     (WITHIN_TRUTH_ERROR, within),
                 ];
-                Ok(solved(answer, measured, &codes))
+                Ok(solved(answer, measured, &codes, (*own_error, truth_contact)))
             }
         }
     }
 }
 
-fn solved(mut answer: Answer, measured: Measured, codes: &[(&str, bool)]) -> Solved {
+fn solved(
+    mut answer: Answer,
+    measured: Measured,
+    codes: &[(&str, bool)],
+    (truth_error, truth_contact): (Option<[f64; 2]>, bool),
+) -> Solved {
     let partial = (PARTIAL, is_partial(measured.covered_share));
     let codes = codes.iter().chain([&partial]).filter(|(_, holds)| *holds);
     answer.warnings.extend(codes.map(|(code, _)| (*code).to_owned()));
@@ -145,6 +155,8 @@ fn solved(mut answer: Answer, measured: Measured, codes: &[(&str, bool)]) -> Sol
         effectivity: measured.estimated.effectivity,
         chosen: answer.chosen,
         smallest_det_f: answer.smallest_det_f,
+        truth_error,
+        truth_contact,
         warnings: answer.warnings,
         covered_share: measured.covered_share,
     }

@@ -32,6 +32,8 @@ pub struct Pairwise {
     pub rows: usize,
     /// Pairs of rows that are left out because one of them failed.
     pub unsolved: usize,
+    /// Pairs of rows that are left out because one of them is held against a truth with contact and the other is not.
+    pub other_truths: usize,
     /// Of first minus second over the scenes.
     pub median_difference_mm: f64,
     /// The test of the scenes, zeros left out before the ranking, and the p where they leave after it.
@@ -73,9 +75,14 @@ fn compare(rows: &[Row], [first, second]: [&str; 2], measure: Measure) -> Pairwi
     };
     let others = of_label(rows, second);
     let mut scenes: BTreeMap<&str, Vec<[f64; 2]>> = BTreeMap::new();
-    let mut unsolved = 0;
+    let (mut unsolved, mut other_truths) = (0, 0);
     for (place, outcome) in of_label(rows, first) {
         match (outcome, others.get(&place)) {
+            (Outcome::Solved(a), Some(Outcome::Solved(b)))
+                if a.truth_contact != b.truth_contact =>
+            {
+                other_truths += 1;
+            }
             (Outcome::Solved(a), Some(Outcome::Solved(b))) => {
                 scenes.entry(place.0).or_default().push([of(a), of(b)]);
             }
@@ -94,6 +101,7 @@ fn compare(rows: &[Row], [first, second]: [&str; 2], measure: Measure) -> Pairwi
         scenes: scenes.len(),
         rows: scenes.values().map(Vec::len).sum(),
         unsolved,
+        other_truths,
         median_difference_mm: median(a.iter().zip(&b).map(|(a, b)| a - b).collect()),
         test: both_rules(&a, &b),
     }
@@ -141,6 +149,11 @@ impl Pairwise {
                     "{first} and {second} have the same {} to {EQUAL_WITHIN_MM} mm on {}",
                     self.measure.words(),
                     counted(*scenes, "scene")
+                );
+            }
+            Err(PairedError::Empty) if self.other_truths > 0 => {
+                return format!(
+                    "{first} and {second} are not compared: one is held against a truth with contact, the other is not"
                 );
             }
             Err(error) => return format!("{first} and {second} are not compared: {error}"),

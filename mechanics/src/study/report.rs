@@ -106,6 +106,10 @@ pub struct Solved {
     /// Of a model that was chosen by its error: which, as documents call it.
     pub chosen: Option<String>,
     pub smallest_det_f: f64,
+    /// What the truth of this plan and these materials is off by itself, mean and p95 in mm, as far as that is known.
+    pub truth_error: Option<[f64; 2]>,
+    /// Whether that truth was solved with contact.
+    pub truth_contact: bool,
     /// Share of the moving skin's area that has a scan opposite; none without a scan.
     pub covered_share: Option<f64>,
     /// Codes of the warnings.

@@ -36,8 +36,26 @@ pub(super) struct Truths {
     /// For each plan, for each material.
     pub skins: Vec<Vec<TrueSkin>>,
     pub words: String,
-    /// Mean and p95 in mm.
-    pub error_mm: Option<[f64; 2]>,
+    /// What each is off by itself, mean and p95 in mm, as far as that is known; empty where it is of none.
+    errors: Vec<Vec<Option<[f64; 2]>>>,
+}
+
+impl Truths {
+    /// Of which no error is known.
+    fn exact(skins: Vec<Vec<TrueSkin>>, words: &str) -> Truths {
+        Truths { skins, words: words.to_owned(), errors: Vec::new() }
+    }
+
+    /// What the truth of a plan and of materials, by their places, is off by itself, mean and p95 in mm.
+    pub fn error(&self, plan: usize, materials: usize) -> Option<[f64; 2]> {
+        self.errors.get(plan).and_then(|of_plan| of_plan[materials])
+    }
+
+    /// That of the plan and the materials for which the mean is largest.
+    pub fn largest_error(&self) -> Option<[f64; 2]> {
+        let known = self.errors.iter().flatten().flatten();
+        known.copied().max_by(|one, other| one[0].total_cmp(&other[0]))
+    }
 }
 
 /// How a refined truth is solved.
@@ -125,20 +143,20 @@ impl TruthRequest<'_> {
     pub(super) fn nothing(&self) -> Truths {
         let none = || Err(Refusal::new("truth-failed", "no method has an answer"));
         let skins = self.each(|_, _, _| none());
-        Truths { skins, words: "not sought: no method has an answer".to_owned(), error_mm: None }
+        Truths::exact(skins, "not sought: no method has an answer")
     }
 
     fn closed_form(&self, formula: &ClosedForm) -> Truths {
         let nodes = &self.scene.case.volume.nodes;
         let skins = self.each(|plan, materials, skin| {
-            if !plan.growth.is_empty() {
+            if plan.grows() {
                 let detail = "the closed form knows no tissue that grows".to_owned();
                 return Err(Refusal::new("truth-failed", detail));
             }
             let at = |&node: &u32| (formula.displacement)(&nodes[node as usize], plan, materials);
             Ok(skin.nodes().iter().map(at).collect())
         });
-        Truths { skins, words: "closed form".to_owned(), error_mm: None }
+        Truths::exact(skins, "closed form")
     }
 
     fn known(&self, displacement: &[Vector]) -> Truths {
@@ -150,13 +168,13 @@ impl TruthRequest<'_> {
                 Err(Refusal::new("truth-failed", detail))
             }
         });
-        Truths { skins, words: "given with the scene".to_owned(), error_mm: None }
+        Truths::exact(skins, "given with the scene")
     }
 
     /// No displacement: a scan shows none.
     fn scanned(&self) -> Truths {
         let skins = self.each(|_, _, _| Ok(Vec::new()));
-        Truths { skins, words: "a scan".to_owned(), error_mm: None }
+        Truths::exact(skins, "a scan")
     }
 
     /// What holds for each plan, as it is of the materials, and each material.
@@ -200,9 +218,12 @@ impl TruthRequest<'_> {
         }
 
         // 2. What is told of it.
-        let own = self.largest_error(&fields);
+        let own = self.own_errors(&fields);
         let finest = fields.pop().unwrap_or_default();
-        let own_words = match &own {
+        let of_mean = |own: &&OwnError| own.mean_and_p95[0];
+        let largest = own.iter().flatten().flatten();
+        let largest = largest.max_by(|one, other| of_mean(one).total_cmp(&of_mean(other)));
+        let own_words = match largest {
             Some(own) if own.is_observed => {
                 format!("own error extrapolated with the observed order {:.1}", own.order)
             }
@@ -215,7 +236,10 @@ impl TruthRequest<'_> {
         };
         let touching = if how.2.is_unilateral() { " with contact" } else { "" };
         let words = format!("{words}{strain}{touching}, {}; {own_words}", halved(times));
-        Ok(Truths { skins: finest, words, error_mm: own.map(|own| own.mean_and_p95) })
+        let numbers = |of_plan: Vec<Option<OwnError>>| {
+            of_plan.into_iter().map(|own| own.map(|own| own.mean_and_p95)).collect()
+        };
+        Ok(Truths { skins: finest, words, errors: own.into_iter().map(numbers).collect() })
     }
 
     fn solve_plans(
@@ -273,22 +297,17 @@ impl TruthRequest<'_> {
         Ok(Solved { skins, words })
     }
 
-    /// That of the plan and the material for which it is largest.
-    fn largest_error(&self, fields: &[Vec<Vec<TrueSkin>>]) -> Option<OwnError> {
-        let mut largest: Option<OwnError> = None;
-        for (plan, skin) in self.skins.iter().enumerate() {
-            let Ok(skin) = skin else { continue };
-            let areas = skin.surface.point_areas();
-            for material in 0..self.scene.materials.len() {
+    /// For each plan, for each material, as far as it is known.
+    fn own_errors(&self, fields: &[Vec<Vec<TrueSkin>>]) -> Vec<Vec<Option<OwnError>>> {
+        let of_plan = |(plan, skin): (usize, &Result<Skin, Refusal>)| {
+            let areas = skin.as_ref().ok().map(|skin| skin.surface.point_areas());
+            let of = |material: usize| {
                 let found = fields.iter().map(|of_level| of_level[plan][material].as_ref().ok());
-                let Some(found) = found.collect::<Option<Vec<_>>>() else { continue };
-                let Some(own) = own_error(&found, &areas) else { continue };
-                if largest.as_ref().is_none_or(|l| l.mean_and_p95[0] < own.mean_and_p95[0]) {
-                    largest = Some(own);
-                }
-            }
-        }
-        largest
+                own_error(&found.collect::<Option<Vec<_>>>()?, areas.as_ref()?)
+            };
+            (0..self.scene.materials.len()).map(of).collect()
+        };
+        self.skins.iter().enumerate().map(of_plan).collect()
     }
 }
 

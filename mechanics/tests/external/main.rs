@@ -1,6 +1,7 @@
 //! Numerics on what is not part of the project: real meshes, surfaces and images, and files of other programs.
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on panics")]
 
+mod conformation;
 mod estimates;
 mod files;
 mod interop;
@@ -19,6 +20,7 @@ use support::{samples, scenes};
 
 fn main() -> ExitCode {
     support::external::run([
+        conformation::trials(),
         estimates::trials(),
         files::trials(),
         interop::trials(),

@@ -24,12 +24,12 @@ trials! {
 /// From lines within which a cell belongs to a muscle, in mm.
 const NEAR: f64 = 6.0;
 
-fn face(name: &str) -> Result<VolumeMesh, Missing> {
+pub(super) fn face(name: &str) -> Result<VolumeMesh, Missing> {
     let bytes = std::fs::read(shared_data(&format!("face/{name}_face.vtu"))?).unwrap();
     Ok(volume(read_default(&bytes)))
 }
 
-fn surface(mesh: &VolumeMesh, nodes: &[u32]) -> TriangleSurface {
+pub(super) fn surface(mesh: &VolumeMesh, nodes: &[u32]) -> TriangleSurface {
     let on = |node: &u32| nodes.binary_search(node).is_ok();
     let faces = mesh.boundary_faces().into_iter();
     let faces: Vec<_> = faces.filter(|face| face.nodes().iter().all(on)).collect();
@@ -135,7 +135,12 @@ fn sign(is_up: bool) -> f64 {
 }
 
 /// Landmarks one by one, each the farthest from those before.
-fn farthest(mesh: &VolumeMesh, nodes: &[u32], mut chosen: Vec<u32>, count: usize) -> Vec<u32> {
+pub(super) fn farthest(
+    mesh: &VolumeMesh,
+    nodes: &[u32],
+    mut chosen: Vec<u32>,
+    count: usize,
+) -> Vec<u32> {
     let place = |node: u32| mesh.nodes[node as usize];
     let middle = nodes.iter().map(|&node| place(node)).sum::<Vector>() / nodes.len() as f64;
     while chosen.len() < count {

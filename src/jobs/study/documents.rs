@@ -25,11 +25,18 @@ pub(super) struct Scenes {
     pub inputs: Vec<InputDocument>,
     /// The SHA-256 of each mesh and of the skin of the truth's job, by its id.
     pub contents: BTreeMap<String, String>,
-    /// Of each case the SHA-256 of its plans as they were stated, by the name of its scene.
-    pub plans: BTreeMap<String, BTreeMap<String, String>>,
+    /// Of each case what it was stated as, by the name of its scene.
+    pub stated: BTreeMap<String, StatedHashes>,
     /// The series of each scene that belongs to one, by its name.
     pub series: BTreeMap<String, String>,
     pub warnings: Vec<Warning>,
+}
+
+/// SHA-256 of what a case states and of each of its plans, by their names.
+#[derive(Clone, Debug, Default)]
+pub struct StatedHashes {
+    pub case: String,
+    pub plans: BTreeMap<String, String>,
 }
 
 pub(super) fn spec_at() -> Pointer {

@@ -136,7 +136,7 @@ fn rows_of(
         job: input.job.clone(),
         spec_hash: prepared.spec_hash.clone(),
         rows_key: prepared.rows_key.clone(),
-        plans: prepared.plans.clone(),
+        stated: prepared.stated.clone(),
         series: prepared.series.clone(),
         created: now_rfc3339(),
     };

@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::batch::StudyItems;
-use super::documents::Documents;
+use super::documents::{Documents, StatedHashes};
 use super::input::StudyInput;
 use crate::jobs::failure::JobError;
 use crate::jobs::source::MeshSource;
@@ -27,7 +27,7 @@ pub struct PreparedStudy {
     pub rows_key: String,
     pub inputs: Vec<InputDocument>,
     /// As in [`Scenes`](super::documents::Scenes).
-    pub plans: BTreeMap<String, BTreeMap<String, String>>,
+    pub stated: BTreeMap<String, StatedHashes>,
     pub series: BTreeMap<String, String>,
     pub warnings: Vec<Warning>,
 }
@@ -83,7 +83,7 @@ impl StudyInput {
             spec_hash,
             rows_key,
             inputs: scenes.inputs,
-            plans: scenes.plans,
+            stated: scenes.stated,
             series: scenes.series,
             warnings,
         })

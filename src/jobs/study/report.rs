@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use super::documents::StatedHashes;
 use crate::jobs::failure::JobError;
 use crate::jobs::result::provenance::first_null;
 use crate::schema::WarningDocument;
@@ -25,8 +26,8 @@ pub struct ReportOrigin {
     pub job: Option<String>,
     pub spec_hash: String,
     pub rows_key: String,
-    /// Of each case the SHA-256 of its plans, by the name of its scene.
-    pub plans: BTreeMap<String, BTreeMap<String, String>>,
+    /// Of each case what it was stated as, by the name of its scene.
+    pub stated: BTreeMap<String, StatedHashes>,
     /// The series of each scene that belongs to one, by its name.
     pub series: BTreeMap<String, String>,
     /// RFC 3339, UTC.
@@ -55,7 +56,7 @@ pub fn report_document(
         created: origin.created,
         verdict: VerdictDocument::default(),
         rules: rules(spec, variants),
-        scenes: report.scenes.iter().map(|scene| scene_document(scene, &origin.plans)).collect(),
+        scenes: report.scenes.iter().map(|scene| scene_document(scene, &origin.stated)).collect(),
         rows,
         skipped: report.skipped.iter().map(skipped_document).collect(),
         comparisons: comparisons.iter().map(comparison_document).collect(),
@@ -106,18 +107,21 @@ pub fn encode_report(report: &ReportDocument) -> Result<Vec<u8>, JobError> {
     Ok(format!("{value:#}\n").into_bytes())
 }
 
-/// Marks the rows that nothing beats among those of the same plan and material of a scene.
+/// Marks the rows that nothing beats among those of the same plan, material and kind of truth of a scene.
 fn mark_front(rows: &mut [RowDocument], scene: &str) {
-    let mut groups: Vec<(String, String)> = Vec::new();
+    let truth_contact = |row: &RowDocument| row.numbers.as_ref().is_some_and(|n| n.truth_contact);
+    let mut groups: Vec<(String, String, bool)> = Vec::new();
     for row in rows.iter().filter(|row| row.scene == scene) {
-        let group = (row.plan.clone(), row.material.clone());
+        let group = (row.plan.clone(), row.material.clone(), truth_contact(row));
         if !groups.contains(&group) {
             groups.push(group);
         }
     }
-    for (plan, material) in groups {
-        let is_own =
-            |row: &RowDocument| row.scene == scene && row.plan == plan && row.material == material;
+    for (plan, material, contact) in groups {
+        let is_own = |row: &RowDocument| {
+            (&*row.scene, &row.plan, &row.material) == (scene, &plan, &material)
+                && truth_contact(row) == contact
+        };
         let own = rows.iter().enumerate().filter(|(_, row)| is_own(row));
         let (places, points): (Vec<usize>, Vec<[f64; 2]>) = own
             .filter_map(|(place, row)| {
@@ -132,15 +136,17 @@ fn mark_front(rows: &mut [RowDocument], scene: &str) {
 
 fn scene_document(
     scene: &SceneReport,
-    plans: &BTreeMap<String, BTreeMap<String, String>>,
+    stated: &BTreeMap<String, StatedHashes>,
 ) -> StudySceneDocument {
+    let stated = stated.get(&scene.name);
     StudySceneDocument {
         name: scene.name.clone(),
         nodes: scene.nodes as u64,
         cells: scene.cells as u64,
         cell_mm: Some(scene.cell_size).filter(|size| size.is_finite()),
         skin_nodes: scene.skin_nodes as u64,
-        plans: plans.get(&scene.name).cloned().unwrap_or_default(),
+        plans: stated.map(|stated| stated.plans.clone()).unwrap_or_default(),
+        case: stated.map(|stated| stated.case.clone()),
         truth: scene.truth.clone(),
         truth_error_mm: scene.truth_error_mm.map(|[mean, p95]| TruthErrorDocument { mean, p95 }),
         unmoved_mm: scene.unmoved_mm,
@@ -207,6 +213,8 @@ fn numbers(solved: &Solved) -> NumbersDocument {
         effectivity: solved.effectivity,
         chosen: solved.chosen.clone(),
         smallest_det_f: solved.smallest_det_f.is_finite().then_some(solved.smallest_det_f),
+        truth_error_mm: solved.truth_error.map(|[mean, p95]| TruthErrorDocument { mean, p95 }),
+        truth_contact: solved.truth_contact,
         covered_share: solved.covered_share,
     }
 }
@@ -233,6 +241,7 @@ fn comparison_document(pair: &Pairwise) -> VariantComparisonDocument {
         scenes: pair.scenes as u64,
         rows: pair.rows as u64,
         unsolved: pair.unsolved as u64,
+        other_truths: pair.other_truths as u64,
         median_difference_mm: pair.median_difference_mm,
         test,
         sentence: pair.sentence(),

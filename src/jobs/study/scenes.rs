@@ -4,12 +4,13 @@ use std::collections::BTreeMap;
 
 use serde_json::Value;
 
-use super::documents::{Documents, Scenes, spec_at};
+use super::documents::{Documents, Scenes, StatedHashes, spec_at};
 use crate::jobs::failure::JobError;
 
 use crate::jobs::predict::{PredictInput, Prepared};
 use crate::schema::ErrorCode;
 use crate::schema::case::merged::{PlacedMaterials, in_words, merge_materials};
+use crate::schema::hashes;
 use crate::schema::methods::{ElementName, MethodName};
 use crate::schema::study::document::{CaseReference, SceneReference};
 use crate::schema::wire::{canonical, strict};
@@ -326,7 +327,10 @@ impl Documents<'_> {
             let text = canonical::to_value(&plan.unnamed()).to_string();
             (format!("plan {number}"), canonical::sha256_hex(text.as_bytes()))
         });
-        found.plans.insert(scene.name.clone(), stated.collect());
+        let content = |id: &str| first.contents.get(id).cloned();
+        let stated =
+            StatedHashes { case: hashes::case_hash(case, &content), plans: stated.collect() };
+        found.stated.insert(scene.name.clone(), stated);
         found.series.extend(reference.series.clone().map(|series| (scene.name.clone(), series)));
         found.contents.extend(first.contents.clone());
         found.inputs.extend(first.inputs.iter().cloned());

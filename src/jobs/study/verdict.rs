@@ -236,33 +236,42 @@ fn question(scene: &StudySceneDocument) -> String {
     format!("{nodes} nodes, {cells} cells and the truth {truth:?}")
 }
 
-/// Whether a row is about the same mesh, truth and movement as the row of the same names in the baseline.
-fn is_same_question(
+/// Whether a row is about the same mesh, case, truth and movement as the row of the same names in the baseline.
+fn is_same_question<'a>(
     row: &RowDocument,
-    scenes: &[StudySceneDocument],
-    earlier: &ReportDocument,
+    scenes: &'a [StudySceneDocument],
+    earlier: &'a ReportDocument,
 ) -> bool {
-    let find = |scenes: &[StudySceneDocument]| -> Option<(String, Option<String>)> {
-        let scene = scenes.iter().find(|scene| scene.name == row.scene)?;
-        Some((question(scene), scene.plans.get(&row.plan).cloned()))
-    };
-    let (Some((now, plan)), Some((then, before))) = (find(scenes), find(&earlier.scenes)) else {
-        return true;
-    };
-    now == then && (plan == before || plan.is_none() || before.is_none())
+    let find =
+        |scenes: &'a [StudySceneDocument]| scenes.iter().find(|scene| scene.name == row.scene);
+    let (Some(now), Some(then)) = (find(scenes), find(&earlier.scenes)) else { return true };
+    let plan = |scene: &'a StudySceneDocument| scene.plans.get(&row.plan);
+    question(now) == question(then)
+        && is_alike(now.case.as_ref(), then.case.as_ref())
+        && is_alike(plan(now), plan(then))
+}
+
+/// Whether two hashes are one, as far as both are known: earlier versions wrote fewer.
+fn is_alike(now: Option<&String>, then: Option<&String>) -> bool {
+    now == then || now.is_none() || then.is_none()
 }
 
 /// Scenes of one name that are not the same in the baseline: their rows answer other questions.
 fn other_questions(report: &ReportDocument, earlier: &ReportDocument) -> Vec<String> {
     let pair = |scene: &StudySceneDocument| {
         let before = earlier.scenes.iter().find(|other| other.name == scene.name)?;
+        let name = &scene.name;
+        if question(scene) != question(before) {
+            let (now, then) = (question(scene), question(before));
+            return Some(format!(
+                "the scene {name:?} has {now}, and in the baseline {then}: their rows cannot be compared"
+            ));
+        }
         let words = format!(
-            "the scene {:?} has {}, and in the baseline {}: their rows cannot be compared",
-            scene.name,
-            question(scene),
-            question(before)
+            "the case of the scene {name:?} states something else than in the baseline, or has another mesh: their rows cannot be \
+             compared"
         );
-        (question(scene) != question(before)).then_some(words)
+        (!is_alike(scene.case.as_ref(), before.case.as_ref())).then_some(words)
     };
     let scenes = report.scenes.iter().filter_map(pair);
     scenes.chain(other_plans(report, earlier)).collect()
@@ -303,8 +312,8 @@ fn whole(
             found.push((outcome, words));
         }
     };
-    tell(OutcomeName::Worse, worse > 0, format!("{worse} of {rows} rows are worse than allowed"));
-    tell(OutcomeName::Worse, failed > 0, format!("{failed} of {rows} rows failed"));
+    tell(OutcomeName::Worse, worse > 0, format!("of {rows} rows {worse} are worse than allowed"));
+    tell(OutcomeName::Worse, failed > 0, format!("of {rows} rows {failed} failed"));
     tell(OutcomeName::Incomplete, solved == 0, "no row was solved".to_owned());
     let unheld = unheld(report);
     let words = format!("the thresholds hold for {}, which applies nowhere", unheld.join(", "));

@@ -14,7 +14,7 @@ use crate::schema::repair::{RepairedMesh, check_cells};
 use crate::schema::wire::fault::{Faults, Pointer};
 use crate::schema::wire::limits::Limits;
 use crate::schema::wire::names::{check_distinct, check_tags};
-use mechanics::boundary::NodeSelection;
+use mechanics::boundary::{NodeClass, NodeSelection};
 use mechanics::mesh::ignored::listed;
 use mechanics::mesh::{Frame, TriangleSurface, Vector, VolumeMesh, Warning};
 use mechanics::prediction::{
@@ -34,6 +34,10 @@ pub struct ConvertedCase {
     /// Of its volume, where the document asks for one.
     pub repair: Option<RepairReport>,
 }
+
+/// Classes of nodes that segments may not be called after.
+const OF_CLASSES: [NodeClass; 4] =
+    [NodeClass::Prescribed, NodeClass::Fixed, NodeClass::Sliding, NodeClass::Free];
 
 impl CaseDocument {
     /// The case in mm with the materials of a spec over its own. Pointers start at `/case` and `/spec`.
@@ -267,8 +271,14 @@ impl CaseDocument {
         for (index, segment) in self.segments.iter().enumerate() {
             let at = at.index(index);
             faults.check_name(&at.key("name"), &segment.name, limits.name_characters as usize);
-            let nodes = segment.nodes.to_selection(&at.key("nodes"), limits, faults);
             let name = segment.name.trim().to_owned();
+            if OF_CLASSES.iter().any(|class| class.name() == name) {
+                let detail = format!(
+                    "{name:?} is what nodes are called that no segment moves, in counts and reactions: give the segment another name"
+                );
+                faults.add(&at.key("name"), ErrorCode::BadName, detail);
+            }
+            let nodes = segment.nodes.to_selection(&at.key("nodes"), limits, faults);
             segments.extend(nodes.map(|nodes| CaseSegment { name, nodes }));
         }
         segments

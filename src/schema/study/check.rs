@@ -185,7 +185,12 @@ impl StudyDocument {
             let lists = [
                 ("young_modulus_kpa", &values.young_modulus_kpa),
                 ("poisson_ratio", &values.poisson_ratio),
+                ("volume_change", &values.volume_change),
             ];
+            if lists.iter().all(|(_, list)| list.is_empty()) {
+                let detail = "at least one of `young_modulus_kpa`, `poisson_ratio` and `volume_change` has values";
+                faults.add(&at.key(region), ErrorCode::MissingField, detail);
+            }
             for (name, list) in lists {
                 faults.check_length(&at.key(region).key(name), list.len(), MOST_SWEPT_VALUES);
             }

@@ -82,8 +82,9 @@ impl TruthCostDocument {
         let time = time_s.map_or_else(String::new, |time| {
             format!(": {:.0} to {:.0} s on one thread", time.low, time.high)
         });
+        let times = if *solves == 1 { "once".to_owned() } else { format!("{solves} times") };
         format!(
-            "the truth of {scene} is solved by `{method}` on {meshes} meshes, {solves} times each, the finest with {cells} cells and {unknowns} unknowns{time}"
+            "the truth of {scene} is solved by `{method}` on {meshes} meshes, {times} on each, the finest with {cells} cells and {unknowns} unknowns{time}"
         )
     }
 }

@@ -226,6 +226,14 @@ pub struct NumbersDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub smallest_det_f: Option<f64>,
+    /// What the truth of this plan and these materials is off by itself; absent where it is a formula or a scan, or that is not known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub truth_error_mm: Option<TruthErrorDocument>,
+    /// Whether that truth was solved with contact: absent where it was not.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    #[schema(required = false)]
+    pub truth_contact: bool,
     /// Share of the moving skin's area that has a scan opposite; absent without a scan.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
@@ -261,6 +269,10 @@ pub struct VariantComparisonDocument {
     pub rows: u64,
     /// Pairs of rows left out because one failed.
     pub unsolved: u64,
+    /// Pairs of rows left out because one is held against a truth with contact and the other is not.
+    #[serde(default)]
+    #[schema(required = false)]
+    pub other_truths: u64,
     /// Of first minus second.
     pub median_difference_mm: f64,
     /// Absent where there is nothing to rank.

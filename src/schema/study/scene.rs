@@ -22,6 +22,10 @@ pub struct StudySceneDocument {
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     #[schema(required = false)]
     pub plans: BTreeMap<String, String>,
+    /// Of a case: the SHA-256 of what it states, contents of meshes in place of their ids, names and tags left out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub case: Option<String>,
     pub truth: String,
     /// What the truth itself is off by, mean and p95 over the skin, by extrapolation; absent where it is a formula or
     /// not known.

@@ -13,6 +13,7 @@ mod clients_folder;
 mod clients_that_stall;
 mod cohorts;
 mod conform;
+mod contact;
 mod entrance;
 mod error_codes;
 mod events;

@@ -434,7 +434,7 @@ async fn a_skin_as_gltf_has_its_vertices_in_the_order_of_its_nodes_and_colours_t
 }
 
 /// A lip on a bone, and 1 mm above it a smaller one that is held from above.
-fn lips() -> Vec<u8> {
+pub(super) fn lips() -> Vec<u8> {
     let mut mesh = sample::block(Vector::new(50.0, 40.0, 6.0), [10, 8, 2], CellShape::Hex8);
     let upper = sample::block(Vector::new(23.0, 21.0, 6.0), [5, 4, 2], CellShape::Hex8);
     let first = mesh.nodes.len() as u32;

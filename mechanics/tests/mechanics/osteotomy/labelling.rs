@@ -148,6 +148,33 @@ fn a_stepped_cut_that_is_not_deep_enough_leaves_a_bridge() {
 }
 
 #[test]
+fn a_segment_that_comes_around_a_disc_is_named_although_next_to_it_lies_other_bone() {
+    // Two bars, x from 2 to 17, joined by a wall at x up to 4, and a pillar on the lower one that ends below the upper one.
+    let bone = scan([20, 14, 20], |x| {
+        let within = |low: [f64; 2], high: [f64; 2]| {
+            (low[0]..=high[0]).contains(&x.x) && (low[1]..=high[1]).contains(&x.z)
+        };
+        let bars = within([2.0, 4.0], [17.0, 8.0]) || within([2.0, 22.0], [17.0, 30.0]);
+        let is_bone = bars || within([2.0, 4.0], [4.0, 30.0]) || within([10.0, 4.0], [12.0, 18.0]);
+        if is_bone && (2.0..=11.0).contains(&x.y) { 1000.0 } else { 0.0 }
+    });
+    let disc = |radius| {
+        let plane = plane([11.0, 6.5, 13.0], [0.0, 0.0, 1.0]);
+        Cut::new("cut", plane, Some(Extent::Disc { radius }), 0.0).unwrap()
+    };
+    let below = || vec![segment("part", &[(0, Side::Below)], &[[8.0, 6.0, 6.0]])];
+    // The disc parts all of the pillar, and the bone above it is no segment's; the wall leads around.
+    let around = parted(&bone, vec![disc(6.0)], below());
+    assert!(around.segments[0].centre.z > 13.0, "{:?}", around.segments[0]);
+    let [bridge] = &around.bridges[..] else { panic!("{:?}", around.bridges) };
+    assert_eq!((bridge.segment, bridge.cut, bridge.faces), (0, 0, 3 * 10));
+    assert!((bridge.centre - Vector::new(3.0, 6.5, 13.0)).norm() < 1e-9, "{bridge:?}");
+    // All of the plane leaves the lower bar.
+    let whole = parted(&bone, vec![disc(40.0)], below());
+    assert!(whole.segments[0].centre.z < 13.0 && whole.bridges.is_empty(), "{whole:?}");
+}
+
+#[test]
 fn a_line_whose_corners_lie_on_centres_of_voxels_parts_the_bone_without_a_bridge() {
     // Corners in x from 9 to 10 and in z from 12 to 14, where centres lie at whole x and even z.
     for x in [9.0, 9.5, 10.0] {

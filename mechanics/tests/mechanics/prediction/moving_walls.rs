@@ -160,19 +160,20 @@ fn tissue_between_a_bone_and_its_wall_goes_with_both_as_one() {
 }
 
 #[test]
-fn springs_know_that_a_wall_turns_with_its_bone() {
+fn springs_and_finite_strain_know_that_a_wall_turns_with_its_bone() {
     let mesh = block(Vector::new(10.0, 10.0, 10.0), [2, 3, 2], CellShape::Tet4);
     let mut case = case_of(mesh, material(15.0, 0.46));
     case.allow_unfixed = true;
     case.segments = vec![segment("jaw", "z_min")];
     case.sliding = vec![wall("x_max", Some("jaw"))];
-    let method = springs();
-    let settings = Settings { method, ..exact() };
-    let prediction = solve(&case, &moved(turned(25.0)), &settings);
-    let exact = |x: &Vector| turned(25.0).displacement(x);
-    let error = largest_error(&case.volume, &prediction.displacement, exact);
-    assert!(error < 1e-8, "{error:e}");
-    assert!(!prediction.warnings.iter().any(|w| w.code == "sliding-normal-turned"));
+    for method in [springs(), Method::FemNonlinear] {
+        let settings = Settings { method, ..exact() };
+        let prediction = solve(&case, &moved(turned(25.0)), &settings);
+        let exact = |x: &Vector| turned(25.0).displacement(x);
+        let error = largest_error(&case.volume, &prediction.displacement, exact);
+        assert!(error < 1e-8, "{:?}: {error:e}", settings.method);
+        assert!(!prediction.warnings.iter().any(|w| w.code == "sliding-normal-turned"));
+    }
 }
 
 #[test]

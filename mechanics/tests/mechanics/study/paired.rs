@@ -248,6 +248,8 @@ fn row(scene: &str, plan: &str, label: &str, error: Option<f64>) -> Row {
             effectivity: None,
             chosen: None,
             smallest_det_f: 1.0,
+            truth_error: None,
+            truth_contact: false,
             covered_share: None,
             warnings: Vec::new(),
         })),

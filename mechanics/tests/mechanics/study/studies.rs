@@ -538,6 +538,8 @@ fn row(label: &str, level: u32, wall_s: f64, p95: f64, skin_mean_mm: f64) -> Row
             effectivity: None,
             chosen: None,
             smallest_det_f: 1.0,
+            truth_error: None,
+            truth_contact: false,
             covered_share: None,
             warnings: Vec::new(),
         })),
