@@ -94,12 +94,33 @@ pub(super) fn assess(
         pieces: mended.pieces,
         level,
         uncertain,
-        opening: opening(tree),
+        opening: mended.opening,
         between_sheets: between_sheets(&samples),
         volume: box_volume * inside.len() as f64 / SAMPLES as f64,
         volume_of_triangles: six_volumes.sum::<f64>() / 6.0,
     };
     let apart = inside.len().div_ceil(MOST_INSIDE).max(1);
+    if std::env::var_os("DBG").is_some() {
+        let all = samples.iter();
+        let n = |range: std::ops::Range<f64>| {
+            all.clone().filter(|s| range.contains(&(s.winding / level))).count()
+        };
+        eprintln!(
+            "DBG level {level} inside {} clear.2-.8 {:.4} .25-.75 {} .4-.6 {} .5-1.5 {} >1.5 {} between {:.4} lids {} open {} opening {:.4} vol {:.0} tri {:.0}",
+            inside.len(),
+            assessment.uncertain,
+            n(0.25..0.75),
+            n(0.4..0.6),
+            n(0.5..1.5),
+            n(1.5..99.),
+            assessment.between_sheets,
+            mended.mending.lids,
+            mended.open_edges,
+            assessment.opening,
+            assessment.volume,
+            assessment.volume_of_triangles
+        );
+    }
     Some(Assessed { assessment, inside: inside.into_iter().step_by(apart).collect() })
 }
 
@@ -125,13 +146,6 @@ fn between_sheets(samples: &[Sample]) -> f64 {
     let within = all.len() - all.partition_point(|&winding| winding <= few);
     let between = within - (all.len() - all.partition_point(|&winding| winding < most));
     between as f64 / within.max(1) as f64
-}
-
-fn opening(tree: &TriangleTree) -> f64 {
-    let areas = tree.facets().iter().map(|facet| facet.corners.area_vector());
-    let (sum, area) =
-        areas.fold((Vector::zeros(), 0.0), |(sum, area), one| (sum + one, area + one.norm()));
-    sum.norm() / area
 }
 
 /// The winding numbers above `least` away from the surface, or all where those are few.

@@ -19,6 +19,7 @@ pub mod image_error;
 mod image_options;
 mod label_body;
 mod left_out;
+mod lids;
 pub mod limit;
 pub mod mending;
 mod nearest_boundary;

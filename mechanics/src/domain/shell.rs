@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use super::assessment::{Assessed, Assessment, assess};
-use super::mending::mend;
+use super::mending::{MOST_OPEN, mend};
 use super::surface_error::{SurfaceDomainError, SurfaceName};
 use super::triangle_tree::TriangleTree;
 use super::winding_cells::WindingCells;
@@ -13,8 +13,6 @@ use crate::mesh::{TriangleSurface, Vector};
 const FARTHEST: f64 = 1e6;
 /// A surface with more of its inside uncertain is refused.
 const MOST_UNCERTAIN: f64 = 0.1;
-/// A surface with a larger opening, in parts of its area, was cut off: a hole of a damaged one is a hundredth or two.
-const MOST_OPEN: f64 = 0.03;
 /// A surface whose sheets enclose more of its inside between them is refused.
 const MOST_BETWEEN: f64 = 0.08;
 /// Triangles of more than this many times the area of their box are refused: searches among them would not end.
