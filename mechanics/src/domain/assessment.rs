@@ -26,7 +26,7 @@ const WHOLE: f64 = 0.85;
 const BETWEEN: std::ops::Range<f64> = 0.2..0.8;
 /// A surface with a median winding number above this goes around its inside more than once.
 const SEVERAL: f64 = 1.3;
-/// Winding numbers between these parts of the median belong to some of its sheets.
+/// Winding numbers between these parts of the median belong to some of its sheets, and between these of the level to holes.
 const SOME: [f64; 2] = [0.25, 0.75];
 /// Where triangles are missing all over, winding numbers above this part of the level show that they are not missing evenly.
 const UNEVEN: f64 = 1.25;
@@ -50,8 +50,12 @@ pub struct Assessment {
     pub uncertain: f64,
     /// The sum of all area vectors in parts of the area: 0 for a whole surface, the share of an opening for one that was cut off.
     pub opening: f64,
-    /// Of a surface that goes around its inside more than once how much of that lies between its sheets; 0 of others.
+    /// Of a surface that goes around its inside more than once how much of that lies between its sheets, with the difference of
+    /// volumes of sheets that were left out; 0 of others.
     pub between_sheets: f64,
+    /// Of a surface with wide holes that have no lid, how much in parts of its inside has a winding number between 1/4 and 3/4 of
+    /// the level: where the surface that is missing may have been; 0 of others.
+    pub in_holes: f64,
     /// Where the winding number is above half of the level, in mm³.
     pub volume: f64,
     /// By the divergence theorem over the triangles, in mm³: the same for a whole surface, twice as much for a doubled one.
@@ -87,6 +91,11 @@ pub(super) fn assess(
     let box_volume = (high - low).product();
     let middle = (low + high) * 0.5;
     let six_volumes = tree.facets().iter().map(|facet| facet.corners.volume_with(&middle));
+    let in_holes = samples
+        .iter()
+        .filter(|sample| SOME[0] * level < sample.winding && sample.winding < SOME[1] * level);
+    let in_holes = if mended.wide_holes == 0 { 0 } else { in_holes.count() };
+    let volume = box_volume * inside.len() as f64 / SAMPLES as f64;
     let assessment = Assessment {
         triangles: tree.facets().len(),
         mending: mended.mending,
@@ -95,32 +104,12 @@ pub(super) fn assess(
         level,
         uncertain,
         opening: mended.opening,
-        between_sheets: between_sheets(&samples),
-        volume: box_volume * inside.len() as f64 / SAMPLES as f64,
+        between_sheets: between_sheets(&samples) + mended.second_sheets_differ / volume,
+        in_holes: in_holes as f64 / inside.len() as f64,
+        volume,
         volume_of_triangles: six_volumes.sum::<f64>() / 6.0,
     };
     let apart = inside.len().div_ceil(MOST_INSIDE).max(1);
-    if std::env::var_os("DBG").is_some() {
-        let all = samples.iter();
-        let n = |range: std::ops::Range<f64>| {
-            all.clone().filter(|s| range.contains(&(s.winding / level))).count()
-        };
-        eprintln!(
-            "DBG level {level} inside {} clear.2-.8 {:.4} .25-.75 {} .4-.6 {} .5-1.5 {} >1.5 {} between {:.4} lids {} open {} opening {:.4} vol {:.0} tri {:.0}",
-            inside.len(),
-            assessment.uncertain,
-            n(0.25..0.75),
-            n(0.4..0.6),
-            n(0.5..1.5),
-            n(1.5..99.),
-            assessment.between_sheets,
-            mended.mending.lids,
-            mended.open_edges,
-            assessment.opening,
-            assessment.volume,
-            assessment.volume_of_triangles
-        );
-    }
     Some(Assessed { assessment, inside: inside.into_iter().step_by(apart).collect() })
 }
 

@@ -21,6 +21,8 @@ const WIDE: usize = 12;
 const LEAST_ROUNDNESS: f64 = 0.6;
 /// How far beyond the border, in its radii, the surface tells how a lid is curved.
 const AROUND: f64 = 1.8;
+/// The cosine of the angle to a lid of what tells how it is curved: the other side of a thin body does not.
+const LEAST_COSINE: f64 = 0.3;
 /// Root mean square of what a quadric leaves of the heights, in radii: more is no smooth place.
 const MOST_LEFT: f64 = 0.1;
 /// Rings of triangles of a lid.
@@ -34,6 +36,8 @@ pub(super) struct Lids {
     pub corners: Vec<Corners>,
     /// Holes that they close.
     pub count: usize,
+    /// Wide holes that can have none.
+    pub left: usize,
 }
 
 /// A surface whose triangles agree on a side, with the edges at which one of them has no neighbour, each as that triangle goes
@@ -41,6 +45,8 @@ pub(super) struct Lids {
 pub(super) struct Open<'a> {
     pub points: &'a [Vector],
     pub triangles: &'a [[u32; 3]],
+    /// Of the triangles, on their side.
+    pub corners: &'a [Corners],
     pub edges: &'a [[u32; 2]],
     /// A larger hole, in mm², is none: the surface was cut off.
     pub most_area: f64,
@@ -61,8 +67,9 @@ pub(super) fn lids(open: &Open<'_>) -> Lids {
             true => Some(Lid::flat(open, &border)),
             false => Lid::curved(open, &border, &neighbours),
         };
-        if let Some(lid) = lid {
-            lid.add_to(open, &border, &mut lids);
+        match lid {
+            Some(lid) => lid.add_to(open, &border, &mut lids),
+            None => lids.left += 1,
         }
     }
     lids
@@ -96,14 +103,18 @@ fn borders(edges: &[[u32; 2]]) -> Vec<Vec<u32>> {
     found
 }
 
-/// The neighbours of each point near a wide border.
-fn neighbours(open: &Open<'_>, borders: &[Vec<u32>]) -> HashMap<u32, Vec<u32>> {
-    let mut found: HashMap<u32, Vec<u32>> = HashMap::new();
+/// A point over an edge, and the area vector of the triangle there.
+type Neighbour = (u32, Vector);
+
+/// The neighbours of each point; none where no border is wide.
+fn neighbours(open: &Open<'_>, borders: &[Vec<u32>]) -> HashMap<u32, Vec<Neighbour>> {
+    let mut found: HashMap<u32, Vec<Neighbour>> = HashMap::new();
     if borders.iter().any(|border| border.len() >= WIDE) {
-        for &[a, b, c] in open.triangles {
+        for (&[a, b, c], corners) in open.triangles.iter().zip(open.corners) {
+            let side = corners.area_vector();
             for (from, to) in [(a, b), (b, c), (c, a)] {
-                found.entry(from).or_default().push(to);
-                found.entry(to).or_default().push(from);
+                found.entry(from).or_default().push((to, side));
+                found.entry(to).or_default().push((from, side));
             }
         }
     }
@@ -135,7 +146,11 @@ impl Lid {
         Lid { middle, axes, radius, heights: SVector::zeros(), rings: 1 }
     }
 
-    fn curved(open: &Open<'_>, border: &[u32], neighbours: &HashMap<u32, Vec<u32>>) -> Option<Lid> {
+    fn curved(
+        open: &Open<'_>,
+        border: &[u32],
+        neighbours: &HashMap<u32, Vec<Neighbour>>,
+    ) -> Option<Lid> {
         let flat = Lid::flat(open, border);
         let places: Vec<Vector> = border.iter().map(|&point| open.points[point as usize]).collect();
         let area = across(&places, &flat.middle).norm();
@@ -169,15 +184,17 @@ impl Lid {
         &self,
         open: &Open<'_>,
         border: &[u32],
-        neighbours: &HashMap<u32, Vec<u32>>,
+        neighbours: &HashMap<u32, Vec<Neighbour>>,
     ) -> Vec<Vector> {
         let place = |point: u32| open.points[point as usize];
         let mut seen: BTreeSet<u32> = border.iter().copied().collect();
         let mut waiting = border.to_vec();
         while let Some(here) = waiting.pop() {
-            for &there in neighbours.get(&here).into_iter().flatten() {
+            for &(there, side) in neighbours.get(&here).into_iter().flatten() {
                 let is_near = (place(there) - self.middle).norm() < AROUND * self.radius;
-                if is_near && seen.insert(there) {
+                // A border goes around the back of what it bounds.
+                let looks_along = -side.dot(&self.axes[2]) > LEAST_COSINE * side.norm();
+                if is_near && looks_along && seen.insert(there) {
                     waiting.push(there);
                 }
             }

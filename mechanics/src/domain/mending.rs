@@ -9,6 +9,7 @@ use std::collections::HashSet;
 
 use super::facets::{Edges, Patches, Pieces};
 use super::lids::{Open, lids};
+use super::second_sheets::{SecondSheets, second_sheets};
 use super::triangle::{Corners, SolidAngles};
 use super::triangle_tree::{Facet, TriangleTree};
 use crate::mesh::{TriangleSurface, Vector};
@@ -39,6 +40,8 @@ pub struct Mending {
     pub turned: usize,
     /// The whole surface was inside out.
     pub was_inverted: bool,
+    /// Triangles of pieces that stood there twice, one close beside the other.
+    pub second_sheets: usize,
     /// Holes closed by a lid as curved as what is around them.
     pub lids: usize,
 }
@@ -54,6 +57,10 @@ pub(super) struct Mended {
     pub pieces: usize,
     /// The sum of all area vectors in parts of the area, without lids: 0 for a whole surface.
     pub opening: f64,
+    /// Wide holes that have no lid.
+    pub wide_holes: usize,
+    /// By how much the volumes of pieces that stood there twice differ, in mm³.
+    pub second_sheets_differ: f64,
 }
 
 /// Mends a surface whose corners are finite points of it.
@@ -73,14 +80,26 @@ pub(super) fn mend(surface: &TriangleSurface) -> Mended {
     mending.turned = changed.count();
     let opening = opening(&corners, &turned);
     let closed = Closed { triangles, numbers, corners, turned };
-    let (closed, lids) = closed.with_lids(surface, &edges);
+    let (closed, SecondSheets { triangles: second, differ }) = closed.without_second(&pieces);
+    mending.second_sheets = second.len();
+    let edges = if second.is_empty() { edges } else { Edges::new(&closed.triangles) };
+    let (closed, [lids, wide_holes]) = closed.with_lids(surface, &edges);
     mending.lids = lids;
     let edges = if lids == 0 { edges } else { Edges::new(&closed.triangles) };
     let Closed { numbers, corners, turned, .. } = closed;
     let open = edges.open_lengths(&corners, &turned);
     let open_edges = edges.open_count(&turned);
     let facets = facets(&corners, &numbers, &turned, &open);
-    Mended { facets, mending, open_edges, pieces: pieces.count, opening }
+    let pieces = pieces.count;
+    Mended {
+        facets,
+        mending,
+        open_edges,
+        pieces,
+        opening,
+        second_sheets_differ: differ,
+        wide_holes,
+    }
 }
 
 /// Triangles by welded points, their numbers, their corners, and which of them were turned.
@@ -92,12 +111,34 @@ struct Closed {
 }
 
 impl Closed {
-    /// With lids on holes, and how many.
-    fn with_lids(mut self, surface: &TriangleSurface, edges: &Edges) -> (Closed, usize) {
+    /// The corners, each triangle on its side.
+    fn oriented(&self) -> Vec<Corners> {
+        let each = self.corners.iter().zip(&self.turned);
+        each.map(|(corners, &turned)| if turned { corners.reversed() } else { *corners }).collect()
+    }
+
+    /// Without what stands there twice.
+    fn without_second(mut self, pieces: &Pieces) -> (Closed, SecondSheets) {
+        let second = second_sheets(&self.oriented(), pieces);
+        if !second.triangles.is_empty() {
+            let stays: Vec<bool> = (0..self.turned.len() as u32)
+                .map(|n| second.triangles.binary_search(&n).is_err())
+                .collect();
+            self.triangles = kept(&self.triangles, &stays);
+            self.numbers = kept(&self.numbers, &stays);
+            self.corners = kept(&self.corners, &stays);
+            self.turned = kept(&self.turned, &stays);
+        }
+        (self, second)
+    }
+
+    /// With lids on holes, how many, and how many wide holes have none.
+    fn with_lids(mut self, surface: &TriangleSurface, edges: &Edges) -> (Closed, [usize; 2]) {
         let area: f64 = self.corners.iter().map(|corners| corners.area_vector().norm()).sum();
         let lids = lids(&Open {
             points: &surface.points,
             triangles: &self.triangles,
+            corners: &self.oriented(),
             edges: &edges.borders(&self.turned),
             most_area: MOST_OPEN * area,
         });
@@ -106,8 +147,12 @@ impl Closed {
         self.turned.resize(self.turned.len() + lids.triangles.len(), false);
         self.triangles.extend(lids.triangles);
         self.corners.extend(lids.corners);
-        (self, lids.count)
+        (self, [lids.count, lids.left])
     }
+}
+
+fn kept<T: Copy>(all: &[T], stays: &[bool]) -> Vec<T> {
+    all.iter().zip(stays).filter(|(_, stays)| **stays).map(|(one, _)| *one).collect()
 }
 
 fn opening(corners: &[Corners], turned: &[bool]) -> f64 {

@@ -27,6 +27,7 @@ mod node_stack;
 mod region_map;
 mod root;
 mod scanned_skin;
+mod second_sheets;
 mod shell;
 mod smoothed;
 pub mod surface;

@@ -46,7 +46,7 @@ pub enum SurfaceDomainError {
     )]
     Incomplete { surface: SurfaceName, level: f64, open_edges: usize },
     #[error(
-        "{surface}: {percent:.0} % of the inside is uncertain, with winding numbers between 0.2 and 0.8 ({open_edges} open edges, {pieces} pieces): close its openings and leave out pieces that are no part of it where it was made"
+        "{surface}: {percent:.1} % of the inside is uncertain, with winding numbers that say neither in nor out ({open_edges} open edges, {pieces} pieces): close its openings and leave out pieces that are no part of it where it was made"
     )]
     Uncertain { surface: SurfaceName, percent: f64, open_edges: usize, pieces: usize },
     #[error(
@@ -54,9 +54,9 @@ pub enum SurfaceDomainError {
     )]
     Open { surface: SurfaceName, percent: f64, open_edges: usize },
     #[error(
-        "{surface}: {percent:.1} % of its inside lies between sheets that are there twice: which of them bounds the body is not known; give one of them alone"
+        "{surface}: {percent:.1} % of its inside, as much as {of_tissue:.1} % of the tissue, lies between sheets that are there twice: which of them bounds the body is not known; give one of them alone"
     )]
-    Doubled { surface: SurfaceName, percent: f64 },
+    Doubled { surface: SurfaceName, percent: f64, of_tissue: f64 },
     #[error(
         "{surface}: its triangles have {times:.0} times the area of its box; more than 20 times is no surface of a body: is it cut into many layers, or does the file hold several bodies? Give its outer surface alone"
     )]
