@@ -50,9 +50,10 @@ pub struct Assessment {
     pub uncertain: f64,
     /// The sum of all area vectors in parts of the area: 0 for a whole surface, the share of an opening for one that was cut off.
     pub opening: f64,
-    /// Of a surface that goes around its inside more than once how much of that lies between its sheets, with the difference of
-    /// volumes of sheets that were left out; 0 of others.
+    /// Of a surface that goes around its inside more than once how much of that lies between its sheets; 0 of others.
     pub between_sheets: f64,
+    /// By how much the volumes of second sheets that were left out and of the first differ, in parts of the inside.
+    pub second_sheets_differ: f64,
     /// Of a surface with wide holes that have no lid, how much in parts of its inside has a winding number between 1/4 and 3/4 of
     /// the level: where the surface that is missing may have been; 0 of others.
     pub in_holes: f64,
@@ -104,7 +105,8 @@ pub(super) fn assess(
         level,
         uncertain,
         opening: mended.opening,
-        between_sheets: between_sheets(&samples) + mended.second_sheets_differ / volume,
+        between_sheets: between_sheets(&samples),
+        second_sheets_differ: mended.second_sheets_differ / volume,
         in_holes: in_holes as f64 / inside.len() as f64,
         volume,
         volume_of_triangles: six_volumes.sum::<f64>() / 6.0,

@@ -154,10 +154,10 @@ fn refuse_doubtful(found: &[Assessment], tissue: f64) -> Result<(), SurfaceDomai
                 (100.0 * found.in_holes, found.pieces, found.open_edges);
             return Err(SurfaceDomainError::Uncertain { surface, percent, open_edges, pieces });
         }
-        let [own, of_tissue] = [found.between_sheets, found.between_sheets * found.volume / tissue];
+        let own = found.between_sheets + found.second_sheets_differ;
+        let of_tissue = found.between_sheets * found.volume / tissue;
         if own > MOST_BETWEEN || of_tissue > MOST_BETWEEN_OF_TISSUE {
-            let [percent, of_tissue] = [own, of_tissue].map(|share| 100.0 * share);
-            return Err(SurfaceDomainError::Doubled { surface, percent, of_tissue });
+            return Err(SurfaceDomainError::Doubled { surface, percent: 100.0 * own });
         }
     }
     Ok(())

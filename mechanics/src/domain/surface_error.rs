@@ -54,9 +54,9 @@ pub enum SurfaceDomainError {
     )]
     Open { surface: SurfaceName, percent: f64, open_edges: usize },
     #[error(
-        "{surface}: {percent:.1} % of its inside, as much as {of_tissue:.1} % of the tissue, lies between sheets that are there twice: which of them bounds the body is not known; give one of them alone"
+        "{surface}: {percent:.1} % of its inside lies between sheets that are there twice: which of them bounds the body is not known; give one of them alone"
     )]
-    Doubled { surface: SurfaceName, percent: f64, of_tissue: f64 },
+    Doubled { surface: SurfaceName, percent: f64 },
     #[error(
         "{surface}: its triangles have {times:.0} times the area of its box; more than 20 times is no surface of a body: is it cut into many layers, or does the file hold several bodies? Give its outer surface alone"
     )]
