@@ -77,6 +77,8 @@ fn warning(name: SurfaceName, found: &Assessment) -> Option<Warning> {
             .with("degenerate", mending.degenerate as f64)
             .with("duplicates", mending.duplicates as f64)
             .with("turned", mending.turned as f64)
+            .with("second_sheets", mending.second_sheets as f64)
+            .with("lids", mending.lids as f64)
             .with("open_edges", found.open_edges as f64)
             .with("winding_number", found.level)
             .with("uncertain", found.uncertain),
@@ -89,6 +91,8 @@ fn findings(found: &Assessment) -> Vec<String> {
         (mending.degenerate, "triangles without an area left out"),
         (mending.duplicates, "triangles left out that stood there before"),
         (mending.turned, "triangles turned to the side of those around them"),
+        (mending.second_sheets, "triangles of a second sheet close beside the first left out"),
+        (mending.lids, "holes closed by lids as curved as what is around them"),
         (found.open_edges, "open edges closed by the winding number"),
     ];
     let counts = counts.into_iter().filter(|(count, _)| *count > 0);

@@ -26,7 +26,7 @@ const WHOLE: f64 = 0.85;
 const BETWEEN: std::ops::Range<f64> = 0.2..0.8;
 /// A surface with a median winding number above this goes around its inside more than once.
 const SEVERAL: f64 = 1.3;
-/// Winding numbers between these parts of the median belong to some of its sheets.
+/// Winding numbers between these parts of the median belong to some of its sheets, and between these of the level to holes.
 const SOME: [f64; 2] = [0.25, 0.75];
 /// Where triangles are missing all over, winding numbers above this part of the level show that they are not missing evenly.
 const UNEVEN: f64 = 1.25;
@@ -52,6 +52,11 @@ pub struct Assessment {
     pub opening: f64,
     /// Of a surface that goes around its inside more than once how much of that lies between its sheets; 0 of others.
     pub between_sheets: f64,
+    /// By how much the volumes of second sheets that were left out and of the first differ, in parts of the inside.
+    pub second_sheets_differ: f64,
+    /// Of a surface with wide holes that have no lid, how much in parts of its inside has a winding number between 1/4 and 3/4 of
+    /// the level: where the surface that is missing may have been; 0 of others.
+    pub in_holes: f64,
     /// Where the winding number is above half of the level, in mm³.
     pub volume: f64,
     /// By the divergence theorem over the triangles, in mm³: the same for a whole surface, twice as much for a doubled one.
@@ -87,6 +92,11 @@ pub(super) fn assess(
     let box_volume = (high - low).product();
     let middle = (low + high) * 0.5;
     let six_volumes = tree.facets().iter().map(|facet| facet.corners.volume_with(&middle));
+    let in_holes = samples
+        .iter()
+        .filter(|sample| SOME[0] * level < sample.winding && sample.winding < SOME[1] * level);
+    let in_holes = if mended.wide_holes == 0 { 0 } else { in_holes.count() };
+    let volume = box_volume * inside.len() as f64 / SAMPLES as f64;
     let assessment = Assessment {
         triangles: tree.facets().len(),
         mending: mended.mending,
@@ -94,9 +104,11 @@ pub(super) fn assess(
         pieces: mended.pieces,
         level,
         uncertain,
-        opening: opening(tree),
+        opening: mended.opening,
         between_sheets: between_sheets(&samples),
-        volume: box_volume * inside.len() as f64 / SAMPLES as f64,
+        second_sheets_differ: mended.second_sheets_differ / volume,
+        in_holes: in_holes as f64 / inside.len() as f64,
+        volume,
         volume_of_triangles: six_volumes.sum::<f64>() / 6.0,
     };
     let apart = inside.len().div_ceil(MOST_INSIDE).max(1);
@@ -125,13 +137,6 @@ fn between_sheets(samples: &[Sample]) -> f64 {
     let within = all.len() - all.partition_point(|&winding| winding <= few);
     let between = within - (all.len() - all.partition_point(|&winding| winding < most));
     between as f64 / within.max(1) as f64
-}
-
-fn opening(tree: &TriangleTree) -> f64 {
-    let areas = tree.facets().iter().map(|facet| facet.corners.area_vector());
-    let (sum, area) =
-        areas.fold((Vector::zeros(), 0.0), |(sum, area), one| (sum + one, area + one.norm()));
-    sum.norm() / area
 }
 
 /// The winding numbers above `least` away from the surface, or all where those are few.

@@ -27,25 +27,25 @@ pub struct Containment {
     pub farthest: f64,
 }
 
-/// The containment of each bone; refused where the skin leaves no tissue or a bone lies elsewhere.
+/// The containment of each bone, and the share of the inside of the skin that is free of bone; refused where the skin leaves no tissue or a bone lies elsewhere.
 pub(super) fn contained(
     skin: &Shell,
     bones: &[Shell],
-) -> Result<Vec<Containment>, SurfaceDomainError> {
+) -> Result<(Vec<Containment>, f64), SurfaceDomainError> {
     let free = skin.share(|point| bones.iter().all(|bone| bone.value(point) <= 0.0));
     let exchanged = bones.iter().any(|bone| reaches_around(bone, skin));
     if free < if exchanged { LEAST_FREE_AROUND } else { LEAST_FREE } {
         return Err(SurfaceDomainError::NoTissue { percent: 100.0 * (1.0 - free), exchanged });
     }
     let each = bones.iter().enumerate();
-    each.map(|(number, bone)| {
+    let each = each.map(|(number, bone)| {
         let found = contained_bone(skin, bone);
         match found.outside > 1.0 - LEAST_INSIDE {
             true => Err(refusal(number, skin, bone, found.outside)),
             false => Ok(found),
         }
-    })
-    .collect()
+    });
+    Ok((each.collect::<Result<_, _>>()?, free))
 }
 
 fn contained_bone(skin: &Shell, bone: &Shell) -> Containment {

@@ -121,6 +121,17 @@ impl Edges {
         self.of_one_edge().filter(|edge| excess(edge, turned) != 0).count()
     }
 
+    /// Edges of one triangle alone, each as that triangle goes along it.
+    pub(super) fn borders(&self, turned: &[bool]) -> Vec<[u32; 2]> {
+        let lone =
+            self.of_one_edge().filter_map(|edge| if let [side] = edge { Some(side) } else { None });
+        lone.map(|side| match side.rises != turned[side.triangle as usize] {
+            true => side.ends,
+            false => [side.ends[1], side.ends[0]],
+        })
+        .collect()
+    }
+
     /// For each edge of each triangle its length in mm if triangles go along it one way more often than the other, times
     /// how much more often, shared by the triangles there; otherwise 0.
     pub(super) fn open_lengths(&self, corners: &[Corners], turned: &[bool]) -> Vec<[f64; 3]> {

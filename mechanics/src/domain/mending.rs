@@ -8,6 +8,8 @@
 use std::collections::HashSet;
 
 use super::facets::{Edges, Patches, Pieces};
+use super::lids::{Open, lids};
+use super::second_sheets::{SecondSheets, second_sheets};
 use super::triangle::{Corners, SolidAngles};
 use super::triangle_tree::{Facet, TriangleTree};
 use crate::mesh::{TriangleSurface, Vector};
@@ -22,6 +24,9 @@ const DECISIVE: f64 = 0.15;
 /// A patch whose area as seen along its normal is less than this part of it is nearly closed: it has an inside of its own.
 const LEAST_FLATNESS: f64 = 0.3;
 
+/// A surface with a larger opening, in parts of its area, was cut off: a hole of a damaged one is a hundredth or two.
+pub(super) const MOST_OPEN: f64 = 0.03;
+
 /// What was done to a surface.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Mending {
@@ -35,6 +40,10 @@ pub struct Mending {
     pub turned: usize,
     /// The whole surface was inside out.
     pub was_inverted: bool,
+    /// Triangles of pieces that stood there twice, one close beside the other.
+    pub second_sheets: usize,
+    /// Holes closed by a lid as curved as what is around them.
+    pub lids: usize,
 }
 
 /// A surface ready to be searched.
@@ -46,6 +55,12 @@ pub(super) struct RepairedSurface {
     pub open_edges: usize,
     /// Parts that hang together over edges.
     pub pieces: usize,
+    /// The sum of all area vectors in parts of the area, without lids: 0 for a whole surface.
+    pub opening: f64,
+    /// Wide holes that have no lid.
+    pub wide_holes: usize,
+    /// By how much the volumes of pieces that stood there twice differ, in mm³.
+    pub second_sheets_differ: f64,
 }
 
 /// Mends a surface whose corners are finite points of it.
@@ -63,10 +78,90 @@ pub(super) fn mend(surface: &TriangleSurface) -> RepairedSurface {
     mending.was_inverted = 2 * turned.iter().filter(|&&turned| turned).count() > turned.len();
     let changed = turned.iter().filter(|&&turned| turned != mending.was_inverted);
     mending.turned = changed.count();
+    let opening = opening(&corners, &turned);
+    let closed = Closed { triangles, numbers, corners, turned };
+    let (closed, SecondSheets { triangles: second, differ }) = closed.without_second(&pieces);
+    mending.second_sheets = second.len();
+    let edges = if second.is_empty() { edges } else { Edges::new(&closed.triangles) };
+    let (closed, [lids, wide_holes]) = closed.with_lids(surface, &edges);
+    mending.lids = lids;
+    let edges = if lids == 0 { edges } else { Edges::new(&closed.triangles) };
+    let Closed { numbers, corners, turned, .. } = closed;
     let open = edges.open_lengths(&corners, &turned);
     let open_edges = edges.open_count(&turned);
     let facets = facets(&corners, &numbers, &turned, &open);
-    RepairedSurface { facets, mending, open_edges, pieces: pieces.count }
+    let pieces = pieces.count;
+    RepairedSurface {
+        facets,
+        mending,
+        open_edges,
+        pieces,
+        opening,
+        second_sheets_differ: differ,
+        wide_holes,
+    }
+}
+
+/// Triangles by welded points, their numbers, their corners, and which of them were turned.
+struct Closed {
+    triangles: Vec<[u32; 3]>,
+    numbers: Vec<u32>,
+    corners: Vec<Corners>,
+    turned: Vec<bool>,
+}
+
+impl Closed {
+    /// The corners, each triangle on its side.
+    fn oriented(&self) -> Vec<Corners> {
+        let each = self.corners.iter().zip(&self.turned);
+        each.map(|(corners, &turned)| if turned { corners.reversed() } else { *corners }).collect()
+    }
+
+    /// Without what stands there twice.
+    fn without_second(mut self, pieces: &Pieces) -> (Closed, SecondSheets) {
+        let second = second_sheets(&self.oriented(), pieces);
+        if !second.triangles.is_empty() {
+            let stays: Vec<bool> = (0..self.turned.len() as u32)
+                .map(|n| second.triangles.binary_search(&n).is_err())
+                .collect();
+            self.triangles = kept(&self.triangles, &stays);
+            self.numbers = kept(&self.numbers, &stays);
+            self.corners = kept(&self.corners, &stays);
+            self.turned = kept(&self.turned, &stays);
+        }
+        (self, second)
+    }
+
+    /// With lids on holes, how many, and how many wide holes have none.
+    fn with_lids(mut self, surface: &TriangleSurface, edges: &Edges) -> (Closed, [usize; 2]) {
+        let area: f64 = self.corners.iter().map(|corners| corners.area_vector().norm()).sum();
+        let lids = lids(&Open {
+            points: &surface.points,
+            triangles: &self.triangles,
+            corners: &self.oriented(),
+            edges: &edges.borders(&self.turned),
+            most_area: MOST_OPEN * area,
+        });
+        let first = surface.triangles.len() as u32;
+        self.numbers.extend((first..).take(lids.triangles.len()));
+        self.turned.resize(self.turned.len() + lids.triangles.len(), false);
+        self.triangles.extend(lids.triangles);
+        self.corners.extend(lids.corners);
+        (self, [lids.count, lids.left])
+    }
+}
+
+fn kept<T: Copy>(all: &[T], stays: &[bool]) -> Vec<T> {
+    all.iter().zip(stays).filter(|(_, stays)| **stays).map(|(one, _)| *one).collect()
+}
+
+fn opening(corners: &[Corners], turned: &[bool]) -> f64 {
+    let signed = corners.iter().zip(turned).map(|(corners, &turned)| {
+        if turned { -corners.area_vector() } else { corners.area_vector() }
+    });
+    let (sum, area) =
+        signed.fold((Vector::zeros(), 0.0), |(sum, area), one| (sum + one, area + one.norm()));
+    sum.norm() / area
 }
 
 /// Triangles by welded points, without those that bound nothing, and their numbers.

@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use super::assessment::{Assessed, Assessment, assess};
-use super::mending::mend;
+use super::mending::{MOST_OPEN, mend};
 use super::surface_error::{SurfaceDomainError, SurfaceName};
 use super::triangle_tree::TriangleTree;
 use super::winding_cells::WindingCells;
@@ -13,10 +13,6 @@ use crate::mesh::{TriangleSurface, Vector};
 const FARTHEST: f64 = 1e6;
 /// A surface with more of its inside uncertain is refused.
 const MOST_UNCERTAIN: f64 = 0.1;
-/// A surface with a larger opening, in parts of its area, was cut off: a hole of a damaged one is a hundredth or two.
-const MOST_OPEN: f64 = 0.03;
-/// A surface whose sheets enclose more of its inside between them is refused.
-const MOST_BETWEEN: f64 = 0.08;
 /// Triangles of more than this many times the area of their box are refused: searches among them would not end.
 const MOST_AREA: f64 = 20.0;
 /// A surface of which less is left is refused.
@@ -112,7 +108,7 @@ impl Shell {
 
 /// Refuses a surface whose inside is not certain.
 fn refuse_unsure(found: &Assessment, surface: SurfaceName) -> Result<(), SurfaceDomainError> {
-    let Assessment { level, uncertain, opening, between_sheets, pieces, open_edges, .. } = *found;
+    let Assessment { level, uncertain, opening, pieces, open_edges, .. } = *found;
     let percent = |share: f64| 100.0 * share;
     if level < LEAST_LEVEL {
         return Err(SurfaceDomainError::Incomplete { surface, level, open_edges });
@@ -125,10 +121,7 @@ fn refuse_unsure(found: &Assessment, surface: SurfaceName) -> Result<(), Surface
         let percent = percent(uncertain);
         return Err(SurfaceDomainError::Uncertain { surface, percent, open_edges, pieces });
     }
-    match between_sheets > MOST_BETWEEN {
-        true => Err(SurfaceDomainError::Doubled { surface, percent: percent(between_sheets) }),
-        false => Ok(()),
-    }
+    Ok(())
 }
 
 fn check(surface: &TriangleSurface, name: SurfaceName) -> Result<(), SurfaceDomainError> {

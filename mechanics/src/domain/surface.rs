@@ -18,6 +18,16 @@ use crate::mesh::{TriangleSurface, Vector};
 /// Parts of a segment that differ by less are one place.
 const SAME_PLACE: f64 = 1e-9;
 
+/// A surface whose sheets enclose more of its inside between them is refused.
+const MOST_BETWEEN: f64 = 0.08;
+/// The same of the tissue. The body goes as far as any of its sheets: where one lies within the other, that is the outer sheet, and
+/// where two cross evenly, half of what lies between them more than a sheet. Half-way between the two cases this is 1 % of tissue too
+/// much.
+const MOST_BETWEEN_OF_TISSUE: f64 = 0.04;
+
+/// What holes without a lid leave uncertain of more of the tissue is refused: the volume is to be right within as much.
+const MOST_IN_HOLES: f64 = 0.01;
+
 /// A skin with bones as a body to mesh.
 #[derive(Clone, Debug)]
 pub struct SurfaceDomain {
@@ -47,7 +57,8 @@ impl SurfaceDomain {
             shells.push(shell);
             assessments.push(of_bone);
         }
-        let containments = contained(&skin, &shells)?;
+        let (containments, free) = contained(&skin, &shells)?;
+        refuse_doubtful(&assessments, of_skin.volume * free)?;
         let ends = cut_ends(skin.tree.facets(), skin.tree.bounds(), of_skin.level);
         let airways = AirwayMap::new(ends.bounds, ends.faces, |point| skin.value(point) > 0.0);
         let cut = ends.triangles;
@@ -131,6 +142,25 @@ impl SurfaceDomain {
             }
         }
     }
+}
+
+/// Refuses a surface whose sheets or holes leave it open where the tissue ends.
+fn refuse_doubtful(found: &[Assessment], tissue: f64) -> Result<(), SurfaceDomainError> {
+    let bones = (0..found.len()).map(SurfaceName::Bone);
+    for (surface, found) in std::iter::once(SurfaceName::Skin).chain(bones).zip(found) {
+        let in_holes = found.in_holes * found.volume / tissue;
+        if in_holes > MOST_IN_HOLES {
+            let (percent, pieces, open_edges) =
+                (100.0 * found.in_holes, found.pieces, found.open_edges);
+            return Err(SurfaceDomainError::Uncertain { surface, percent, open_edges, pieces });
+        }
+        let own = found.between_sheets + found.second_sheets_differ;
+        let of_tissue = found.between_sheets * found.volume / tissue;
+        if own > MOST_BETWEEN || of_tissue > MOST_BETWEEN_OF_TISSUE {
+            return Err(SurfaceDomainError::Doubled { surface, percent: 100.0 * own });
+        }
+    }
+    Ok(())
 }
 
 impl Domain for SurfaceDomain {

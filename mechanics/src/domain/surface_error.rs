@@ -46,7 +46,7 @@ pub enum SurfaceDomainError {
     )]
     Incomplete { surface: SurfaceName, level: f64, open_edges: usize },
     #[error(
-        "{surface}: {percent:.0} % of the inside is uncertain, with winding numbers between 0.2 and 0.8 ({open_edges} open edges, {pieces} pieces): close its openings and leave out pieces that are no part of it where it was made"
+        "{surface}: {percent:.1} % of the inside is uncertain, with winding numbers that say neither in nor out ({open_edges} open edges, {pieces} pieces): close its openings and leave out pieces that are no part of it where it was made"
     )]
     Uncertain { surface: SurfaceName, percent: f64, open_edges: usize, pieces: usize },
     #[error(
