@@ -58,8 +58,7 @@ impl OptimiseInput {
                 let regions = self.regions_of(&region, rest);
                 let Some(regions) = regions else {
                     let known = listed(rest.scene.regions.iter());
-                    let detail =
-                        format!("the case has no region {region:?}; its regions: {known}");
+                    let detail = format!("the case has no region {region:?}; its regions: {known}");
                     return Err(refused(&at, ErrorCode::UnknownRegion, detail));
                 };
                 let bounds = ConstantBounds { regions, kind, interval: (low, high) };

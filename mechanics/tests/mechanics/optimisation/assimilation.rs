@@ -135,8 +135,16 @@ fn ratio_and_loss_come_back_and_are_as_certain_as_published() {
         );
         assert_eq!(certainty.determined, [Parameter::Growth(0), Parameter::Constant(0)]);
         assert!((nu - NU).abs() < 1e-4 && (loss - LOSS).abs() < 1e-4, "{by:?}: {nu} {loss}");
-        let alone = slab.found(&mut || 0.0, InnerBounds::Growth(0.0, 0.0));
-        println!("   without loss nu {:.4} of {shift}", alone.optimum.constants[0] - NU);
+        // To first order a fit without loss is off by C_ng / C_gg times what was lost.
+        let first_order = -together * errors[1] / errors[0] * LOSS;
+        let alone = slab.found(&mut || 0.0, InnerBounds::Growth(0.0, 0.0)).optimum;
+        let off = alone.constants[0] - NU;
+        println!(
+            "   without loss nu is off by {first_order:.3} to first order, by {off:.3} within its bounds"
+        );
+        assert!((first_order / shift - 1.0).abs() < 0.06, "{by:?}: {first_order}");
+        // Outwards and along it ends at its bound.
+        assert!(off.signum() == f64::signum(shift) && off.abs() > 0.039, "{by:?}: {off}");
         assert!((errors[1] / of_ratio - 1.0).abs() < 0.05, "{by:?}: {errors:?}");
         assert!((errors[0] / of_loss - 1.0).abs() < 0.05, "{by:?}: {errors:?}");
         assert!((together - correlation).abs() < 0.03, "{by:?}: {together}");
