@@ -10,17 +10,20 @@ use super::scene::SceneArguments;
 use super::screen::{print_files, print_warnings, work_in_sight};
 use crate::jobs::{JobContext, JobInput, OptimiseInput};
 use crate::schema::Limits;
-use crate::schema::optimise::result::OptimisationDocument;
+use crate::schema::optimise::result::{OptimisationDocument, ParameterName, PartDocument};
 use crate::schema::wire::canonical;
 
 /// The plan that was found, as `predict --plan` reads it.
 const PLAN_FILE: &str = "plan.json";
 
+/// Correlations that are larger are told: one of the two has nearly all its error from the other.
+const TOLD_CORRELATION: f64 = 0.9;
+
 #[derive(Debug, Args)]
 pub struct Arguments {
     #[command(flatten)]
     scene: SceneArguments,
-    /// An optimise document with `targets` and `bounds`, as it is posted but for `case`. Method, element, materials,
+    /// An optimise document with `targets`, `bounds` and `tissue_bounds`, as it is posted but for `case`. Method, element, materials,
     /// membrane, tolerance and budget that it does not state are those of the case file, whose plan is not used
     #[arg(long, value_name = "FILE", help_heading = "How it is computed")]
     spec: PathBuf,
@@ -49,16 +52,47 @@ pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
     Ok(())
 }
 
+/// A number by what it is of and by its name in documents.
+fn called(segment: Option<&String>, region: Option<&String>, name: ParameterName) -> String {
+    let of = segment.or(region).map_or("", String::as_str);
+    let name = canonical::to_value(&name);
+    format!("{of} {}", name.as_str().unwrap_or_default())
+}
+
 fn print_found(found: &OptimisationDocument) {
     for (parameter, error) in found.parameters.iter().zip(&found.standard_error) {
-        let name = canonical::to_value(&parameter.name);
-        let name = name.as_str().unwrap_or_default();
-        println!("found      {} {name} {:.3} +- {error:.3}", parameter.segment, parameter.value);
+        let called = called(parameter.segment.as_ref(), parameter.region.as_ref(), parameter.name);
+        let value = parameter.value;
+        match parameter.region {
+            Some(_) => println!("found      {called} {value:.4} +- {error:.4}"),
+            None => println!("found      {called} {value:.3} +- {error:.3}"),
+        }
     }
     for stopped in &found.at_bound {
-        let name = canonical::to_value(&stopped.name);
-        let name = name.as_str().unwrap_or_default();
-        println!("at bound   {} {name} {:.3}", stopped.segment, stopped.value);
+        let called = called(stopped.segment.as_ref(), stopped.region.as_ref(), stopped.name);
+        println!("at bound   {called} {:.3}", stopped.value);
+    }
+    for (row, one) in found.parameters.iter().enumerate() {
+        for (other, correlation) in found.parameters.iter().zip(&found.correlation[row]).take(row) {
+            if correlation.abs() > TOLD_CORRELATION {
+                let [one, other] = [one, other]
+                    .map(|own| called(own.segment.as_ref(), own.region.as_ref(), own.name));
+                println!("correlated {one} with {other}: {correlation:.3}");
+            }
+        }
+    }
+    for parts in &found.undetermined {
+        let part = |own: &PartDocument| {
+            format!(
+                "{:.3} x {}",
+                own.part,
+                called(own.segment.as_ref(), own.region.as_ref(), own.name)
+            )
+        };
+        println!("not told   {}", parts.iter().map(part).collect::<Vec<_>>().join(" + "));
+    }
+    if let Some(factor) = found.residual_factor {
+        println!("residual   {factor:.2} of what sigma_mm says");
     }
     for (index, target) in found.targets.iter().enumerate() {
         println!(

@@ -10,7 +10,7 @@ use mechanics::anatomy::AnatomyError;
 use mechanics::chart::PngError;
 use mechanics::format::WriteError;
 use mechanics::meshing::MeshingError;
-use mechanics::optimisation::OptimisationError;
+use mechanics::optimisation::{OptimisationError, SearchError};
 use mechanics::prediction::{InvertedCell, ModelError, SolverError};
 use mechanics::study::StudyError;
 use mechanics::validation::StatisticsError;
@@ -27,6 +27,8 @@ pub enum JobError {
     Prediction(#[from] ModelError),
     #[error("no plan was found: {0}")]
     Optimisation(#[from] OptimisationError),
+    #[error("no constants were found: {0}")]
+    Search(SearchError),
     #[error("the scan could not be meshed: {0}")]
     Anatomy(AnatomyError),
     #[error("the study could not be run: {0}")]
@@ -70,6 +72,7 @@ impl JobError {
             JobError::Study(_) => ErrorClass::Input,
             JobError::Prediction(_)
             | JobError::Optimisation(_)
+            | JobError::Search(_)
             | JobError::NotFinite { .. }
             | JobError::Statistics(_)
             | JobError::Encode(_) => ErrorClass::Numerical,
@@ -94,7 +97,7 @@ impl JobError {
             JobError::Source(SourceError::Unreadable { .. }) | JobError::Write { .. } => {
                 ErrorCode::Storage
             }
-            JobError::Optimisation(_) => ErrorCode::NoPlanFound,
+            JobError::Optimisation(_) | JobError::Search(_) => ErrorCode::NoPlanFound,
             JobError::NotFinite { .. } => ErrorCode::NotFinite,
             JobError::Statistics(_) => ErrorCode::StatisticsFailed,
             JobError::Encode(_) => ErrorCode::EncodingFailed,

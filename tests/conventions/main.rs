@@ -57,7 +57,7 @@ const MECHANICS: [(&str, &[&str]); 30] = [
         &["mesh", "image", "plan", "boundary", "material", "muscle", "solver", "model", "progress"],
     ),
     ("response", &["mesh", "plan", "boundary", "solver", "model", "prediction", "progress"]),
-    ("optimisation", &["mesh", "plan", "response"]),
+    ("optimisation", &["mesh", "plan", "material", "prediction", "response", "progress"]),
     (
         "study",
         &[

@@ -38,7 +38,10 @@ impl Linearised {
     pub fn new(jacobian: DMatrix<f64>, residual: DVector<f64>) -> Self {
         let normal = jacobian.tr_mul(&jacobian);
         let slope = jacobian.tr_mul(&residual);
-        let largest = normal.symmetric_eigenvalues().iter().copied().fold(0.0, f64::max);
+        let largest = match normal.is_empty() {
+            true => 0.0,
+            false => normal.symmetric_eigenvalues().iter().copied().fold(0.0, f64::max),
+        };
         Linearised { jacobian, residual, normal, slope, largest }
     }
 

@@ -14,12 +14,13 @@ use super::{Bound, Parameter};
 /// A parameter with less than this weight takes no part in a combination.
 const SMALL_WEIGHT: f64 = 1e-3;
 
-/// What the targets say about the parameters that no bound stops.
+/// What the targets say about the parameters.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Certainty {
-    /// The free parameters that the targets determine.
+    /// The parameters that the targets determine: those that no bound stops, and those of tissue even so, since a bound of a
+    /// constant says where it may be and not that it is there.
     pub determined: Vec<Parameter>,
-    /// Their covariance in mm and radians.
+    /// Their covariance in mm, radians and shares.
     pub covariance: DMatrix<f64>,
     /// How many independent combinations the targets determine.
     pub rank: usize,
@@ -27,7 +28,7 @@ pub struct Certainty {
     pub undetermined: Vec<Vec<Weight>>,
 }
 
-/// The part of a parameter in a combination: in mm and degrees, the largest part is 1.
+/// The part of a parameter in a combination: in mm, degrees and hundredths, the largest part is 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Weight {
     pub parameter: Parameter,
@@ -36,7 +37,9 @@ pub struct Weight {
 
 impl Certainty {
     pub fn new(unknowns: &Unknowns, minimum: &Minimum, at_bound: &[(Parameter, Bound)]) -> Self {
-        let is_free = |parameter: &Parameter| at_bound.iter().all(|(other, _)| other != parameter);
+        let is_free = |parameter: &Parameter| {
+            parameter.is_of_tissue() || at_bound.iter().all(|(other, _)| other != parameter)
+        };
         let places: Vec<usize> =
             (0..unknowns.count()).filter(|&place| is_free(&unknowns.free[place])).collect();
         let free: Vec<Parameter> = places.iter().map(|&place| unknowns.free[place]).collect();
@@ -57,9 +60,24 @@ impl Certainty {
         }
     }
 
-    /// The standard error of each determined parameter, in mm or radians.
+    /// The standard error of each determined parameter, in mm, radians or shares.
     pub fn standard_errors(&self) -> Vec<f64> {
         self.covariance.diagonal().iter().map(|variance| variance.sqrt()).collect()
+    }
+
+    /// The standard error of a parameter; none where the targets do not determine it.
+    pub fn standard_error_of(&self, parameter: Parameter) -> Option<f64> {
+        let place = self.determined.iter().position(|other| *other == parameter)?;
+        Some(self.covariance[(place, place)].sqrt())
+    }
+
+    /// The correlation of each two determined parameters.
+    pub fn correlation(&self) -> DMatrix<f64> {
+        let errors = self.standard_errors();
+        let of = |row: usize, column: usize| {
+            self.covariance[(row, column)] / (errors[row] * errors[column])
+        };
+        DMatrix::from_fn(errors.len(), errors.len(), of)
     }
 }
 

@@ -1,4 +1,5 @@
-//! Inverse planning: the movements of bone segments that take the skin where it is wanted.
+//! Inverse planning: the movements of bone segments that take the skin where it is wanted, and the growth and the constants of
+//! tissue that explain where it is.
 //!
 //! minimise  sum ((u(q) - d) / sigma)²  over  lower <= q <= upper
 //!
@@ -6,7 +7,8 @@
 //! segment's movement, which are smooth in its six parameters q, three translations and three angles
 //! (R = Rz Ry Rx about a pivot). So the sum is reduced once to as many rows as there are columns
 //! (`reduction`), and minimised by Levenberg and Marquardt's method with steps that keep to the
-//! bounds (`minimum`, `bounded_step`). Growth and muscles that are stated stay as they are: their part of u is taken from d.
+//! bounds (`minimum`, `bounded_step`). Growth of a region has a column too, and its change of volume is a parameter beside them where it
+//! is not stated. Constants of the tissue are not linear: `search` solves the response anew for each step of Gauss and Newton.
 //!
 //! With errors of standard deviation sigma, independent for each component of each point, the
 //! covariance of the free parameters is (JᵀJ)⁻¹, J the derivative of (u - d) / sigma at the minimum
@@ -14,21 +16,25 @@
 
 mod bounded_step;
 mod certainty;
+mod constants;
 mod minimum;
 mod question;
 mod reduction;
+mod search;
 mod unknowns;
 use crate::mesh::Vector;
 use crate::plan::RigidMovement;
 use crate::response::Amounts;
 pub use bounded_step::UNDETERMINED;
 pub use certainty::{Certainty, Weight};
+pub use constants::{ConstantBounds, ConstantError, ConstantKind};
 use minimum::minimise;
 pub use question::{
-    Bound, Goal, OptimisationError, PARAMETERS_PER_SEGMENT, Parameter, Question, SegmentBounds,
-    SkinPoint, Target,
+    Bound, ConstantColumn, Goal, InnerBounds, OptimisationError, PARAMETERS_PER_SEGMENT, Parameter,
+    Question, SegmentBounds, SkinPoint, Target,
 };
 use reduction::Reduction;
+pub use search::{Search, SearchError, SearchResult, search};
 use unknowns::Unknowns;
 
 /// The plan that comes nearest to the targets.
@@ -37,6 +43,13 @@ pub struct Optimum {
     /// For each segment its translation in mm and its angles in radians.
     pub parameters: Vec<[f64; PARAMETERS_PER_SEGMENT]>,
     pub movements: Vec<RigidMovement>,
+    /// For each entry of `Response::inner` how much of its column there is, and the change of volume where it is growth.
+    pub inner: Vec<f64>,
+    pub growth: Vec<f64>,
+    /// The value of each of `Question::constants`.
+    pub constants: Vec<f64>,
+    /// The displacement of each skin node in mm.
+    pub skin: Vec<Vector>,
     pub targets: Vec<Residual>,
     /// Parameters with a bound that stops them; they are not free.
     pub at_bound: Vec<(Parameter, Bound)>,
@@ -60,11 +73,16 @@ pub struct Residual {
 
 /// Finds the plan within the bounds that comes nearest to the targets.
 pub fn optimise(question: &Question) -> Result<Optimum, OptimisationError> {
-    // 1. What may move, and what is asked of it.
-    let unknowns = Unknowns::new(&question.response.segments, question.bounds);
-    if unknowns.count() == 0 {
-        return Err(OptimisationError::NothingFree);
+    match Unknowns::new(question).count() {
+        0 => Err(OptimisationError::NothingFree),
+        _ => minimum_of(question),
     }
+}
+
+/// The same, also where nothing is free.
+fn minimum_of(question: &Question) -> Result<Optimum, OptimisationError> {
+    // 1. What may move, and what is asked of it.
+    let unknowns = Unknowns::new(question);
     let reduction = Reduction::new(question)?;
 
     // 2. The minimum, and how certain it is.
@@ -73,20 +91,48 @@ pub fn optimise(question: &Question) -> Result<Optimum, OptimisationError> {
     let certainty = Certainty::new(&unknowns, &minimum, &at_bound);
 
     // 3. What is left of each target.
-    let movements = unknowns.movements(&minimum.unknowns);
-    let amounts = Amounts { movements: &movements, inner: question.inner };
-    let skin = question.response.apply_all(&amounts);
+    let values = unknowns.values(&minimum.unknowns);
+    let (movements, inner) = (unknowns.movements(&values), unknowns.inner(&values));
+    let amounts = Amounts { movements: &movements, inner: &inner };
+    let mut skin = question.response.apply_all(&amounts);
+    for (constant, value) in question.constants.iter().zip(&values.constants) {
+        constant.add(value - constant.value, &mut skin);
+    }
     let residual = |target: &Target| Residual::new(target, &skin);
     Ok(Optimum {
-        parameters: unknowns.parameters(&minimum.unknowns),
+        parameters: values.movements,
         movements,
+        inner,
+        growth: values.growth,
+        constants: values.constants,
         targets: question.targets.iter().map(residual).collect(),
+        skin,
         at_bound,
         certainty,
         weighted_square_sum: minimum.residual.norm_squared() + reduction.unreachable,
         components: reduction.components,
         iterations: minimum.iterations,
     })
+}
+
+impl Optimum {
+    /// In mm, radians or shares; of Young's modulus its logarithm.
+    pub fn value(&self, parameter: Parameter) -> f64 {
+        match parameter {
+            Parameter::Movement { segment, number } => self.parameters[segment][number],
+            Parameter::Growth(place) => self.growth[place],
+            Parameter::Constant(place) => self.constants[place],
+        }
+    }
+}
+
+impl ConstantColumn {
+    /// Adds what a change of the constant does.
+    fn add(&self, change: f64, skin: &mut [Vector]) {
+        for (u, derivative) in skin.iter_mut().zip(self.derivative.chunks_exact(3)) {
+            *u += Vector::from_fn(|axis, _| change * f64::from(derivative[axis]));
+        }
+    }
 }
 
 impl Residual {

@@ -1,4 +1,5 @@
-//! Input of inverse planning: segments and their bounds, targets on the skin, and why there may be no plan.
+//! Input of inverse planning: segments, growth and constants with their bounds, targets on the skin, and why there may be no
+//! plan.
 
 use crate::mesh::Vector;
 use crate::response::Response;
@@ -45,16 +46,41 @@ pub struct Question<'a> {
     /// One for each segment of the response.
     pub bounds: &'a [SegmentBounds],
     pub targets: &'a [Target],
-    /// The amounts of what acts inside, which stay; none of which is nothing.
-    pub inner: &'a [f64],
+    /// How much there may be of each of [`Response::inner`]; none of which is nothing.
+    pub inner: &'a [InnerBounds],
+    /// Constants of the tissue that may be other than those of the response.
+    pub constants: &'a [ConstantColumn],
 }
 
-/// One of the six numbers that move a segment, in the order of `SegmentBounds::intervals`.
+/// How much there may be of something that acts inside the tissue.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum InnerBounds {
+    /// This much of its column, whatever the plan.
+    Held(f64),
+    /// A change of volume as a share of it: lowest, highest. That of a region stands over that of all tissue (`*`).
+    Growth(f64, f64),
+}
+
+/// What a constant of the tissue does to the skin near the value that the response was solved with.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ConstantColumn {
+    /// The derivative of the displacement of each skin node, as [node][xyz] in mm.
+    pub derivative: Vec<f32>,
+    /// The value of the response.
+    pub value: f64,
+    /// Lowest and highest, with the value between them.
+    pub interval: (f64, f64),
+}
+
+/// One of the numbers that are looked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Parameter {
-    /// The number of the segment in the response.
-    pub segment: usize,
-    pub number: usize,
+pub enum Parameter {
+    /// One of the six that move a segment of the response, in the order of `SegmentBounds::intervals`.
+    Movement { segment: usize, number: usize },
+    /// The change of volume of what this entry of [`Response::inner`] is the growth of.
+    Growth(usize),
+    /// The value of this entry of `Question::constants`.
+    Constant(usize),
 }
 
 /// The end of its interval at which a parameter stands.
@@ -66,7 +92,7 @@ pub enum Bound {
 
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum OptimisationError {
-    #[error("no parameter is free to move")]
+    #[error("no parameter is free")]
     NothingFree,
     #[error("no component of any target is stated")]
     NoTarget,

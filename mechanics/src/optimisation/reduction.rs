@@ -10,12 +10,11 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::{OptimisationError, Question};
-use crate::response::COLUMNS_PER_SEGMENT;
 
 /// Rows taken at once: a block and the triangle stay in the cache.
 const ROWS: usize = 256;
 
-/// What the targets ask of the twelve numbers of each segment.
+/// What the targets ask of the numbers that the columns are multiplied by.
 pub struct Reduction {
     /// R.
     matrix: DMatrix<f64>,
@@ -32,7 +31,7 @@ impl Reduction {
         let response = question.response;
         let mut columns: Vec<&[f32]> =
             response.columns.chunks_exact(3 * response.nodes.len().max(1)).collect();
-        let held = columns.split_off(COLUMNS_PER_SEGMENT * response.segments.len());
+        columns.extend(question.constants.iter().map(|constant| constant.derivative.as_slice()));
         let width = columns.len() + 1;
         let mut triangle = DMatrix::zeros(0, width);
         let mut block: Vec<f64> = Vec::with_capacity(ROWS * width);
@@ -43,11 +42,7 @@ impl Reduction {
                     let Some(wanted) = wanted else { continue };
                     let sample = |column: &&[f32]| goal.point.sample(column, component);
                     block.extend(columns.iter().map(|column| sample(column) / target.sigma));
-                    let acting = held.iter().zip(question.inner);
-                    let acting: f64 = acting
-                        .map(|(column, amount)| amount * goal.point.sample(column, component))
-                        .sum();
-                    block.push((wanted - acting) / target.sigma);
+                    block.push(wanted / target.sigma);
                     components += 1;
                     if block.len() == ROWS * width {
                         triangle = reduced(&triangle, &block);

@@ -289,7 +289,7 @@ impl Columns {
 }
 
 /// A segment with the mean of its nodes as centre.
-fn segment_of(scene: &Scene, number: usize) -> Result<ResponseSegment, ResponseError> {
+pub(super) fn segment_of(scene: &Scene, number: usize) -> Result<ResponseSegment, ResponseError> {
     let name = scene.segments[number].name.clone();
     let (mut sum, mut count) = (Vector::zeros(), 0);
     for place in joined_nodes(scene, number) {
@@ -303,7 +303,12 @@ fn segment_of(scene: &Scene, number: usize) -> Result<ResponseSegment, ResponseE
 }
 
 /// For each hold its displacement along its axes for one unit of one number of a segment's movement.
-fn held_values(scene: &Scene, segment: usize, centre: &Vector, unit: usize) -> Vec<Vector> {
+pub(super) fn held_values(
+    scene: &Scene,
+    segment: usize,
+    centre: &Vector,
+    unit: usize,
+) -> Vec<Vector> {
     let (row, column) = (unit / 4, unit % 4);
     let value = |node: u32| {
         let mut displacement = Vector::zeros();

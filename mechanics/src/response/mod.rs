@@ -7,6 +7,7 @@
 //! numbers, which is built on request. Growth of a region and the pull of a muscle act linearly too: one column each.
 
 pub mod build;
+mod combined;
 mod inner_loads;
 pub mod linearity;
 pub mod quadratic_form;
@@ -17,6 +18,7 @@ mod superposition;
 pub use build::{
     ColumnRequest, Columns, ResponseOrder, build, build_of, build_to, check_order, chosen,
 };
+pub use combined::solved_skin;
 pub use inner_loads::inner_loads;
 pub use linearity::{Linearity, Nonlinearity, SampledSecond, by_rule_of_thumb};
 pub use quadratic_form::{BeyondLinear, QuadraticForm};

@@ -3,7 +3,9 @@
 use mechanics::mesh::half_head::half_head;
 use mechanics::mesh::{CellShape, Vector, VolumeMesh, sample};
 use mechanics::model::fem::mass_tensor::MassTensorSettings;
-use mechanics::optimisation::{Goal, Question, SegmentBounds, SkinPoint, Target, optimise};
+use mechanics::optimisation::{
+    Goal, InnerBounds, Question, SegmentBounds, SkinPoint, Target, optimise,
+};
 use mechanics::plan::RigidMovement;
 use mechanics::prediction::{
     Activation, Case, CaseSegment, ElementChoice, Growth, Load, Method, MethodKind, ModelError,
@@ -375,8 +377,9 @@ fn inverse_planning_finds_the_plan_beside_growth_and_muscles_that_stay() {
     let free = [(-10.0, 10.0), (-10.0, 10.0), (-10.0, 10.0), (0.0, 0.0), (0.0, 0.0), (0.0, 0.0)];
     let bounds = [(); 2].map(|()| SegmentBounds { intervals: free, pivot: Vector::zeros() });
     let targets = [Target { goals, sigma: 1.0 }];
+    let (inner, constants) = (&held.map(InnerBounds::Held), &[]);
     let question =
-        Question { response: &response, bounds: &bounds, targets: &targets, inner: &held };
+        Question { response: &response, bounds: &bounds, targets: &targets, inner, constants };
     let optimum = optimise(&question).unwrap();
     for (found, planted) in optimum.movements.iter().zip(&planted) {
         assert!((found.translation() - planted).norm() < 1e-6, "{}", found.translation());

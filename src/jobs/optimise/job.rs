@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use super::input::OptimiseInput;
 use super::targets::PreparedOptimisation;
+use super::tissue::TissueConstant;
 use crate::jobs::clock::Observed;
 use crate::jobs::failure::JobError;
 use crate::jobs::output::{JobContext, JobOutput};
@@ -18,16 +19,16 @@ use crate::jobs::result::provenance::{
 };
 use crate::jobs::result::skin::PredictedSkin;
 use crate::jobs::result::warnings::warnings_after;
-use crate::schema::optimise::result::OptimisationDocument;
-use crate::schema::predict::document::OutputName;
+use crate::schema::optimise::result::{NamedConstant, NamedOptimum, OptimisationDocument};
+use crate::schema::predict::document::{OutputName, PredictDocument};
 use crate::schema::predict::result::{ResultDocument, SolverDocument};
 use mechanics::mesh::{Vector, Warning};
-use mechanics::optimisation::{Question, optimise};
+use mechanics::optimisation::{ConstantBounds, Search, SearchError, SearchResult, search};
 use mechanics::plan::doubt::PLAN_UNITS_SUSPECT;
 use mechanics::prediction::{Prediction, predict};
 use mechanics::progress::{Phase, Progress};
 use mechanics::response::{
-    Amounts, COLUMNS_PER_SEGMENT, ColumnRequest, ResponseError, ResponseOrder, build_of,
+    COLUMNS_PER_SEGMENT, ColumnRequest, ResponseError, ResponseOrder, chosen,
 };
 
 /// A difference between full solution and response that is told, in mm: stored in single precision and
@@ -38,7 +39,7 @@ const NOTICEABLE: f64 = 0.01;
 const NOT_VERIFIED: &str = "the plan was not solved in full: ask with `verify`";
 
 /// The plan that was found, and the skin that the response gives it.
-struct Found {
+struct OptimisedPlan {
     document: OptimisationDocument,
     displacement: Vec<Vector>,
     solver: SolverDocument,
@@ -53,13 +54,13 @@ pub fn optimise_job(
     let clock = Observed::start(progress, input.spec.budget.wall_s);
 
     // 1. Documents and meshes, checked together.
-    let prepared = input.prepare(place.sources, place.limits)?;
+    let mut prepared = input.prepare(place.sources, place.limits)?;
     let columns = COLUMNS_PER_SEGMENT * prepared.moving + prepared.inner.len();
     prepared.rest.admit(columns, place.limits)?;
     clock.check()?;
 
     // 2. What each number of the movements does to the skin, and the plan.
-    let found = input.find(&prepared, &clock)?;
+    let found = input.find(&mut prepared, &clock)?;
     clock.check()?;
 
     // 3. The plan as any other.
@@ -68,6 +69,7 @@ pub fn optimise_job(
     planned.spec_hash = prepared.spec_hash;
     planned.inputs = prepared.rest.inputs;
     planned.warnings.extend(prepared.warnings);
+    planned.warnings.extend(input.spec.doubts(&found.document));
     // No number of the plan was stated.
     planned.scene.warnings.retain(|own| own.code != PLAN_UNITS_SUSPECT);
     if !input.spec.verify {
@@ -88,35 +90,45 @@ pub fn optimise_job(
 }
 
 impl OptimiseInput {
-    fn find(&self, prepared: &PreparedOptimisation, clock: &Observed) -> Result<Found, JobError> {
-        let scene = &prepared.rest.scene;
-        let PreparedOptimisation { inner, amounts, .. } = prepared;
+    fn find(
+        &self,
+        prepared: &mut PreparedOptimisation,
+        clock: &Observed,
+    ) -> Result<OptimisedPlan, JobError> {
+        let PreparedOptimisation { rest, inner, inner_bounds, constants, targets, .. } = prepared;
+        let moving = self.spec.moving();
         let order = ResponseOrder::First;
-        let asked = ColumnRequest { segments: &self.spec.moving(), order, inner };
-        let columns = build_of(scene, &asked, clock).map_err(|error| match error {
-            ResponseError::Prediction(error) => clock.judge(error),
-            other => self.judge(other),
+        let segments = chosen(&rest.scene, &moving).map_err(|error| self.judge(error))?;
+        let name = |number: usize| &rest.scene.segments[number].name;
+        let bounds: Vec<_> = segments
+            .into_iter()
+            .map(|number| self.spec.bounds_of(name(number)).to_bounds())
+            .collect();
+        let looked_for: Vec<ConstantBounds> =
+            constants.iter().map(|own| own.bounds.clone()).collect();
+        let asks = Search {
+            asked: ColumnRequest { segments: &moving, order, inner },
+            bounds: &bounds,
+            targets,
+            inner: inner_bounds,
+            constants: &looked_for,
+        };
+        let found = search(&mut rest.scene, &asks, clock).map_err(|error| match error {
+            SearchError::Response(ResponseError::Prediction(error)) => clock.judge(error),
+            SearchError::Response(other) => self.judge(other),
+            SearchError::Optimisation(error) => error.into(),
+            other @ (SearchError::Constant(_) | SearchError::NotConverged { .. }) => {
+                JobError::Search(other)
+            }
         })?;
         clock.check()?;
-        let response = columns.to_response();
-        let bounds: Vec<_> = response
-            .segments
-            .iter()
-            .map(|segment| self.spec.bounds_of(&segment.name).to_bounds())
-            .collect();
-        let question = Question {
-            response: &response,
-            bounds: &bounds,
-            targets: &prepared.targets,
-            inner: amounts,
-        };
-        let optimum = optimise(&question)?;
-        let amounts = Amounts { movements: &optimum.movements, inner: amounts };
-        Ok(Found {
-            document: OptimisationDocument::new(&self.spec, &response.segments, &optimum),
-            displacement: response.apply_all(&amounts),
-            solver: solver_document(&columns.solver, &columns.elements),
-        })
+        let SearchResult { optimum, columns, response, .. } = &found;
+        let names: Vec<NamedConstant> = constants.iter().map(TissueConstant::named).collect();
+        let named = NamedOptimum { spec: &self.spec, response, constants: &names, optimum };
+        let materials = self.materials(constants, &rest.scene);
+        let document = OptimisationDocument::new(&named, materials);
+        let solver = solver_document(&columns.solver, &columns.elements);
+        Ok(OptimisedPlan { document, displacement: found.optimum.skin, solver })
     }
 
     /// The prediction of a plan that was found.
@@ -126,12 +138,15 @@ impl OptimiseInput {
             queue_s: self.queue_s,
             case: self.case.clone(),
             plan: found.plan.clone(),
-            spec: self.spec.to_prediction(),
+            spec: PredictDocument {
+                materials: found.materials.clone().or_else(|| self.spec.materials.clone()),
+                ..self.spec.to_prediction()
+            },
         }
     }
 }
 
-impl Found {
+impl OptimisedPlan {
     /// The answer with the largest difference between the skin of the full solution and that of the response.
     fn verified(
         &self,

@@ -3,6 +3,7 @@
 mod input;
 mod job;
 mod targets;
+mod tissue;
 
 pub use input::OptimiseInput;
 pub use job::optimise_job;

@@ -3,16 +3,16 @@
 use std::collections::BTreeMap;
 
 use super::input::OptimiseInput;
+use super::tissue::TissueConstant;
 use crate::jobs::failure::JobError;
 use crate::jobs::predict::{PredictInput, Prepared};
 use crate::jobs::source::MeshSource;
 use crate::schema::ErrorCode;
 use crate::schema::hashes;
-use crate::schema::inner_column::{InnerColumnDocument, inner_amounts};
-use crate::schema::optimise::document::TargetDocument;
+use crate::schema::optimise::target::TargetDocument;
 use crate::schema::{Faults, Limits, Pointer, Problem, Triple};
 use mechanics::mesh::{SurfaceSearch, Vector, Warning};
-use mechanics::optimisation::{Goal, SkinPoint, Target};
+use mechanics::optimisation::{Goal, InnerBounds, SkinPoint, Target};
 use mechanics::prediction::{LANDMARK_FAR, Skin};
 use mechanics::response::{InnerLoad, ResponseError, chosen};
 
@@ -23,9 +23,10 @@ pub struct PreparedOptimisation {
     pub targets: Vec<Target>,
     /// How many segments move.
     pub moving: usize,
-    /// Growth and muscles that stay, and how much of each.
+    /// Growth and muscles, and how much there may be of each.
     pub inner: Vec<InnerLoad>,
-    pub amounts: Vec<f64>,
+    pub inner_bounds: Vec<InnerBounds>,
+    pub constants: Vec<TissueConstant>,
     /// Those that only inverse planning has.
     pub warnings: Vec<Warning>,
     pub spec_hash: String,
@@ -53,23 +54,22 @@ impl OptimiseInput {
         let moving = moving.map_err(|error| self.judge(error))?.len();
         let inner = self.spec.to_response().inner_loads(&rest.scene);
         let inner = inner.map_err(|error| self.judge(error))?;
-        let amounts = self.held_amounts(&inner, limits)?;
+        let inner_bounds = self.inner_bounds(&inner);
+        let constants = self.constants(&rest)?;
         let mut warnings = Vec::new();
         let targets = self.targets(&rest, limits, &mut warnings)?;
         let content = |id: &str| rest.contents.get(id).cloned();
         let spec_hash = hashes::optimise_hash(&self.case, &self.spec, &content);
-        Ok(PreparedOptimisation { rest, targets, moving, inner, amounts, warnings, spec_hash })
-    }
-
-    /// How much of each column of growth and muscles stays.
-    fn held_amounts(&self, inner: &[InnerLoad], limits: &Limits) -> Result<Vec<f64>, JobError> {
-        let columns: Vec<InnerColumnDocument> =
-            inner.iter().map(InnerColumnDocument::new).collect();
-        let mut faults = Faults::default();
-        let spec = Pointer::root().key("spec");
-        let amounts = inner_amounts(&columns, &self.spec.held(), &spec, limits, &mut faults);
-        faults.into_result()?;
-        Ok(amounts)
+        Ok(PreparedOptimisation {
+            rest,
+            targets,
+            moving,
+            inner,
+            inner_bounds,
+            constants,
+            warnings,
+            spec_hash,
+        })
     }
 
     /// The ids of all meshes that the job reads.
@@ -122,6 +122,11 @@ impl OptimiseInput {
             let own = format!("/spec/growth/{index}");
             problem = problem.moved(&own, &format!("{own}/region"));
         }
+        let grows = self.spec.tissue_bounds.iter().filter(|(_, own)| own.volume_change.is_some());
+        for ((region, _), place) in grows.zip(self.spec.growth.len()..) {
+            let own = Pointer::root().key("spec").key("tissue_bounds").key(region);
+            problem = problem.moved(&format!("/spec/growth/{place}"), own.as_str());
+        }
         for index in 0..self.spec.activations.len() {
             let own = format!("/spec/activations/{index}/muscle");
             problem = problem.moved(&format!("/spec/muscles/{index}"), &own);
@@ -149,7 +154,7 @@ impl OptimiseInput {
         for (index, document) in self.spec.targets.iter().enumerate() {
             let goals = match place_of(document, &rest.scene.landmarks) {
                 None => node_goals(document, &part_of(index), skin),
-                Some(Place { at: landmark, name }) => {
+                Some(NamedPoint { at: landmark, name }) => {
                     let search = match &search {
                         Some(search) => search,
                         None => {
@@ -179,18 +184,18 @@ impl OptimiseInput {
 }
 
 /// A single place that a target is about, and what it is called.
-struct Place {
+struct NamedPoint {
     at: Vector,
     name: String,
 }
 
 /// `None` of a target of nodes.
-fn place_of(document: &TargetDocument, landmarks: &BTreeMap<String, Vector>) -> Option<Place> {
-    let stated = document.point_mm.map(|Triple([x, y, z])| Place {
+fn place_of(document: &TargetDocument, landmarks: &BTreeMap<String, Vector>) -> Option<NamedPoint> {
+    let stated = document.point_mm.map(|Triple([x, y, z])| NamedPoint {
         at: Vector::new(x, y, z),
         name: format!("point {x} {y} {z}"),
     });
-    let landmark = document.landmark.as_ref().map(|name| Place {
+    let landmark = document.landmark.as_ref().map(|name| NamedPoint {
         at: landmarks.get(name).copied().unwrap_or_default(),
         name: format!("landmark {name:?}"),
     });

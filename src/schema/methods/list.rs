@@ -115,9 +115,10 @@ pub fn available_methods() -> MethodList {
         optimise: OptimiseMethod {
             methods: linear(),
             minimises: "sum of (residual / sigma_mm)^2 over translations and angles within their bounds, by \
-                Levenberg and Marquardt's method from rest, on a response of the segments"
+                Levenberg and Marquardt's method from rest, on a response of the segments and of growth; constants of \
+                tissue by steps of Gauss and Newton, with a response each"
                 .to_owned(),
-            certainty: "(J^T J)^-1 of the parameters that are not at a bound, J the derivative of residual / \
+            certainty: "(J^T J)^-1 of the parameters that are not at a bound, and of growth and constants even so, J the derivative of residual / \
                 sigma_mm: right where errors are independent with standard deviation sigma_mm"
                 .to_owned(),
             undetermined_below: UNDETERMINED,

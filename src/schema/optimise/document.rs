@@ -6,10 +6,12 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use utoipa::ToSchema;
 
+use super::target::TargetDocument;
+use super::tissue::{TissueBoundsDocument, check_tissue};
+use crate::schema::Triple;
 use crate::schema::case::document::CaseDocument;
 use crate::schema::case::material::{MaterialDocument, MaterialDocuments};
 use crate::schema::case::membrane::MembraneDocument;
-use crate::schema::case::selection::SelectionDocument;
 use crate::schema::code::ErrorCode;
 use crate::schema::methods::{self, ElementName, MethodName};
 use crate::schema::plan::document::{
@@ -26,13 +28,8 @@ use crate::schema::wire::canonical;
 use crate::schema::wire::fault::{Faults, Pointer};
 use crate::schema::wire::limits::Limits;
 use crate::schema::wire::vector::Intervals;
-use crate::schema::{PartialTriple, Triple};
 use mechanics::mesh::Vector;
-use mechanics::mesh::ignored::listed;
 use mechanics::optimisation::{PARAMETERS_PER_SEGMENT, SegmentBounds};
-
-/// Standard deviations in mm: a ratio beyond that of these would drown the looser target in rounding.
-const SIGMA_MM: (f64, f64) = (1e-3, 1e3);
 
 /// `optimise`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
@@ -42,7 +39,8 @@ pub enum OptimiseKind {
     Optimise,
 }
 
-/// Inverse planning: the plan within `bounds` with the least sum of squares of residual over `sigma_mm`.
+/// Inverse planning: the plan within `bounds`, and the growth and the constants within `tissue_bounds`, with the least sum of
+/// squares of residual over `sigma_mm`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct OptimiseDocument {
@@ -56,6 +54,10 @@ pub struct OptimiseDocument {
     pub targets: Vec<TargetDocument>,
     /// How far each segment may move, by its name; the others stay where they are.
     pub bounds: BTreeMap<String, BoundsDocument>,
+    /// Growth and constants that are looked for with the plan, by region: what a scan after the operation says of tissue that was
+    /// lost, and of what tissue is. `*` stands for every region without an entry of its own.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub tissue_bounds: BTreeMap<String, TissueBoundsDocument>,
     /// Growth that stays as it is stated while the plan is looked for, and is part of it.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub growth: Vec<GrowthDocument>,
@@ -99,41 +101,6 @@ fn yes() -> bool {
     true
 }
 
-/// Where a part of the skin is to be: exactly one of `nodes` and `landmark`, and exactly one of
-/// `position_mm` and `displacement_mm`.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-#[serde(deny_unknown_fields)]
-pub struct TargetDocument {
-    /// Holds for every selected node of the skin.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false)]
-    pub nodes: Option<SelectionDocument>,
-    /// A landmark of the case; it moves as the point of the skin closest to it.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false)]
-    pub landmark: Option<String>,
-    /// A place in mm in the frame of the case, at rest; it moves as the point of the skin closest to it.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false)]
-    pub point_mm: Option<Triple>,
-    /// Where it is to be; a component that is null is free.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false)]
-    pub position_mm: Option<PartialTriple>,
-    /// How far it is to move; a component that is null is free.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false)]
-    pub displacement_mm: Option<PartialTriple>,
-    /// The standard deviation of each component at each node; in [1e-3, 1e3].
-    #[serde(default = "usual_sigma")]
-    #[schema(default = 1.0, minimum = 1e-3, maximum = 1e3)]
-    pub sigma_mm: f64,
-}
-
-fn usual_sigma() -> f64 {
-    1.0
-}
-
 /// Between which values a segment may move; equal ends hold a value. What is left out is held at 0.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
@@ -170,8 +137,10 @@ impl OptimiseDocument {
         }
         _ = to_growth(&self.growth, &root.key("growth"), limits, faults);
         _ = to_activations(&self.activations, &root.key("activations"), limits, faults);
-        if !self.bounds.values().any(BoundsDocument::is_free) {
-            let detail = "no segment may move: at least one lowest value is below its highest";
+        check_tissue(self, &root.key("tissue_bounds"), limits, faults);
+        let moves = self.bounds.values().any(BoundsDocument::is_free);
+        if !moves && !self.tissue_bounds.values().any(TissueBoundsDocument::is_free) {
+            let detail = "nothing may change: at least one lowest value is below its highest";
             faults.add(&at, ErrorCode::NothingFree, detail);
         }
         for (index, name) in self.outputs.iter().flatten().enumerate() {
@@ -186,6 +155,13 @@ impl OptimiseDocument {
     pub fn moving(&self) -> Vec<String> {
         let moving = self.bounds.iter().filter(|(_, bounds)| **bounds != bounds.at_rest());
         moving.map(|(name, _)| name.trim().to_owned()).collect()
+    }
+
+    /// The regions with a column of growth: first those whose growth is stated, then those whose growth is looked for.
+    fn growing(&self) -> Vec<String> {
+        let stated = self.growth.iter().map(|own| own.region.trim().to_owned());
+        let free = self.tissue_bounds.iter().filter(|(_, own)| own.volume_change.is_some());
+        stated.chain(free.map(|(region, _)| region.trim().to_owned())).collect()
     }
 
     /// The bounds of a segment.
@@ -229,7 +205,7 @@ impl OptimiseDocument {
             materials: self.materials.clone(),
             membrane: self.membrane.clone(),
             segments: self.moving(),
-            growth: self.growth.iter().map(|own| own.region.trim().to_owned()).collect(),
+            growth: self.growing(),
             muscles: Some(
                 self.activations.iter().map(|own| own.muscle.trim().to_owned()).collect(),
             ),
@@ -256,62 +232,6 @@ impl OptimiseDocument {
         plain.case.clear();
         plain.outputs = Some(self.to_prediction().files());
         canonical::to_value(&plain)
-    }
-}
-
-impl TargetDocument {
-    fn check(&self, at: &Pointer, case: &CaseDocument, limits: &Limits, faults: &mut Faults) {
-        let forms = [self.nodes.is_some(), self.landmark.is_some(), self.point_mm.is_some()];
-        let given = forms.into_iter().filter(|&form| form).count();
-        faults.check_one_of(at, given, "`nodes`, `landmark`, `point_mm`");
-        for (axis, value) in self.point_mm.iter().flat_map(|point| point.0.into_iter().enumerate())
-        {
-            let farthest = -FARTHEST_PIVOT_MM..=FARTHEST_PIVOT_MM;
-            faults.check_range(&at.key("point_mm").index(axis), value, farthest, "mm");
-        }
-        if let Some(name) = &self.landmark
-            && !case.landmarks.contains_key(name)
-        {
-            let known = listed(case.landmarks.keys());
-            let detail = format!("the case has no landmark {name:?}; it has {known}");
-            faults.add(&at.key("landmark"), ErrorCode::UnknownLandmark, detail);
-        }
-        let places = [self.position_mm, self.displacement_mm];
-        let given = places.into_iter().flatten().count();
-        if faults.check_one_of(at, given, "`position_mm`, `displacement_mm`") {
-            let (place, components) = self.wanted(at);
-            if components == [None; 3] {
-                faults.add(&place, ErrorCode::MissingField, "at least one component has a value");
-            }
-            let farthest = match self.displacement_mm {
-                Some(_) => limits.translation_mm,
-                None => FARTHEST_PIVOT_MM,
-            };
-            for (axis, value) in components.into_iter().enumerate() {
-                let value = value.unwrap_or_default();
-                faults.check_range(&place.index(axis), value, -farthest..=farthest, "mm");
-            }
-        }
-        let (least, most) = SIGMA_MM;
-        faults.check_range(&at.key("sigma_mm"), self.sigma_mm, least..=most, "mm");
-    }
-
-    /// The components that are stated, and where they stand.
-    pub fn wanted(&self, at: &Pointer) -> (Pointer, [Option<f64>; 3]) {
-        match (self.position_mm, self.displacement_mm) {
-            (Some(position), _) => (at.key("position_mm"), position.0),
-            (None, displacement) => (at.key("displacement_mm"), displacement.unwrap_or_default().0),
-        }
-    }
-
-    /// The displacement that is wanted of a point with this place at rest.
-    pub fn displacement(&self, rest: &Vector) -> [Option<f64>; 3] {
-        match self.position_mm {
-            Some(PartialTriple(position)) => {
-                std::array::from_fn(|axis| position[axis].map(|wanted| wanted - rest[axis]))
-            }
-            None => self.displacement_mm.unwrap_or_default().0,
-        }
     }
 }
 

@@ -1,29 +1,41 @@
-//! The answer of inverse planning: the plan, what is left of each target, and how certain the plan is.
+//! The answer of inverse planning: the plan, growth and constants, what is left of each target, and how certain all of it is.
+
+use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 use super::document::OptimiseDocument;
 use crate::schema::Triple;
-use crate::schema::plan::document::{PlanDocument, PlanSegmentDocument};
+use crate::schema::case::material::{MaterialDocument, MaterialDocuments};
+use crate::schema::plan::document::{GrowthDocument, PlanDocument, PlanSegmentDocument};
+use crate::schema::wire::vector::Interval;
 use mechanics::optimisation::{
-    Bound, Optimum, PARAMETERS_PER_SEGMENT, Parameter, Residual, Weight,
+    Bound, ConstantKind, Optimum, PARAMETERS_PER_SEGMENT, Parameter, Residual, Weight,
 };
-use mechanics::response::ResponseSegment;
+use mechanics::response::{InnerLoad, Response, ResponseSegment};
 
 /// The plan that comes nearest to the targets, and how certain it is.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct OptimisationDocument {
-    /// As `predict` takes it.
+    /// As `predict` takes it, with growth that was found.
     pub plan: PlanDocument,
+    /// As `predict` takes them beside the plan: those of the spec with the constants that were found; absent where none were
+    /// looked for.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false, value_type = Option<BTreeMap<String, MaterialDocument>>)]
+    pub materials: Option<MaterialDocuments>,
     /// What is left of each target, in their order.
     pub targets: Vec<TargetResidualDocument>,
-    /// The parameters that are free, that is, not at a bound, and that the targets determine.
+    /// The parameters that are free, that is, not at a bound, and that the targets determine; those of tissue are among them at a
+    /// bound as well, with the standard error that they would have without it.
     pub parameters: Vec<FreeParameterDocument>,
-    /// Of each of them, in mm or degrees, if the targets have independent errors of `sigma_mm`.
+    /// Of each of them, in its unit, if the targets have independent errors of `sigma_mm`.
     pub standard_error: Vec<f64>,
-    /// Of each two of them, in mm and degrees.
+    /// Of each two of them, in their units.
     pub covariance: Vec<Vec<f64>>,
+    /// The same over both standard errors: 1 or -1 where the targets tell only a sum or a difference of two.
+    pub correlation: Vec<Vec<f64>>,
     /// Parameters that a bound stops.
     pub at_bound: Vec<AtBoundDocument>,
     /// Combinations of free parameters that no target feels, to first order: the plan is one of many.
@@ -34,6 +46,11 @@ pub struct OptimisationDocument {
     /// Components of targets less determined combinations of parameters: the mean of `chi_squared`
     /// where the errors are those of `sigma_mm`.
     pub degrees_of_freedom: u64,
+    /// Root of `chi_squared` over `degrees_of_freedom`: standard errors times this are those that the residual tells, whatever
+    /// `sigma_mm` says. Absent without degrees of freedom.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub residual_factor: Option<f64>,
     pub iterations: u64,
     /// The largest distance between the skin of the full solution and that of the response; absent
     /// without `verify`.
@@ -53,19 +70,33 @@ pub struct TargetResidualDocument {
     pub points: u64,
 }
 
-/// One of the six numbers of a segment.
+/// One of the six numbers of a segment, or growth or a constant of a region.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct FreeParameterDocument {
-    pub segment: String,
+    /// Of a movement.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub segment: Option<String>,
+    /// Of growth or a constant.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub region: Option<String>,
     pub name: ParameterName,
-    /// In mm or degrees.
+    /// In mm, degrees, kPa or shares.
     pub value: f64,
 }
 
 /// A number that a bound stops.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct AtBoundDocument {
-    pub segment: String,
+    /// Of a movement.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub segment: Option<String>,
+    /// Of growth or a constant.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub region: Option<String>,
     pub name: ParameterName,
     pub value: f64,
     pub bound: BoundName,
@@ -74,9 +105,17 @@ pub struct AtBoundDocument {
 /// The part of a parameter in a combination.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct PartDocument {
-    pub segment: String,
+    /// Of a movement.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub segment: Option<String>,
+    /// Of growth or a constant.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub region: Option<String>,
     pub name: ParameterName,
-    /// In mm or degrees; the largest part of a combination is 1.
+    /// In mm, degrees, hundredths of a volume or of Poisson's ratio, and per cent of Young's modulus; the largest part of a
+    /// combination is 1.
     pub part: f64,
 }
 
@@ -94,6 +133,12 @@ pub enum ParameterName {
     RotationY,
     #[serde(rename = "rotation_deg.z")]
     RotationZ,
+    #[serde(rename = "volume_change")]
+    VolumeChange,
+    #[serde(rename = "poisson_ratio")]
+    PoissonRatio,
+    #[serde(rename = "young_modulus_kpa")]
+    YoungModulus,
 }
 
 const NAMES: [ParameterName; PARAMETERS_PER_SEGMENT] = [
@@ -112,59 +157,97 @@ pub enum BoundName {
     Upper,
 }
 
-/// An optimum with the names and the units of the documents.
-struct Named<'a> {
-    spec: &'a OptimiseDocument,
-    segments: &'a [ResponseSegment],
-    optimum: &'a Optimum,
+/// A constant that was looked for: of which region, and of which kind.
+pub type NamedConstant = (String, ConstantKind);
+
+/// What was found, and what it is called.
+#[derive(Clone, Copy)]
+pub struct NamedOptimum<'a> {
+    pub spec: &'a OptimiseDocument,
+    pub response: &'a Response,
+    pub constants: &'a [NamedConstant],
+    pub optimum: &'a Optimum,
 }
 
 impl OptimisationDocument {
-    /// An optimum over a response with these segments.
-    pub fn new(spec: &OptimiseDocument, segments: &[ResponseSegment], optimum: &Optimum) -> Self {
-        let named = Named { spec, segments, optimum };
+    /// An optimum with the names and the units of the documents.
+    pub fn new(named: &NamedOptimum, materials: Option<MaterialDocuments>) -> Self {
+        let optimum = named.optimum;
         let certainty = &optimum.certainty;
         let determined = &certainty.determined;
         let to_document = |(row, column): (usize, usize)| {
-            certainty.covariance[(row, column)] * unit(determined[row]) * unit(determined[column])
+            let unit = named.unit(determined[row]) * named.unit(determined[column]);
+            certainty.covariance[(row, column)] * unit
         };
         let count = determined.len();
-        let row = |row: usize| (0..count).map(|column| to_document((row, column))).collect();
+        let correlation = certainty.correlation();
+        let rows = |of: &dyn Fn((usize, usize)) -> f64| -> Vec<Vec<f64>> {
+            (0..count).map(|row| (0..count).map(|column| of((row, column))).collect()).collect()
+        };
         let errors = certainty.standard_errors().into_iter().zip(determined);
+        let degrees_of_freedom = optimum.components.saturating_sub(certainty.rank);
+        let spread = optimum.weighted_square_sum / degrees_of_freedom as f64;
         OptimisationDocument {
             plan: named.plan(),
+            materials,
             targets: optimum.targets.iter().map(TargetResidualDocument::from).collect(),
             parameters: determined.iter().map(|&parameter| named.parameter(parameter)).collect(),
-            standard_error: errors.map(|(error, &parameter)| error * unit(parameter)).collect(),
-            covariance: (0..count).map(row).collect(),
+            standard_error: errors
+                .map(|(error, &parameter)| error * named.unit(parameter))
+                .collect(),
+            covariance: rows(&to_document),
+            correlation: rows(&|at| correlation[at]),
             at_bound: optimum.at_bound.iter().map(|&stopped| named.at_bound(stopped)).collect(),
             undetermined: certainty.undetermined.iter().map(|parts| named.parts(parts)).collect(),
             chi_squared: optimum.weighted_square_sum,
-            degrees_of_freedom: optimum.components.saturating_sub(certainty.rank) as u64,
+            degrees_of_freedom: degrees_of_freedom as u64,
+            residual_factor: (degrees_of_freedom > 0).then(|| spread.sqrt()),
             iterations: optimum.iterations as u64,
             verified_difference_mm: None,
         }
     }
 }
 
-/// How much of the document's unit, mm or degrees, one mm or radian is.
-fn unit(parameter: Parameter) -> f64 {
-    if parameter.is_angle() { 1_f64.to_degrees() } else { 1.0 }
-}
+impl NamedOptimum<'_> {
+    /// How much of the document's unit one mm, one radian, a whole share, or a factor e of a modulus is.
+    fn unit(&self, parameter: Parameter) -> f64 {
+        match parameter {
+            Parameter::Movement { .. } if parameter.is_angle() => 1_f64.to_degrees(),
+            Parameter::Movement { .. } | Parameter::Growth(_) => 1.0,
+            Parameter::Constant(place) => match self.constants[place].1 {
+                ConstantKind::YoungModulus => self.optimum.constants[place].exp(),
+                ConstantKind::PoissonRatio => 1.0,
+            },
+        }
+    }
 
-impl Named<'_> {
-    /// Converting to radians and back must not lead out of the bounds by a rounding.
+    /// Converting to radians or to a logarithm and back must not lead out of the bounds by a rounding.
     fn value(&self, parameter: Parameter) -> f64 {
-        let name = &self.segments[parameter.segment].name;
-        let [low, high] = self.spec.bounds_of(name).intervals()[parameter.number];
-        let value = self.optimum.parameters[parameter.segment][parameter.number];
-        (value * unit(parameter)).clamp(low, high)
+        let value = self.optimum.value(parameter);
+        match parameter {
+            Parameter::Movement { segment, number } => {
+                let name = &self.response.segments[segment].name;
+                let [low, high] = self.spec.bounds_of(name).intervals()[number];
+                (value * self.unit(parameter)).clamp(low, high)
+            }
+            Parameter::Growth(_) => value,
+            Parameter::Constant(place) => {
+                let (region, kind) = &self.constants[place];
+                let bounds = self.spec.tissue_bounds_of(region);
+                let own = match kind {
+                    ConstantKind::YoungModulus => bounds.young_modulus_kpa,
+                    ConstantKind::PoissonRatio => bounds.poisson_ratio,
+                };
+                let value = kind.constant(value);
+                own.map_or(value, |Interval([low, high])| value.clamp(low, high))
+            }
+        }
     }
 
     fn plan(&self) -> PlanDocument {
         let segment = |(segment, own): (usize, &ResponseSegment)| {
             let values: [f64; PARAMETERS_PER_SEGMENT] =
-                std::array::from_fn(|number| self.value(Parameter { segment, number }));
+                std::array::from_fn(|number| self.value(Parameter::Movement { segment, number }));
             let [x, y, z, a, b, c] = values;
             let turns = [a, b, c] != [0.0; 3];
             PlanSegmentDocument {
@@ -175,34 +258,76 @@ impl Named<'_> {
                 ..PlanSegmentDocument::default()
             }
         };
-        let segments = self.segments.iter().enumerate().map(segment).collect();
-        PlanDocument { segments, ..self.spec.held() }
+        let segments = self.response.segments.iter().enumerate().map(segment).collect();
+        let mut plan = PlanDocument { segments, ..self.spec.held() };
+        let loads = self.response.inner.iter().zip(&self.optimum.growth);
+        for (load, &volume_change) in loads.skip(plan.growth.len()) {
+            if let InnerLoad::Growth(region) = load {
+                plan.growth.push(GrowthDocument { region: region.clone(), volume_change });
+            }
+        }
+        plan
     }
 
-    fn name(&self, parameter: Parameter) -> (String, ParameterName) {
-        (self.segments[parameter.segment].name.clone(), NAMES[parameter.number])
+    /// The segment or the region of a parameter, and what it is called.
+    fn name(&self, parameter: Parameter) -> (Option<String>, Option<String>, ParameterName) {
+        match parameter {
+            Parameter::Movement { segment, number } => {
+                (Some(self.response.segments[segment].name.clone()), None, NAMES[number])
+            }
+            Parameter::Growth(place) => {
+                let (InnerLoad::Growth(name) | InnerLoad::Muscle(name)) =
+                    &self.response.inner[place];
+                (None, Some(name.clone()), ParameterName::VolumeChange)
+            }
+            Parameter::Constant(place) => {
+                let (region, kind) = &self.constants[place];
+                let name = match kind {
+                    ConstantKind::YoungModulus => ParameterName::YoungModulus,
+                    ConstantKind::PoissonRatio => ParameterName::PoissonRatio,
+                };
+                (None, Some(region.clone()), name)
+            }
+        }
     }
 
     fn parameter(&self, parameter: Parameter) -> FreeParameterDocument {
-        let (segment, name) = self.name(parameter);
-        FreeParameterDocument { segment, name, value: self.value(parameter) }
+        let (segment, region, name) = self.name(parameter);
+        FreeParameterDocument { segment, region, name, value: self.value(parameter) }
     }
 
     fn at_bound(&self, (parameter, bound): (Parameter, Bound)) -> AtBoundDocument {
-        let (segment, name) = self.name(parameter);
+        let (segment, region, name) = self.name(parameter);
         let bound = match bound {
             Bound::Lower => BoundName::Lower,
             Bound::Upper => BoundName::Upper,
         };
-        AtBoundDocument { segment, name, value: self.value(parameter), bound }
+        AtBoundDocument { segment, region, name, value: self.value(parameter), bound }
     }
 
     fn parts(&self, parts: &[Weight]) -> Vec<PartDocument> {
         let part = |weight: &Weight| {
-            let (segment, name) = self.name(weight.parameter);
-            PartDocument { segment, name, part: weight.part }
+            let (segment, region, name) = self.name(weight.parameter);
+            PartDocument { segment, region, name, part: weight.part }
         };
         parts.iter().map(part).collect()
+    }
+}
+
+impl ParameterName {
+    /// As sentences call it.
+    pub fn words(self) -> &'static str {
+        match self {
+            ParameterName::TranslationX
+            | ParameterName::TranslationY
+            | ParameterName::TranslationZ => "the translation",
+            ParameterName::RotationX | ParameterName::RotationY | ParameterName::RotationZ => {
+                "the rotation"
+            }
+            ParameterName::VolumeChange => "the change of volume",
+            ParameterName::PoissonRatio => "Poisson's ratio",
+            ParameterName::YoungModulus => "Young's modulus",
+        }
     }
 }
 

@@ -22,6 +22,11 @@ pub struct PartialTriple(pub [Option<f64>; 3]);
 #[serde(transparent)]
 pub struct Matrix4x4(pub [f64; 16]);
 
+/// Lowest and highest value.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct Interval(pub [f64; 2]);
+
 /// Lowest and highest value for each of x, y and z.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(transparent)]
@@ -96,6 +101,7 @@ macro_rules! number_row {
     };
 }
 
+number_row!(Interval, 2, false, "lowest, highest");
 number_row!(Triple, 3, false, "x, y, z");
 number_row!(PartialTriple, 3, true, "x, y, z, each of which may be null");
 number_row!(Matrix4x4, 16, false, "a 4x4 matrix, row by row");

@@ -332,11 +332,166 @@ fn bad_bounds() -> Vec<Row> {
     ]
 }
 
+fn tissue(bounds: Value) -> Value {
+    json!({ "tissue_bounds": bounds })
+}
+
+fn bad_tissue() -> Vec<Row> {
+    let invalid = "validation-failed";
+    vec![
+        (
+            "reversed loss",
+            tissue(json!({"*": {"volume_change": [0.1, -0.1]}})),
+            invalid,
+            "/tissue_bounds/*/volume_change",
+        ),
+        (
+            "more than half lost",
+            tissue(json!({"*": {"volume_change": [-0.6, 0]}})),
+            invalid,
+            "/tissue_bounds/*/volume_change/0",
+        ),
+        (
+            "ratio of 0.5",
+            tissue(json!({"*": {"poisson_ratio": [0.3, 0.5]}})),
+            invalid,
+            "/tissue_bounds/*/poisson_ratio/1",
+        ),
+        (
+            "negative ratio",
+            tissue(json!({"*": {"poisson_ratio": [-1.5, 0.4]}})),
+            invalid,
+            "/tissue_bounds/*/poisson_ratio/0",
+        ),
+        (
+            "no modulus",
+            tissue(json!({"*": {"young_modulus_kpa": [0, 10]}})),
+            invalid,
+            "/tissue_bounds/*/young_modulus_kpa/0",
+        ),
+        (
+            "three numbers",
+            tissue(json!({"*": {"poisson_ratio": [0.3, 0.4, 0.45]}})),
+            invalid,
+            "/tissue_bounds/*/poisson_ratio",
+        ),
+        (
+            "unknown constant",
+            tissue(json!({"*": {"density": [1, 2]}})),
+            invalid,
+            "/tissue_bounds/*/density",
+        ),
+        (
+            "region that does not grow",
+            tissue(json!({"fat": {"volume_change": [-0.1, 0.1]}})),
+            "unknown-region",
+            "/tissue_bounds/fat",
+        ),
+        (
+            "region without a ratio",
+            tissue(json!({"fat": {"poisson_ratio": [0.3, 0.4]}})),
+            "unknown-region",
+            "/tissue_bounds/fat",
+        ),
+        (
+            "ratio of nothing",
+            tissue(json!({"*": {"poisson_ratio": [0.3, 0.4]},
+                          "tissue": {"poisson_ratio": [0.3, 0.4]}})),
+            "empty-selection",
+            "/tissue_bounds/*",
+        ),
+        (
+            "stated twice",
+            json!({"growth": [{"region": "*", "volume_change": 0.1}],
+                   "tissue_bounds": {"*": {"volume_change": [-0.1, 0.1]}}}),
+            invalid,
+            "/tissue_bounds/*/volume_change",
+        ),
+        (
+            "all held",
+            json!({"bounds": {"bone": {"translation_mm": [[1, 1], [0, 0], [0, 0]]}},
+                   "tissue_bounds": {"*": {"poisson_ratio": [0.4, 0.4]}}}),
+            invalid,
+            "/bounds",
+        ),
+    ]
+}
+
+#[tokio::test]
+async fn what_an_operation_did_comes_back_with_the_tissue_that_was_lost_and_its_ratio() {
+    let server = Server::start();
+    let case = case(&server).await;
+    let (moved, loss, nu) = ([1.5, -0.7, 2.0], -0.08, 0.41);
+    let done = json!({"kind": "predict", "method": "fem_linear", "case": case,
+        "materials": {"*": {"young_modulus_kpa": 15, "poisson_ratio": nu}},
+        "plan": {"segments": [{"name": "bone", "translation_mm": moved}],
+                 "growth": [{"region": "*", "volume_change": loss}]}});
+    let done = server.job(&done).await.expect(StatusCode::OK);
+    let after = &done["results"]["statistics"]["landmarks"];
+    let target = |(name, at): (String, [f64; 3])| {
+        let place: Vec<f64> = numbers(&after[&name]).iter().zip(at).map(|(u, at)| at + u).collect();
+        json!({"point_mm": at, "position_mm": place, "sigma_mm": 0.3})
+    };
+    let targets: Vec<Value> = landmarks().into_iter().map(target).collect();
+    let found = async |tissue: Value| {
+        let mut spec = spec(&case, json!(targets), bounds(5.0, 0.0));
+        spec["tissue_bounds"] = json!({ "*": tissue });
+        let job = server.job(&spec).await.expect(StatusCode::OK);
+        let warnings = job["results"]["warnings"].as_array().unwrap();
+        let codes: Vec<String> =
+            warnings.iter().map(|own| own["code"].as_str().unwrap().to_owned()).collect();
+        (job["results"]["optimisation"].clone(), codes)
+    };
+
+    let free = json!({"volume_change": [-0.4, 0.4], "poisson_ratio": [0.2, 0.49]});
+    let (both, codes) = found(free).await;
+    let planned = numbers(&both["plan"]["segments"][0]["translation_mm"]);
+    for (found, done) in planned.iter().zip(moved) {
+        assert!((found - done).abs() < 1e-3, "{both}");
+    }
+    let growth = &both["plan"]["growth"][0];
+    let ratio = both["materials"]["*"]["poisson_ratio"].as_f64().unwrap();
+    assert_eq!(
+        (&growth["region"], both["plan"]["growth"].as_array().unwrap().len()),
+        (&json!("*"), 1)
+    );
+    assert!((growth["volume_change"].as_f64().unwrap() - loss).abs() < 1e-3, "{both}");
+    assert!((ratio - nu).abs() < 1e-3, "{both}");
+    let names: Vec<Value> = both["parameters"].as_array().unwrap()[3..]
+        .iter()
+        .map(|own| json!([own["region"], own["name"], own.get("segment")]))
+        .collect();
+    assert_eq!(names, [json!(["*", "volume_change", null]), json!(["*", "poisson_ratio", null])]);
+    let correlation = both["correlation"].as_array().unwrap();
+    assert!((correlation[4][4].as_f64().unwrap() - 1.0).abs() < 1e-12, "{both}");
+    assert_eq!(correlation[3][4], correlation[4][3]);
+    assert_eq!(both["degrees_of_freedom"], 16 * 3 - 5);
+    assert!(both["residual_factor"].as_f64().unwrap() < 1e-3, "{both}");
+    // The plan with growth and materials is solved in full.
+    assert!(both["verified_difference_mm"].as_f64().unwrap() < 1e-4, "{both}");
+    let is_told = |code: &str, codes: &[String]| codes.iter().any(|own| own == code);
+    assert!(!is_told("growth-left-out", &codes), "{codes:?}");
+
+    // Without loss the ratio is another one, and that is said.
+    let (alone, codes) = found(json!({"poisson_ratio": [0.2, 0.49]})).await;
+    let shifted = alone["materials"]["*"]["poisson_ratio"].as_f64().unwrap();
+    assert!(is_told("growth-left-out", &codes) && (shifted - nu).abs() > 0.02, "{alone}");
+    assert!(alone["residual_factor"].as_f64().unwrap() > 0.1, "{alone}");
+
+    // What nothing tells is said too.
+    let (modulus, codes) =
+        found(json!({"volume_change": [-0.4, 0.4], "young_modulus_kpa": [1, 100]})).await;
+    assert!(is_told("constant-not-determined", &codes), "{codes:?}");
+    assert_eq!(modulus["undetermined"][0][0]["name"], "young_modulus_kpa", "{modulus}");
+}
+
 #[tokio::test]
 async fn every_bad_target_and_bound_is_refused_with_its_place() {
     let server = Server::start_with(&["--workers", "0"]);
     let case = case(&server).await;
-    for (name, change, code, pointer) in bad_targets().into_iter().chain(bad_bounds()) {
+    for (name, change, code, pointer) in
+        bad_targets().into_iter().chain(bad_bounds()).chain(bad_tissue())
+    {
         let targets = json!([{"landmark": "p5", "displacement_mm": [1, 0, 0]}]);
         let mut spec = spec(&case, targets, bounds(10.0, 10.0));
         spec.as_object_mut().unwrap().extend(change.as_object().unwrap().clone());

@@ -7,13 +7,13 @@ import { wordOf, type FrameName } from "../frame.js";
 import type { Opened } from "../loading.js";
 import { planState } from "../plan.js";
 import { address } from "../route.js";
-import { mm } from "../figures.js";
+import { figure, mm } from "../figures.js";
 import { wordFor } from "./movements.js";
 import type { TrustLine } from "./trust.js";
 import type { Words } from "../words/en.js";
 
 type Found = Documents["OptimisationDocument"];
-type Parameter = { segment: string; name: string; value: number };
+type Parameter = { segment?: string; region?: string; name: string; value: number };
 
 /** What a target is called, and the standard deviation of its components in mm. */
 export interface NamedTarget {
@@ -36,8 +36,9 @@ export function targetsOf(words: Words, tags: string[], count: number): NamedTar
   });
 }
 
-/** A parameter with the word and the sign of its slider. */
-function inSliders(words: Words, frame: FrameName, { segment, name, value }: Parameter): { label: string; value: number } {
+/** A parameter with the word and the sign of its slider; growth and constants of tissue have none. */
+function inSliders(words: Words, frame: FrameName, { segment, region, name, value }: Parameter): { label: string; value: number } {
+  if (region !== undefined) return { label: `${region} ${name}`, value };
   const { word, sign } = wordOf(name, frame);
   return { label: `${segment} ${wordFor(words, word, frame)}, ${name.startsWith("rotation") ? "°" : "mm"}`, value: sign * value || 0 };
 }
@@ -56,19 +57,22 @@ export function foundLine(words: Words, found: Found, named: NamedTarget[], fram
 
 export function foundFacts({ words, route }: App, job: Job, opened: Opened, found: Found): HTMLElement {
   const frame = job.results?.provenance?.frame ?? opened.frame;
-  const free = found.parameters.map((one, at) => ({ ...inSliders(words, frame, one), error: found.standard_error[at]! }));
-  const stopped = stoppedOf(found).map((one) => inSliders(words, frame, one));
-  const numbers = [...free.map(({ label, value, error }) => [label, mm(value), mm(error)]), ...stopped.map(({ label, value }) => [label, mm(value), words.atBound])];
+  const all = found.parameters.map((one, at) => ({ ...inSliders(words, frame, one), isTissue: one.region !== undefined, error: found.standard_error[at]! }));
+  const free = all.filter(({ isTissue }) => !isTissue).map(({ label, value, error }) => ({ label, value, error }));
+  // At a bound as well, they have a row and a standard error of their own.
+  const tissue = all.filter(({ isTissue }) => isTissue).map(({ label, value, error }) => [label, figure(value, 4), figure(error, 4)]);
+  const stopped = stoppedOf(found).filter(({ region }) => region === undefined).map((one) => inSliders(words, frame, one));
+  const numbers = [...free.map(({ label, value, error }) => [label, mm(value), mm(error)]), ...tissue, ...stopped.map(({ label, value }) => [label, mm(value), words.atBound])];
   const named = targetsOf(words, job.tags, found.targets.length);
   const targets = found.targets.map(({ residual_mm, largest_mm, points }, at) =>
     [points > 1 ? `${named[at]!.label}, ${words.pointsOf(points)}` : named[at]!.label, mm(residual_mm), mm(largest_mm)]);
-  const loose = found.undetermined.map((parts) => make("li", {}, parts.map(({ segment, name, part }) => {
-    const { label, value } = inSliders(words, frame, { segment, name, value: part });
+  const loose = found.undetermined.map((parts) => make("li", {}, parts.map(({ part, ...of }) => {
+    const { label, value } = inSliders(words, frame, { ...of, value: part });
     return `${mm(value)} × ${label}`;
   }).join(" + ")));
   const bars = [...free, ...stopped].map(({ label, ...one }): Row => ({ name: label, ...one }));
   return make("div", {},
-    rowChart(words.movement, "mm, °", bars, true),
+    bars.length > 0 && rowChart(words.movement, "mm, °", bars, true),
     table(words.movement, ["", "mm, °", words.standardError], numbers),
     table(words.targets, ["", `${words.left_} mm`, words.max], targets),
     loose.length > 0 && make("div", { className: "warned" }, words.notDetermined, make("ul", {}, ...loose)),

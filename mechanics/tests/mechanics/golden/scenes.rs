@@ -293,7 +293,13 @@ fn optimised() -> Found {
     let mut wanted = moved_skin(&response, &plan);
     wanted.iter_mut().step_by(7).for_each(|u| *u += Vector::new(0.1, -0.05, 0.2));
     let (bounds, targets) = (bounds(4.0, 8.0), [every_node(&wanted, 0.5)]);
-    let question = Question { response: &response, bounds: &bounds, targets: &targets, inner: &[] };
+    let question = Question {
+        response: &response,
+        bounds: &bounds,
+        targets: &targets,
+        inner: &[],
+        constants: &[],
+    };
     let optimum = optimise(&question).unwrap();
     let mut values: Vec<f64> = optimum.parameters.iter().flatten().copied().collect();
     values.extend(optimum.certainty.covariance.iter());

@@ -1,4 +1,5 @@
 //! Inverse planning.
 
+mod assimilation;
 mod plans;
 pub mod scenes;

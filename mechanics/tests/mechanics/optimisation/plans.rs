@@ -17,9 +17,16 @@ const SURGERY: [[f64; 6]; 2] =
     [[4.0, -6.0, 1.5, 7.0, -5.0, 11.0], [-1.0, -3.0, 2.0, -4.0, 2.0, 3.0]];
 
 fn found(response: &Response, bounds: &[SegmentBounds], targets: &[Target]) -> Optimum {
-    let optimum = optimise(&Question { response, bounds, targets, inner: &[] }).unwrap();
+    let optimum =
+        optimise(&Question { response, bounds, targets, inner: &[], constants: &[] }).unwrap();
     check(&optimum, bounds);
     optimum
+}
+
+/// The segment of a parameter of these plans, and which of its six numbers it is.
+fn six(parameter: Parameter) -> (usize, usize) {
+    let Parameter::Movement { segment, number } = parameter else { panic!("{parameter:?}") };
+    (segment, number)
 }
 
 #[test]
@@ -86,7 +93,7 @@ fn honesty(plan: [[f64; 6]; 2], draws: usize, seed: u64) -> Vec<f64> {
         let found = found(&response, &bounds, &targets);
         assert_eq!(found.certainty.determined.len(), 12);
         for (k, parameter) in found.certainty.determined.iter().enumerate() {
-            let Parameter { segment, number } = *parameter;
+            let (segment, number) = six(*parameter);
             let error = found.parameters[segment][number] - plan[segment][number];
             ratios[k] += error.powi(2) / found.certainty.covariance[(k, k)] / draws as f64;
         }
@@ -153,13 +160,12 @@ fn within_bounds_that_stop_it_nothing_nearby_is_better() {
         let bounds = bounds(8.0, 9.0);
         let found = found(&response, &bounds, &targets);
         assert!(!found.at_bound.is_empty());
-        for (Parameter { segment, number }, bound) in &found.at_bound {
-            let (low, high) = bounds[*segment].intervals[*number];
+        for (parameter, bound) in &found.at_bound {
+            let (segment, number) = six(*parameter);
+            let (low, high) = bounds[segment].intervals[number];
             let end = if *bound == Bound::Lower { low } else { high };
-            assert!((found.parameters[*segment][*number] - end).abs() < 1e-15);
-            let is_determined =
-                |other: &&Parameter| (other.segment, other.number) == (*segment, *number);
-            assert!(!found.certainty.determined.iter().any(|other| is_determined(&other)));
+            assert!((found.parameters[segment][number] - end).abs() < 1e-15);
+            assert!(!found.certainty.determined.contains(parameter));
         }
         let best = [found.parameters[0], found.parameters[1]];
         let lowest = sum(&response, &targets, &best);
@@ -215,8 +221,9 @@ fn what_the_targets_do_not_determine_is_named_and_stays_at_rest() {
         let step = |size: f64| {
             let mut q = q;
             for weight in combination {
-                let unit = if weight.parameter.number < 3 { 1.0 } else { 1_f64.to_radians() };
-                q[0][weight.parameter.number] += size * unit * weight.part;
+                let (_, number) = six(weight.parameter);
+                let unit = if number < 3 { 1.0 } else { 1_f64.to_radians() };
+                q[0][number] += size * unit * weight.part;
             }
             (place(&q) - place(&found.parameters.clone().try_into().unwrap())).norm()
         };
@@ -237,11 +244,11 @@ fn a_segment_that_the_targets_do_not_feel_stays_at_rest_and_spoils_nothing() {
     let (mm, degrees) = difference(&found.parameters, &plan);
     assert!(mm < 1e-7 && degrees < 1e-7, "{mm} mm, {degrees} degrees");
     let determined = found.certainty.determined.iter();
-    assert!(determined.map(|parameter| parameter.segment).eq([0; 6]));
+    assert!(determined.map(|parameter| six(*parameter).0).eq([0; 6]));
     // Each of the other six is a combination of itself.
     assert_eq!(found.certainty.undetermined.len(), 6);
     for combination in &found.certainty.undetermined {
-        assert_eq!((combination.len(), combination[0].parameter.segment), (1, 1));
+        assert_eq!((combination.len(), six(combination[0].parameter).0), (1, 1));
     }
 }
 
@@ -263,7 +270,7 @@ fn a_point_within_a_triangle_moves_with_its_corners_and_free_components_are_left
     // Along y nothing is asked, and nothing moves.
     assert_eq!(found.parameters[0][1], 0.0);
     let [combination] = &found.certainty.undetermined[..] else { panic!() };
-    assert_eq!((combination.len(), combination[0].parameter.number), (1, 1));
+    assert_eq!((combination.len(), six(combination[0].parameter).1), (1, 1));
     // u = share * t, so the standard error of t is sigma over the share.
     let share = moved.x / found.parameters[0][0];
     let errors = found.certainty.standard_errors();
@@ -278,7 +285,7 @@ fn a_question_without_an_answer_is_refused() {
     let response = response(&skin());
     let wanted = every_node(&skin(), 1.0);
     let ask = |response: &Response, bounds: &[SegmentBounds], targets: &[Target]| {
-        optimise(&Question { response, bounds, targets, inner: &[] }).unwrap_err()
+        optimise(&Question { response, bounds, targets, inner: &[], constants: &[] }).unwrap_err()
     };
     let free = bounds(25.0, 30.0);
     let held = bounds(0.0, 0.0);
@@ -305,8 +312,13 @@ fn targets_far_from_any_skin_have_a_nearest_plan_or_say_that_it_was_not_found() 
             let wanted: Vec<Vector> =
                 (0..points).map(|_| Vector::from_fn(|_, _| 60.0 * random.normal())).collect();
             let (bounds, targets) = (bounds(25.0, 90.0), [every_node(&wanted, 1.0)]);
-            let question =
-                Question { response: &response, bounds: &bounds, targets: &targets, inner: &[] };
+            let question = Question {
+                response: &response,
+                bounds: &bounds,
+                targets: &targets,
+                inner: &[],
+                constants: &[],
+            };
             match optimise(&question) {
                 Ok(found) => {
                     check(&found, &bounds);

@@ -306,9 +306,14 @@ fn inverse_planning_finds_the_movement_of_a_jaw_that_carries_teeth() {
     let intervals = [(-5.0, 5.0), (-5.0, 5.0), (-5.0, 5.0), turn, turn, turn];
     let bounds = [SegmentBounds { intervals, pivot: Vector::new(30.0, 30.0, 0.0) }];
     let response = columns.to_response();
-    let optimum =
-        optimise(&Question { response: &response, bounds: &bounds, targets: &targets, inner: &[] })
-            .unwrap();
+    let optimum = optimise(&Question {
+        response: &response,
+        bounds: &bounds,
+        targets: &targets,
+        inner: &[],
+        constants: &[],
+    })
+    .unwrap();
     let corner = Vector::new(40.0, 20.0, 0.0);
     let apart = optimum.movements[0].displacement(&corner) - some_movement().displacement(&corner);
     assert!(apart.norm() < 1e-4, "{apart}");

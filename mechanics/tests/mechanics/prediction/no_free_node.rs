@@ -77,6 +77,7 @@ fn a_response_and_inverse_planning_do_without_a_free_node() {
         bounds: &[SegmentBounds { intervals, pivot: Vector::zeros() }],
         targets: &[Target { goals: vec![goal], sigma: 1.0 }],
         inner: &[],
+        constants: &[],
     };
     let optimum = optimise(&question).unwrap();
     assert!((optimum.movements[0].translation() - Vector::new(1.0, 2.0, 0.0)).norm() < 1e-6);

@@ -1,0 +1,114 @@
+//! Where skin is wanted, or where a scan shows it.
+
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+use crate::schema::case::document::CaseDocument;
+use crate::schema::case::selection::SelectionDocument;
+use crate::schema::code::ErrorCode;
+use crate::schema::plan::movement::FARTHEST_PIVOT_MM;
+use crate::schema::wire::fault::{Faults, Pointer};
+use crate::schema::wire::limits::Limits;
+use crate::schema::{PartialTriple, Triple};
+use mechanics::mesh::Vector;
+use mechanics::mesh::ignored::listed;
+
+/// Standard deviations in mm: a ratio beyond that of these would drown the looser target in rounding.
+const SIGMA_MM: (f64, f64) = (1e-3, 1e3);
+
+/// Where a part of the skin is to be: exactly one of `nodes` and `landmark`, and exactly one of
+/// `position_mm` and `displacement_mm`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct TargetDocument {
+    /// Holds for every selected node of the skin.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub nodes: Option<SelectionDocument>,
+    /// A landmark of the case; it moves as the point of the skin closest to it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub landmark: Option<String>,
+    /// A place in mm in the frame of the case, at rest; it moves as the point of the skin closest to it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub point_mm: Option<Triple>,
+    /// Where it is to be; a component that is null is free.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub position_mm: Option<PartialTriple>,
+    /// How far it is to move; a component that is null is free.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub displacement_mm: Option<PartialTriple>,
+    /// The standard deviation of each component at each node; in [1e-3, 1e3].
+    #[serde(default = "usual_sigma")]
+    #[schema(default = 1.0, minimum = 1e-3, maximum = 1e3)]
+    pub sigma_mm: f64,
+}
+
+fn usual_sigma() -> f64 {
+    1.0
+}
+
+impl TargetDocument {
+    pub(super) fn check(
+        &self,
+        at: &Pointer,
+        case: &CaseDocument,
+        limits: &Limits,
+        faults: &mut Faults,
+    ) {
+        let forms = [self.nodes.is_some(), self.landmark.is_some(), self.point_mm.is_some()];
+        let given = forms.into_iter().filter(|&form| form).count();
+        faults.check_one_of(at, given, "`nodes`, `landmark`, `point_mm`");
+        for (axis, value) in self.point_mm.iter().flat_map(|point| point.0.into_iter().enumerate())
+        {
+            let farthest = -FARTHEST_PIVOT_MM..=FARTHEST_PIVOT_MM;
+            faults.check_range(&at.key("point_mm").index(axis), value, farthest, "mm");
+        }
+        if let Some(name) = &self.landmark
+            && !case.landmarks.contains_key(name)
+        {
+            let known = listed(case.landmarks.keys());
+            let detail = format!("the case has no landmark {name:?}; it has {known}");
+            faults.add(&at.key("landmark"), ErrorCode::UnknownLandmark, detail);
+        }
+        let places = [self.position_mm, self.displacement_mm];
+        let given = places.into_iter().flatten().count();
+        if faults.check_one_of(at, given, "`position_mm`, `displacement_mm`") {
+            let (place, components) = self.wanted(at);
+            if components == [None; 3] {
+                faults.add(&place, ErrorCode::MissingField, "at least one component has a value");
+            }
+            let farthest = match self.displacement_mm {
+                Some(_) => limits.translation_mm,
+                None => FARTHEST_PIVOT_MM,
+            };
+            for (axis, value) in components.into_iter().enumerate() {
+                let value = value.unwrap_or_default();
+                faults.check_range(&place.index(axis), value, -farthest..=farthest, "mm");
+            }
+        }
+        let (least, most) = SIGMA_MM;
+        faults.check_range(&at.key("sigma_mm"), self.sigma_mm, least..=most, "mm");
+    }
+
+    /// The components that are stated, and where they stand.
+    pub fn wanted(&self, at: &Pointer) -> (Pointer, [Option<f64>; 3]) {
+        match (self.position_mm, self.displacement_mm) {
+            (Some(position), _) => (at.key("position_mm"), position.0),
+            (None, displacement) => (at.key("displacement_mm"), displacement.unwrap_or_default().0),
+        }
+    }
+
+    /// The displacement that is wanted of a point with this place at rest.
+    pub fn displacement(&self, rest: &Vector) -> [Option<f64>; 3] {
+        match self.position_mm {
+            Some(PartialTriple(position)) => {
+                std::array::from_fn(|axis| position[axis].map(|wanted| wanted - rest[axis]))
+            }
+            None => self.displacement_mm.unwrap_or_default().0,
+        }
+    }
+}
