@@ -1,7 +1,5 @@
 //! The answer of inverse planning: the plan, growth and constants, what is left of each target, and how certain all of it is.
 
-use std::collections::BTreeMap;
-
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
