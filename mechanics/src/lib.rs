@@ -44,7 +44,7 @@ pub mod cephalometry;
 pub mod chart;
 pub mod conformation;
 pub mod domain;
-mod draws;
+pub mod draws;
 pub mod element;
 pub mod format;
 pub mod image;

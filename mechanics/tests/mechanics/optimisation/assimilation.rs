@@ -8,7 +8,7 @@ use mechanics::mesh::Vector;
 use mechanics::mesh::refinement::refine;
 use mechanics::optimisation::{
     Bound, ConstantBounds, ConstantError, ConstantKind, Goal, InnerBounds, OptimisationError,
-    PARAMETERS_PER_SEGMENT, Parameter, Search, SearchError, Searched, SegmentBounds, SkinPoint,
+    PARAMETERS_PER_SEGMENT, Parameter, Search, SearchError, SearchResult, SegmentBounds, SkinPoint,
     Target, search,
 };
 use mechanics::plan::RigidMovement;
@@ -96,7 +96,7 @@ impl Slab {
     }
 
     /// Found from what a scan with these errors shows, beginning away from the ratio that was planted.
-    fn found(&self, errors: &mut dyn FnMut() -> f64, growth: InnerBounds) -> Searched {
+    fn found(&self, errors: &mut dyn FnMut() -> f64, growth: InnerBounds) -> SearchResult {
         let mut scene = at_rest(&slab_case(self.halved, 0.42), &Settings::default());
         let scanned = self.skin.iter().map(|u| u + Vector::from_fn(|_, _| errors()));
         let scanned: Vec<Vector> = scanned.collect();
