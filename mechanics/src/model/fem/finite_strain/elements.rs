@@ -35,10 +35,11 @@ pub(super) struct Kept {
 }
 
 impl Kept {
-    /// On the way, in all cells.
-    pub const FIRST: Kept = Kept { share: 1.0, only: None };
-    /// After a standstill.
-    pub const MORE: Kept = Kept { share: 2.0, only: None };
+    /// On the way, in all cells: first, and after a jam.
+    pub const USUAL: &'static [Kept] =
+        &[Kept { share: 1.0, only: None }, Kept { share: 2.0, only: None }];
+    /// On the way of a movement in parts.
+    pub const IN_PARTS: &'static [Kept] = &[Kept { share: 4.0, only: None }];
 
     /// Near rest in pressed cells only. Of the others, and of tissue none of whose cells is pressed, the tangent at rest is the
     /// matrix of linear elements.
