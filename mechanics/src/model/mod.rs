@@ -4,6 +4,7 @@ pub mod cell_state;
 pub mod dofs;
 pub mod fem;
 pub mod mass_spring;
+pub mod parts;
 pub mod problem;
 pub mod spline;
 pub mod thickness_warp;

@@ -88,7 +88,7 @@ pub use crate::model::fem::linear_states::node_states;
 use crate::model::fem::strain::{CellDeformation, deformations};
 pub use crate::model::problem::{InvertedCell, ModelError};
 use crate::progress::{Phase, Progress};
-pub use crate::solver::{NewtonReport, SolveReport, SolverError};
+pub use crate::solver::{NewtonReport, RestOnTheWay, SolveReport, SolverError};
 
 /// A landmark farther than this from the tissue, in mm, is told to move as something it is not part of.
 pub const LANDMARK_FAR: f64 = 2.0;

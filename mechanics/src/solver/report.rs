@@ -44,6 +44,20 @@ pub struct NewtonReport {
     /// The bulk modulus that stays in cells while a pressure carries the rest, as a multiple of mu, and how many keep it.
     pub bulk_in_cells: f64,
     pub cells_with_bulk: usize,
+    /// Rest at the end of each part of a movement that found none at once; empty where it did.
+    pub parts: Vec<RestOnTheWay>,
+}
+
+/// Tissue at rest with a share of its movement and loads.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RestOnTheWay {
+    pub share: f64,
+    /// In mN mm.
+    pub energy: f64,
+    /// The least det F of the points of all cells.
+    pub least_det_f: f64,
+    /// Steps since the rest before.
+    pub steps: usize,
 }
 
 impl SolveReport {

@@ -13,7 +13,7 @@ use crate::schema::case::merged::expanded_materials;
 use crate::schema::case::muscle::muscle_materials;
 use crate::schema::case::preset::{UsedPresetDocument, used_presets};
 use crate::schema::methods::MethodName;
-use crate::schema::predict::newton::NewtonDocument;
+use crate::schema::predict::newton::{NewtonDocument, RestOnTheWayDocument};
 use crate::schema::predict::result::{
     EngineDocument, InputDocument, MeshSummaryDocument, NOT_A_DEVICE, ProvenanceDocument,
     ResultDocument, SolverDocument,
@@ -23,7 +23,7 @@ use mechanics::material::LinearElastic;
 use mechanics::material::hyperelastic::{Hyperelastic, Law, SaintVenantKirchhoff};
 use mechanics::mesh::quality::QualityReport;
 use mechanics::mesh::{Frame, VolumeMesh};
-use mechanics::prediction::{Case, Laws, NewtonReport, Scene, SolveReport};
+use mechanics::prediction::{Case, Laws, NewtonReport, RestOnTheWay, Scene, SolveReport};
 
 /// What a job knows of its origin before it starts.
 pub struct Origin {
@@ -164,7 +164,13 @@ fn newton_document(newton: &NewtonReport) -> NewtonDocument {
         is_stable: newton.is_stable,
         bulk_in_cells: newton.bulk_in_cells,
         cells_with_bulk: newton.cells_with_bulk as u64,
+        parts: newton.parts.iter().map(rest_on_the_way).collect(),
     }
+}
+
+fn rest_on_the_way(rest: &RestOnTheWay) -> RestOnTheWayDocument {
+    let RestOnTheWay { share, energy, least_det_f, steps } = *rest;
+    RestOnTheWayDocument { share, energy_mn_mm: energy, least_det_f, steps: steps as u64 }
 }
 
 /// The bytes of `result.json`. JSON has no word for a number that is not finite and would write null:

@@ -26,4 +26,18 @@ pub struct NewtonDocument {
     /// How many cells keep it: those that are pressed to less than a fifth of their volume, or, where that jams, all.
     #[serde(default)]
     pub cells_with_bulk: u64,
+    /// Rest at the end of each part of a movement that found no rest at once, with more bulk modulus in the cells on the way.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub parts: Vec<RestOnTheWayDocument>,
+}
+
+/// Tissue at rest with a share of its movement and loads.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct RestOnTheWayDocument {
+    pub share: f64,
+    pub energy_mn_mm: f64,
+    /// The least det F of the points of all cells.
+    pub least_det_f: f64,
+    /// Steps since the rest before.
+    pub steps: u64,
 }

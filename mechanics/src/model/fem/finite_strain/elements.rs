@@ -35,10 +35,11 @@ pub(super) struct CellBulkModulus {
 }
 
 impl CellBulkModulus {
-    /// On the way, in all cells.
-    pub const FIRST: CellBulkModulus = CellBulkModulus { share: 1.0, only: None };
-    /// After a standstill.
-    pub const MORE: CellBulkModulus = CellBulkModulus { share: 2.0, only: None };
+    /// On the way, in all cells: first, and after a jam.
+    pub const USUAL: &'static [CellBulkModulus] =
+        &[CellBulkModulus { share: 1.0, only: None }, CellBulkModulus { share: 2.0, only: None }];
+    /// On the way of a movement in parts.
+    pub const IN_PARTS: &'static [CellBulkModulus] = &[CellBulkModulus { share: 4.0, only: None }];
 
     /// Near rest in pressed cells only. Of the others, and of tissue none of whose cells is pressed, the tangent at rest is the
     /// matrix of linear elements.

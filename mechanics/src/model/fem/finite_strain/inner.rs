@@ -17,11 +17,9 @@ use std::sync::Arc;
 use super::newton_state::{Question, Rest, Start};
 use super::problem::FiniteStrain;
 use super::tissue::Tissue;
+use crate::model::parts::Parts;
 use crate::model::problem::ModelError;
 use crate::solver::{SolverError, Tolerance};
-
-/// The least share of growth and pull that is tried.
-const LEAST_SHARE: f64 = 1.0 / 64.0;
 
 /// Relative residual of the states on the way.
 const ON_THE_WAY: f64 = 1e-3;
@@ -50,20 +48,22 @@ impl<'a> FiniteStrain<'a> {
         let relative_residual = asked.relative_residual.max(ON_THE_WAY);
         let on_the_way =
             Question { tolerance: Tolerance { relative_residual, ..asked }, ..question };
-        let (_, rest) = self.with_share(0.0).rest_from(on_the_way, start)?;
-        let (mut reached, mut share, mut ahead) = (rest.into_start(), 0.0, 0.5);
+        let (_, rest) = self.with_share(0.0).rest_at_once_or_in_parts(on_the_way, start)?;
+        let (mut reached, mut parts) = (rest.into_start(), Parts::beginning_with(0.5));
         loop {
-            let target = f64::min(share + ahead, 1.0);
-            let found = match target < 1.0 {
-                true => self.with_share(target).rest_from(on_the_way, reached.clone()),
+            let share = parts.target();
+            let found = match share < 1.0 {
+                true => self.with_share(share).rest_from(on_the_way, reached.clone()),
                 false => self.rest_from(question, reached.clone()),
             };
             match found {
-                Ok(found) if target >= 1.0 => return Ok(found),
-                Ok((_, rest)) => {
-                    (reached, share, ahead) = (rest.into_start(), target, 2.0 * ahead);
+                Ok((tissue, rest)) => {
+                    if parts.rested() {
+                        return Ok((tissue, rest));
+                    }
+                    reached = rest.into_start();
                 }
-                Err(error) if is_too_much(&error) && ahead > LEAST_SHARE => ahead *= 0.5,
+                Err(error) if is_too_much(&error) && parts.halve() => {}
                 Err(error) => return Err(error),
             }
         }

@@ -18,6 +18,7 @@ mod inner;
 mod mesh_error;
 mod newton;
 mod newton_state;
+mod parts;
 mod pressures;
 mod problem;
 mod sheet;
@@ -50,7 +51,6 @@ use elements::CellBulkModulus;
 pub use elements::Elements;
 pub use fibres::FibreField;
 pub use mesh_error::{FinerProblem, MeshError, NoMeshError};
-pub use newton::MOST_STEPS;
 use newton::Newton;
 use newton_state::{Ending, NewtonExits, Question, Rest, Start};
 pub use problem::FiniteStrain;
@@ -71,6 +71,11 @@ pub struct InContact {
     pub contact: Contact,
     pub mesh_error: Option<MeshError>,
 }
+
+/// Steps after which no rest of a movement that is made at once is expected any more, and the relative residual above which bones
+/// wait until tissue that is not stable is nearer to rest.
+pub const MOST_STEPS: usize = 150;
+const OUT_OF_BALANCE: f64 = 0.3;
 
 /// What moves goes by at most this part of its longest edges in a step where things touch.
 const STEP: f64 = 0.5;
@@ -125,8 +130,7 @@ impl<'a> FiniteStrain<'a> {
         self.check_held_cells(case)?;
         let numbering = number(cells, self.nodes, self.holds);
         let constrained = Constrained { holds: self.holds, numbering: &numbering };
-        let question =
-            Question { constrained: &constrained, case, tolerance: self.tolerance, progress };
+        let question = self.whole(&constrained, case, progress);
         let (tissue, mut rest) = self.rest(question, None)?;
         let error = self.mesh_error(finer, &tissue, &mut rest, &question)?;
         Ok((self.equilibrium(&tissue, &question, rest, &case.forces)?, error))
@@ -158,8 +162,7 @@ impl<'a> FiniteStrain<'a> {
         }
         let numbering = number(&nodes_of_cells(self.mesh), &self.mesh.nodes, self.holds);
         let constrained = Constrained { holds: self.holds, numbering: &numbering };
-        let question =
-            Question { constrained: &constrained, case, tolerance: self.tolerance, progress };
+        let question = self.whole(&constrained, case, progress);
         let touching = Touching::new(surfaces, self.holds, &numbering, 1.0 / steps as f64);
         let (tissue, mut rest) = self.rest(question, Some(touching))?;
         let mesh_error = self.mesh_error(finer, &tissue, &mut rest, &question)?;
@@ -209,6 +212,25 @@ impl<'a> FiniteStrain<'a> {
         Ok(equilibrium)
     }
 
+    /// The whole of a movement and load, at once.
+    fn whole<'b>(
+        &self,
+        constrained: &'b Constrained<'b>,
+        case: &'b LoadCase,
+        progress: &'b dyn Progress,
+    ) -> Question<'b> {
+        Question {
+            constrained,
+            case,
+            share: 1.0,
+            kept: CellBulkModulus::USUAL,
+            out_of_balance: OUT_OF_BALANCE,
+            most_steps: MOST_STEPS,
+            tolerance: self.tolerance,
+            progress,
+        }
+    }
+
     /// Brings the tissue to rest: with all that grows and pulls at once, or, where that is too much for one path, by and by.
     fn rest(
         &self,
@@ -225,7 +247,7 @@ impl<'a> FiniteStrain<'a> {
             touching,
         };
         if self.inner.is_zero() {
-            return self.rest_from(question, start);
+            return self.rest_at_once_or_in_parts(question, start);
         }
         match self.rest_from(question, start.clone()) {
             Err(error) if inner::is_too_much(&error) => self.rest_by_and_by(question, start),
@@ -239,7 +261,8 @@ impl<'a> FiniteStrain<'a> {
         question: Question<'a>,
         start: Start<'a>,
     ) -> Result<(Tissue<'a>, Rest<'a>), ModelError> {
-        let (share, near, pressed) = match self.with_bulk_in_cells(question, start, true)? {
+        let kept = question.kept;
+        let (share, near, pressed) = match self.with_bulk_in_cells(kept, question, start, true)? {
             (tissue, Ending::Rest(rest)) => return Ok((tissue, *rest)),
             (tissue, Ending::Near(near, pressed)) => (tissue.bulk_in_cells, near, pressed),
             (_, Ending::Jam(_)) => unreachable!("with more bulk modulus nothing is a jam"),
@@ -256,31 +279,23 @@ impl<'a> FiniteStrain<'a> {
             Err(ModelError::Solver(SolverError::NotConverged { .. })) => {}
             Err(error) => return Err(error),
         }
-        match self.with_bulk_in_cells(question, near, false)? {
+        match self.with_bulk_in_cells(kept, question, near, false)? {
             (tissue, Ending::Rest(rest)) => Ok((tissue, *rest)),
             (_, Ending::Jam(_) | Ending::Near(..)) => unreachable!("only rest ends it"),
         }
     }
 
-    /// With the usual share in the cells, and with more where that jams.
+    /// With the first share in the cells, and with the next where that jams.
     fn with_bulk_in_cells(
         &self,
+        kept: &[CellBulkModulus],
         question: Question<'a>,
         start: Start<'a>,
         near: bool,
     ) -> Result<(Tissue<'a>, Ending<'a>), ModelError> {
-        match self.newton(
-            &CellBulkModulus::FIRST,
-            question,
-            start,
-            NewtonExits { jammed: true, near },
-        )? {
-            (_, Ending::Jam(reached)) => self.newton(
-                &CellBulkModulus::MORE,
-                question,
-                reached,
-                NewtonExits { jammed: false, near },
-            ),
+        let [first, more @ ..] = kept else { unreachable!("a share is kept first") };
+        match self.newton(first, question, start, NewtonExits { jammed: !more.is_empty(), near })? {
+            (_, Ending::Jam(reached)) => self.with_bulk_in_cells(more, question, reached, near),
             ended => Ok(ended),
         }
     }

@@ -13,17 +13,11 @@ use crate::mesh::Vector;
 use crate::model::problem::{LoadCase, ModelError};
 use crate::solver::{NewtonReport, SolveReport, SolverError, tell};
 
-/// The relative residual above which tissue whose tangent was not positive definite is brought nearer to rest before bones go on.
-const OUT_OF_BALANCE: f64 = 0.3;
-
 /// Relative residual of the linear system of a step while bones move, without pressures and with them, and the bounds of it
 /// afterwards.
 const ADVANCING: f64 = 0.01;
 const ADVANCING_MIXED: f64 = 0.003;
 const SHARPEST: f64 = 1e-3;
-
-/// Steps after which no rest is expected any more.
-pub const MOST_STEPS: usize = 150;
 
 /// Steps this short, this often one after the other, are a standstill.
 const SHORT: f64 = 0.01;
@@ -99,7 +93,7 @@ impl<'a, 'b> Newton<'a, 'b> {
 
     /// Goes on until rest is found or what else ends it, or says why it is not found.
     pub fn solve(mut self, until: NewtonExits) -> Result<Ending<'a>, ModelError> {
-        let Question { constrained, tolerance, progress, .. } = self.question;
+        let Question { constrained, share, most_steps, tolerance, progress, .. } = self.question;
         let wanted = tolerance.relative_residual;
         loop {
             let tissue = self.tissue;
@@ -113,14 +107,16 @@ impl<'a, 'b> Newton<'a, 'b> {
             self.path.push(self.made);
             tell(progress, self.history.len(), residual, wanted)?;
             let rests = self.balance.rest() <= wanted;
-            if self.made >= 1.0 && rests && contact_rests {
+            if self.made >= share && rests && contact_rests {
                 let report = self.report(&deformed)?;
                 let (positions, pressures, forces) = (self.x, self.p, deformed.forces);
+                let made = self.made;
                 let (directions, touching) = (self.directions, self.touching);
-                let rest = Rest { positions, pressures, forces, report, directions, touching };
+                let rest =
+                    Rest { positions, pressures, made, forces, report, directions, touching };
                 return Ok(Ending::Rest(Box::new(rest)));
             }
-            let is_near = self.made >= 1.0 && residual <= NEAR;
+            let is_near = self.made >= share && residual <= NEAR;
             if until.near && is_near {
                 let pressed = deformed.pressed(ROOMY);
                 // Another beginning may take contact on another way: with it only where no cell is pressed.
@@ -128,7 +124,7 @@ impl<'a, 'b> Newton<'a, 'b> {
                     return Ok(Ending::Near(self.reached(), pressed));
                 }
             }
-            if self.history.len() > MOST_STEPS {
+            if self.history.len() > most_steps {
                 return Err(self.not_converged().into());
             }
             self.step(&deformed)?;
@@ -152,10 +148,11 @@ impl<'a, 'b> Newton<'a, 'b> {
     /// One step: a direction, how far, and the same of the movement of the bones.
     fn step(&mut self, deformed: &Deformed) -> Result<(), ModelError> {
         let residual = self.balance.residual;
-        let rests = self.unsettled && residual > OUT_OF_BALANCE;
-        let ahead = if rests { 0.0 } else { self.ahead.min(1.0 - self.made) };
+        let Question { share, out_of_balance, .. } = self.question;
+        let rests = self.unsettled && residual > out_of_balance;
+        let ahead = if rests { 0.0 } else { self.ahead.min(share - self.made) };
         let direction = self.direction(deformed, ahead)?;
-        self.unsettled = !direction.is_convex || (self.unsettled && residual > OUT_OF_BALANCE);
+        self.unsettled = !direction.is_convex || (self.unsettled && residual > out_of_balance);
         let longest = self.tissue.longest_step(&self.x, &direction.positions);
         if let Some(touching) = &mut self.touching {
             touching.press(direction.multipliers);
@@ -170,7 +167,7 @@ impl<'a, 'b> Newton<'a, 'b> {
         self.p.iter_mut().zip(&direction.pressures).for_each(|(p, d)| *p += d * taken);
         if ahead > 0.0 {
             self.balance.moved(direction.load / ahead);
-            self.made = advanced(self.made, taken * ahead);
+            self.made = advanced(self.made, taken * ahead, share);
             let most = self.touching.as_ref().map_or(1.0, |touching| touching.most_ahead);
             self.ahead = (2.0 * taken * ahead).max(LEAST_AHEAD).min(most);
         }
@@ -211,7 +208,7 @@ impl<'a, 'b> Newton<'a, 'b> {
 
     /// Eisenstat, Walker 1996, choice 2, once the bones stand still.
     fn inner_tolerance(&self) -> f64 {
-        if self.made < 1.0 {
+        if self.made < self.question.share {
             return if self.has_pressures() { ADVANCING_MIXED } else { ADVANCING };
         }
         let last = self.history.iter().rev().nth(1).copied().unwrap_or(1.0);
@@ -355,13 +352,14 @@ impl<'a, 'b> Newton<'a, 'b> {
                 is_stable,
                 bulk_in_cells: self.tissue.bulk_in_cells,
                 cells_with_bulk: self.tissue.cells_with_bulk,
+                parts: Vec::new(),
             }),
         })
     }
 }
 
-/// The share of the movement after one more part of it.
-fn advanced(made: f64, more: f64) -> f64 {
+/// The share of the movement after one more part of it, on the way to one.
+fn advanced(made: f64, more: f64, wanted: f64) -> f64 {
     let made = made + more;
-    if 1.0 - made < 1e-12 { 1.0 } else { made }
+    if wanted - made < 1e-12 { wanted } else { made }
 }

@@ -1,12 +1,13 @@
 //! States of Newton's method: where it begins, what ends it, and tissue at rest.
 
 use super::direction::{Directions, Tally};
+use super::elements::CellBulkModulus;
 use super::touching::Touching;
 use crate::mesh::Vector;
 use crate::model::dofs::Constrained;
 use crate::model::problem::LoadCase;
 use crate::progress::Progress;
-use crate::solver::{SolveReport, Tolerance};
+use crate::solver::{RestOnTheWay, SolveReport, Tolerance};
 
 /// What ends Newton's method beside rest.
 #[derive(Clone, Copy)]
@@ -39,6 +40,15 @@ pub(super) struct Start<'a> {
 pub(super) struct Question<'a> {
     pub constrained: &'a Constrained<'a>,
     pub case: &'a LoadCase,
+    /// The share of movement and load at which rest is wanted; 1 of all of it.
+    pub share: f64,
+    /// What of the bulk modulus stays in cells on the way: more after each jam.
+    pub kept: &'static [CellBulkModulus],
+    /// The relative residual above which tissue whose tangent was not positive definite is brought nearer to rest before bones
+    /// go on.
+    pub out_of_balance: f64,
+    /// Steps, with those before, after which no rest is expected any more.
+    pub most_steps: usize,
     pub tolerance: Tolerance,
     pub progress: &'a dyn Progress,
 }
@@ -57,6 +67,8 @@ pub(super) struct Rest<'a> {
     /// By row.
     pub positions: Vec<Vector>,
     pub pressures: Vec<f64>,
+    /// The share of movement and load that is made.
+    pub made: f64,
     /// Internal forces in mN, by row.
     pub forces: Vec<Vector>,
     pub report: SolveReport,
@@ -66,6 +78,16 @@ pub(super) struct Rest<'a> {
 }
 
 impl<'a> Rest<'a> {
+    /// What is told of it, where so many residuals were measured before the part of the movement that ends there.
+    pub fn on_the_way(&self, begun: usize) -> Option<RestOnTheWay> {
+        self.report.newton.as_ref().map(|newton| RestOnTheWay {
+            share: self.made,
+            energy: newton.energy,
+            least_det_f: newton.least_det_f,
+            steps: self.report.history.len() - 1 - begun,
+        })
+    }
+
     /// Where another path begins.
     pub fn into_start(self) -> Start<'a> {
         let pressures = self.directions.pressures.as_ref();
@@ -78,7 +100,7 @@ impl<'a> Rest<'a> {
         Start {
             x: self.positions,
             log_volumes,
-            made: 1.0,
+            made: self.made,
             history,
             path,
             tally: self.directions.tally,

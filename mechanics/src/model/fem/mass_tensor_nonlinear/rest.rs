@@ -7,6 +7,7 @@ use crate::boundary::Hold;
 use crate::mesh::Vector;
 use crate::model::dofs::Constrained;
 use crate::model::fem::strain::deformations;
+use crate::model::parts::Parts;
 use crate::model::problem::{Equilibrium, LoadCase, ModelError};
 use crate::progress::{Inner, Progress};
 use crate::solver::conjugate_gradient::{Enough, direction};
@@ -14,9 +15,6 @@ use crate::solver::multigrid::Multigrid;
 use crate::solver::{SolveReport, SolverError, System, Tolerance, tell};
 
 use super::tissue::Tetrahedra;
-
-/// The least part of the movement that is tried.
-const LEAST: f64 = 1.0 / 64.0;
 
 /// Steps after which a part is given up, and all steps together.
 const MOST_STEPS: usize = 15;
@@ -68,9 +66,9 @@ impl Search<'_> {
         let mut tally = Tally::default();
         let nodes = self.tetrahedra.mesh.nodes.len();
         let mut at = State { u: vec![Vector::zeros(); nodes], ..State::default() };
-        let (mut made, mut part) = (0.0, 1.0_f64);
-        while made < 1.0 {
-            let share = (made + part).min(1.0);
+        let mut parts = Parts::beginning_with(1.0);
+        while parts.made() < 1.0 {
+            let share = parts.target();
             let wanted = match share < 1.0 {
                 true => ON_THE_WAY.max(tolerance.relative_residual),
                 false => tolerance.relative_residual,
@@ -78,13 +76,15 @@ impl Search<'_> {
             let goal = Goal { share, wanted, memory_mb: tolerance.memory_mb };
             match self.part(&at, &goal, &mut tally)? {
                 Ending::Rest(rest) => {
-                    (at, made, part) = (rest, share, 2.0 * part);
+                    at = rest;
+                    parts.rested();
                     tally.parts += 1;
                 }
-                Ending::NoRest => part *= 0.5,
+                Ending::NoRest if parts.halve() => {}
+                Ending::NoRest => return Err(self.standstill(parts.made(), &at, &tally)),
             }
-            if part < LEAST || tally.history.len() > MOST_ALTOGETHER {
-                return Err(self.standstill(made, &at, &tally));
+            if tally.history.len() > MOST_ALTOGETHER {
+                return Err(self.standstill(parts.made(), &at, &tally));
             }
         }
         Ok(self.equilibrium(at, tolerance, tally))

@@ -1,0 +1,75 @@
+//! A movement in parts, each brought to rest before the next one: a part that finds no rest is halved, the one after a part that
+//! does is twice as large.
+
+/// The least part of a movement that is tried.
+const LEAST: f64 = 1.0 / 64.0;
+
+/// How much of a movement is at rest, and how much of it is tried next, as shares of the whole.
+#[derive(Clone, Copy, Debug)]
+pub struct Parts {
+    made: f64,
+    part: f64,
+}
+
+impl Parts {
+    /// A movement of which nothing is made, and its first part.
+    pub fn beginning_with(part: f64) -> Parts {
+        Parts { made: 0.0, part }
+    }
+
+    /// The share that is at rest.
+    pub fn made(&self) -> f64 {
+        self.made
+    }
+
+    /// The share to be brought to rest next.
+    pub fn target(&self) -> f64 {
+        (self.made + self.part).min(1.0)
+    }
+
+    /// The target is at rest. True where that is the whole movement.
+    pub fn rested(&mut self) -> bool {
+        self.made = self.target();
+        self.part = (2.0 * self.part).min(1.0 - self.made);
+        self.made >= 1.0
+    }
+
+    /// The target found no rest. False where no smaller part is tried.
+    pub fn halve(&mut self) -> bool {
+        let half = 0.5 * self.part;
+        let goes_on = half >= LEAST;
+        if goes_on {
+            self.part = half;
+        }
+        goes_on
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Parts;
+
+    #[test]
+    fn a_part_that_fails_is_halved_and_the_next_after_one_that_rests_is_twice_as_large() {
+        let mut parts = Parts::beginning_with(1.0);
+        assert_eq!(parts.target(), 1.0);
+        assert!(parts.halve() && parts.halve());
+        assert_eq!([parts.made(), parts.target()], [0.0, 0.25]);
+        assert!(!parts.rested());
+        assert_eq!([parts.made(), parts.target()], [0.25, 0.75]);
+        assert!(!parts.rested());
+        // Never more than is left: half of that is tried after it fails, not the same again.
+        assert_eq!([parts.made(), parts.target()], [0.75, 1.0]);
+        assert!(parts.halve());
+        assert_eq!(parts.target(), 0.875);
+        assert!(!parts.rested() && parts.rested());
+        assert_eq!(parts.made(), 1.0);
+    }
+
+    #[test]
+    fn no_part_is_less_than_a_64th() {
+        let mut parts = Parts::beginning_with(1.0);
+        assert_eq!((0..10).take_while(|_| parts.halve()).count(), 6);
+        assert_eq!(parts.target(), 1.0 / 64.0);
+    }
+}
