@@ -204,7 +204,7 @@ impl<'a> FiniteStrain<'a> {
         let equilibrium = Equilibrium {
             displacement,
             reactions: self.holds.iter().map(reaction).collect(),
-            warnings: doubt.into_iter().collect(),
+            warnings: doubt.into_iter().chain(tissue.bulk_warning()).collect(),
             solver: report,
             states,
         };

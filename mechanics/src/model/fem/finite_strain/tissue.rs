@@ -11,7 +11,7 @@ use super::problem::FiniteStrain;
 use super::sheet::{DeformedSheet, Sheet};
 use super::simplices::{DeformedSimplices, Simplices};
 use crate::material::hyperelastic::Law;
-use crate::mesh::Vector;
+use crate::mesh::{Vector, Warning};
 use crate::model::dofs::DofMap;
 use crate::model::problem::InvertedCell;
 use crate::progress::Progress;
@@ -88,6 +88,19 @@ impl<'a> Tissue<'a> {
             cells_with_bulk,
             shares_all: kept.is_of_pressed(),
         })
+    }
+
+    /// The warning of tissue all of whose cells keep bulk modulus at rest, because it jams where only pressed ones do.
+    pub fn bulk_warning(&self) -> Option<Warning> {
+        let keeps_all = self.bulk_in_cells > 0.0 && !self.shares_all;
+        let detail = format!(
+            "tissue is pressed so far that {:.2} times the shear modulus stays in all its {} cells as bulk modulus, and not in the pressed ones alone: \
+             against the answer to a slightly smaller movement, of which that is not so, its skin may jump by some tenths of a millimetre",
+            self.bulk_in_cells, self.cells_with_bulk
+        );
+        let warning = Warning::new("bulk-in-all-cells", detail);
+        let warning = warning.with("bulk_in_cells", self.bulk_in_cells);
+        keeps_all.then(|| warning.with("cells", self.cells_with_bulk as f64))
     }
 
     /// The pressures of stabilised tetrahedra; none where there are none.
