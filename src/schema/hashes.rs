@@ -45,13 +45,8 @@ pub fn predict_hash(
     }))
 }
 
-/// The hash of what a case states: contents of meshes in place of their ids, name and tags left out.
-pub fn case_hash(case: &CaseDocument, content_of: &dyn Fn(&str) -> Option<String>) -> String {
-    hash(json!({ "case": stated(case, content_of) }))
-}
-
 /// A case with contents of meshes in place of their ids, without name and tags.
-fn stated(case: &CaseDocument, content_of: &dyn Fn(&str) -> Option<String>) -> Value {
+pub fn stated(case: &CaseDocument, content_of: &dyn Fn(&str) -> Option<String>) -> Value {
     let mut case = case.clone();
     case.name = None;
     case.tags.clear();

@@ -11,6 +11,10 @@ use super::minimum::Minimum;
 use super::unknowns::Unknowns;
 use super::{Bound, Parameter};
 
+/// A combination of length 1, in mm, degrees and hundredths, that changes the targets by less than this share of their sigma is not
+/// determined, however little else is asked: derivatives by differences are no better.
+const BLIND: f64 = 1e-5;
+
 /// A parameter with less than this weight takes no part in a combination.
 const SMALL_WEIGHT: f64 = 1e-3;
 
@@ -44,7 +48,7 @@ impl Certainty {
             (0..unknowns.count()).filter(|&place| is_free(&unknowns.free[place])).collect();
         let free: Vec<Parameter> = places.iter().map(|&place| unknowns.free[place]).collect();
         let jacobian = minimum.linearised.jacobian.select_columns(&places);
-        let floor = UNDETERMINED.powi(2) * minimum.linearised.largest;
+        let floor = (UNDETERMINED.powi(2) * minimum.linearised.largest).max(BLIND.powi(2));
         let (inverse, blind) = inverse_and_kernel(jacobian.tr_mul(&jacobian), floor);
         let is_seen = |place: &usize| blind.iter().all(|way| way[*place].abs() < SMALL_WEIGHT);
         let seen: Vec<usize> = (0..free.len()).filter(is_seen).collect();

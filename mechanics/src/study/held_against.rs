@@ -56,7 +56,7 @@ impl SceneTruths {
             Some(with) => with.words.clone(),
         };
         let errors = [Some(&without), with.as_ref()].into_iter().flatten();
-        let errors = errors.filter_map(Truths::largest_error);
+        let errors = errors.filter_map(|truths| truths.errors.largest());
         let error_mm = errors.max_by(|one, other| one[0].total_cmp(&other[0]));
         Ok(SceneTruths { without, with, words, error_mm })
     }
@@ -70,7 +70,7 @@ impl SceneTruths {
     ) -> TrueSkins<'a> {
         let held = |truths: &'a Truths| ReferenceSkin {
             skin: DisplacedSkin::of(skin, &truths.skins[plan][materials], scene.truth.strain()),
-            own_error: truths.error(plan, materials),
+            own_error: truths.errors.get(plan, materials),
         };
         TrueSkins::Displaced {
             without: Box::new(held(&self.without)),

@@ -7,7 +7,7 @@
 use super::StudyError;
 use super::answer::{NoAnswer, Refusal, solve};
 use super::levels::Levels;
-use super::truth_error::{OwnError, own_error};
+use super::truth_error::{OwnError, TruthErrors, own_error};
 use super::truth_words::{grouped, halved};
 use super::variant::{ClosedForm, Materials, Strain, StudyScene, Truth, Variant};
 use crate::mesh::{CellShape, Vector, VolumeMesh};
@@ -36,25 +36,13 @@ pub(super) struct Truths {
     /// For each plan, for each material.
     pub skins: Vec<Vec<TrueSkin>>,
     pub words: String,
-    /// What each is off by itself, mean and p95 in mm, as far as that is known; empty where it is of none.
-    errors: Vec<Vec<Option<[f64; 2]>>>,
+    pub errors: TruthErrors,
 }
 
 impl Truths {
     /// Of which no error is known.
     fn exact(skins: Vec<Vec<TrueSkin>>, words: &str) -> Truths {
-        Truths { skins, words: words.to_owned(), errors: Vec::new() }
-    }
-
-    /// What the truth of a plan and of materials, by their places, is off by itself, mean and p95 in mm.
-    pub fn error(&self, plan: usize, materials: usize) -> Option<[f64; 2]> {
-        self.errors.get(plan).and_then(|of_plan| of_plan[materials])
-    }
-
-    /// That of the plan and the materials for which the mean is largest.
-    pub fn largest_error(&self) -> Option<[f64; 2]> {
-        let known = self.errors.iter().flatten().flatten();
-        known.copied().max_by(|one, other| one[0].total_cmp(&other[0]))
+        Truths { skins, words: words.to_owned(), errors: TruthErrors::default() }
     }
 }
 
@@ -236,10 +224,7 @@ impl TruthRequest<'_> {
         };
         let touching = if how.2.is_unilateral() { " with contact" } else { "" };
         let words = format!("{words}{strain}{touching}, {}; {own_words}", halved(times));
-        let numbers = |of_plan: Vec<Option<OwnError>>| {
-            of_plan.into_iter().map(|own| own.map(|own| own.mean_and_p95)).collect()
-        };
-        Ok(Truths { skins: finest, words, errors: own.into_iter().map(numbers).collect() })
+        Ok(Truths { skins: finest, words, errors: TruthErrors::of(&own) })
     }
 
     fn solve_plans(

@@ -18,6 +18,28 @@ pub(super) struct OwnError {
     pub mean_and_p95: [f64; 2],
 }
 
+/// What truths are off by themselves, mean and p95 in mm, as far as that is known: for each plan, for each set of materials.
+#[derive(Default)]
+pub(super) struct TruthErrors(Vec<Vec<Option<[f64; 2]>>>);
+
+impl TruthErrors {
+    pub fn of(all: &[Vec<Option<OwnError>>]) -> TruthErrors {
+        let numbers = |own: &Option<OwnError>| own.as_ref().map(|own| own.mean_and_p95);
+        TruthErrors(all.iter().map(|of_plan| of_plan.iter().map(numbers).collect()).collect())
+    }
+
+    /// Of a plan and of materials, by their places.
+    pub fn get(&self, plan: usize, materials: usize) -> Option<[f64; 2]> {
+        self.0.get(plan).and_then(|of_plan| of_plan[materials])
+    }
+
+    /// That of the plan and the materials for which the mean is largest.
+    pub fn largest(&self) -> Option<[f64; 2]> {
+        let known = self.0.iter().flatten().flatten();
+        known.copied().max_by(|one, other| one[0].total_cmp(&other[0]))
+    }
+}
+
 /// From the same field on two or three meshes, coarsest first.
 pub(super) fn own_error(fields: &[&Vec<Vector>], areas: &[f64]) -> Option<OwnError> {
     let steps: Vec<_> = fields

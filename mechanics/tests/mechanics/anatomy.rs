@@ -127,7 +127,7 @@ fn what_was_mended_is_told_by_name_and_number_and_a_whole_surface_is_not() {
     assert_eq!(
         warning.detail,
         "bone 1: 1 triangles left out that stood there before, 1 triangles turned to the side of those around them, \
-         3 open edges closed by the winding number"
+         1 holes closed by lids as curved as what is around them"
     );
     let mut inverted = skin();
     inverted.triangles.iter_mut().for_each(|corners| corners.swap(1, 2));

@@ -2,10 +2,15 @@
 
 use std::collections::BTreeMap;
 
+use serde_json::Value;
+
+use crate::jobs::predict::Prepared;
 use crate::jobs::source::MeshSource;
+use crate::schema::hashes;
 use crate::schema::predict::result::InputDocument;
 use crate::schema::study::document::StudyDocument;
-use crate::schema::{CaseDocument, Limits, Pointer};
+use crate::schema::wire::canonical;
+use crate::schema::{CaseDocument, Limits, PlanDocument, Pointer};
 use mechanics::mesh::Warning;
 use mechanics::study::StudyScene;
 
@@ -37,6 +42,23 @@ pub(super) struct Scenes {
 pub struct StatedHashes {
     pub case: String,
     pub plans: BTreeMap<String, String>,
+}
+
+impl StatedHashes {
+    /// Of a case and its plans, as they are called by their numbers.
+    pub(super) fn of<'a>(
+        case: &CaseDocument,
+        plans: impl Iterator<Item = &'a PlanDocument>,
+        prepared: &Prepared,
+    ) -> StatedHashes {
+        let content = |id: &str| prepared.contents.get(id).cloned();
+        let hash = |stated: Value| canonical::sha256_hex(stated.to_string().as_bytes());
+        let plan = |(number, plan): (usize, &PlanDocument)| {
+            (format!("plan {number}"), hash(canonical::to_value(&plan.unnamed())))
+        };
+        let case = hash(hashes::stated(case, &content));
+        StatedHashes { case, plans: (1..).zip(plans).map(plan).collect() }
+    }
 }
 
 pub(super) fn spec_at() -> Pointer {

@@ -10,10 +10,9 @@ use crate::jobs::failure::JobError;
 use crate::jobs::predict::{PredictInput, Prepared};
 use crate::schema::ErrorCode;
 use crate::schema::case::merged::{PlacedMaterials, in_words, merge_materials};
-use crate::schema::hashes;
 use crate::schema::methods::{ElementName, MethodName};
 use crate::schema::study::document::{CaseReference, SceneReference};
-use crate::schema::wire::{canonical, strict};
+use crate::schema::wire::strict;
 use crate::schema::{
     CaseDocument, Faults, MaterialDocuments, PlanDocument, Pointer, PredictDocument, Problem,
 };
@@ -323,13 +322,7 @@ impl Documents<'_> {
         self.truth(&mut scene, &mut faults);
         faults.into_result()?;
         self.stored_truth(&mut scene, &first, found)?;
-        let stated = (1..).zip(documents).map(|(number, (_, plan))| {
-            let text = canonical::to_value(&plan.unnamed()).to_string();
-            (format!("plan {number}"), canonical::sha256_hex(text.as_bytes()))
-        });
-        let content = |id: &str| first.contents.get(id).cloned();
-        let stated =
-            StatedHashes { case: hashes::case_hash(case, &content), plans: stated.collect() };
+        let stated = StatedHashes::of(case, documents.iter().map(|(_, plan)| *plan), &first);
         found.stated.insert(scene.name.clone(), stated);
         found.series.extend(reference.series.clone().map(|series| (scene.name.clone(), series)));
         found.contents.extend(first.contents.clone());

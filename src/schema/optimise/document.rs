@@ -137,7 +137,7 @@ impl OptimiseDocument {
         }
         _ = to_growth(&self.growth, &root.key("growth"), limits, faults);
         _ = to_activations(&self.activations, &root.key("activations"), limits, faults);
-        check_tissue(self, &root.key("tissue_bounds"), limits, faults);
+        check_tissue(&self.tissue_bounds, &self.growth, &root.key("tissue_bounds"), limits, faults);
         let moves = self.bounds.values().any(BoundsDocument::is_free);
         if !moves && !self.tissue_bounds.values().any(TissueBoundsDocument::is_free) {
             let detail = "nothing may change: at least one lowest value is below its highest";

@@ -384,13 +384,13 @@ fn bad_tissue() -> Vec<Row> {
         (
             "region that does not grow",
             tissue(json!({"fat": {"volume_change": [-0.1, 0.1]}})),
-            "unknown-region",
+            invalid,
             "/tissue_bounds/fat",
         ),
         (
             "region without a ratio",
             tissue(json!({"fat": {"poisson_ratio": [0.3, 0.4]}})),
-            "unknown-region",
+            invalid,
             "/tissue_bounds/fat",
         ),
         (
