@@ -263,7 +263,7 @@ fn the_modulus_of_all_tissue_is_not_told_by_any_skin() {
         bounds: &[held(slab.by)],
         targets: &targets,
         inner: &[FREE],
-        constants: &[all.clone()],
+        constants: std::slice::from_ref(&all),
     };
     let optimum = search(&mut scene, &asks, &Unobserved).unwrap().optimum;
     assert_eq!(optimum.certainty.determined, [Parameter::Growth(0)]);
