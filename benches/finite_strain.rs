@@ -120,6 +120,7 @@ fn solve(mesh: &VolumeMesh, plan: &Plan) -> (Result<Equilibrium, ModelError>, f6
         holds: &holds,
         tolerance: Tolerance { relative_residual: 1e-6, memory_mb: 16e3 },
         with_states: false,
+        in_parts: true,
     };
     let held = holds.iter().map(|hold| *hold.values()).collect();
     let case =

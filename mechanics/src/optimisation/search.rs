@@ -78,42 +78,42 @@ pub fn search(
 ) -> Result<SearchResult, SearchError> {
     search.constants.iter().try_for_each(|own| own.check(scene))?;
     let start = search.constants.iter().map(|own| own.start(scene)).collect();
-    let mut here = search.solved_at(scene, start, progress)?;
+    let mut iterate = search.solved_at(scene, start, progress)?;
     if search.constants.is_empty() {
-        let question = search.question(&here.response, &[]);
+        let question = search.question(&iterate.response, &[]);
         let optimum = optimise(&question)?;
-        return Ok(here.found(optimum, 0));
+        return Ok(iterate.found(optimum, 0));
     }
     let mut step = f64::INFINITY;
     for steps in 0..MOST_STEPS {
-        let free = here.with_constants(scene, progress)?;
+        let free = iterate.with_constants(scene, progress)?;
         let change = |share: f64| -> Vec<f64> {
-            let both = here.values.iter().zip(&free.constants);
+            let both = iterate.values.iter().zip(&free.constants);
             both.map(|(value, wanted)| value + share * (wanted - value)).collect()
         };
-        step = search.size(&here.values, &free);
+        step = search.size(&iterate.values, &free);
         if step <= SMALL_STEP {
             for (constant, value) in search.constants.iter().zip(&free.constants) {
                 constant.set(scene, *value)?;
             }
-            return Ok(here.found(free, steps));
+            return Ok(iterate.found(free, steps));
         }
         let mut share = 1.0;
         let mut next = search.solved_at(scene, change(share), progress)?;
         for _ in 0..MOST_HALVINGS {
-            if next.sum <= here.sum + NEGLIGIBLE {
+            if next.sum <= iterate.sum + NEGLIGIBLE {
                 break;
             }
             share /= 2.0;
             next = search.solved_at(scene, change(share), progress)?;
         }
-        here = next;
+        iterate = next;
     }
     Err(SearchError::NotConverged { steps: MOST_STEPS, step, wanted: SMALL_STEP })
 }
 
 /// A response at some constants, and the least sum there is with it.
-struct Here<'a> {
+struct Iterate<'a> {
     search: &'a Search<'a>,
     /// The parameters of the constants.
     values: Vec<f64>,
@@ -130,7 +130,7 @@ impl<'a> Search<'a> {
         scene: &mut Scene,
         values: Vec<f64>,
         progress: &dyn Progress,
-    ) -> Result<Here<'a>, SearchError> {
+    ) -> Result<Iterate<'a>, SearchError> {
         for (constant, value) in self.constants.iter().zip(&values) {
             constant.set(scene, *value)?;
         }
@@ -138,7 +138,7 @@ impl<'a> Search<'a> {
         let response = columns.to_response();
         let held = minimum_of(&self.question(&response, &[]))?;
         let sum = held.weighted_square_sum;
-        Ok(Here { search: self, values, columns, response, held, sum })
+        Ok(Iterate { search: self, values, columns, response, held, sum })
     }
 
     fn question<'b>(
@@ -162,7 +162,7 @@ impl<'a> Search<'a> {
     }
 }
 
-impl Here<'_> {
+impl Iterate<'_> {
     /// The optimum with the constants free, to first order.
     fn with_constants(
         &self,

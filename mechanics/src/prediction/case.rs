@@ -279,6 +279,8 @@ pub struct Settings {
     pub corrected: bool,
     /// Whether stress and strain of the cells are wanted, of methods that have them.
     pub states: bool,
+    /// Whether a movement at finite strain that finds no rest at once is made in parts, which may take five times as many steps.
+    pub in_parts: bool,
 }
 
 impl Default for Settings {
@@ -293,6 +295,7 @@ impl Default for Settings {
             estimate: true,
             corrected: false,
             states: false,
+            in_parts: true,
         }
     }
 }

@@ -241,6 +241,7 @@ impl Scene {
             holds: &self.conditions.holds,
             tolerance: Tolerance { relative_residual, memory_mb },
             with_states: self.settings.states,
+            in_parts: self.settings.in_parts,
         };
         let (tissue, boundary) = (self.tissue(), &self.boundary);
         // What grows and pulls is in the cells already.

@@ -194,6 +194,7 @@ impl PredictDocument {
             estimate: self.estimate == EstimateName::Auto,
             corrected: self.corrected,
             states: self.stress,
+            in_parts: true,
         }
     }
 

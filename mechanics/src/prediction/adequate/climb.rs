@@ -338,7 +338,9 @@ fn at_finite_strain(
     settings: &Settings,
     progress: &dyn Progress,
 ) -> Result<(Scene, Answer), Failure> {
-    let settings = Settings { method: Method::FemNonlinear, ..settings.clone() };
+    // What is expected to take some steps is not to take hundreds: whoever wants that asks for the method by its name.
+    let method = Method::FemNonlinear;
+    let settings = Settings { method, in_parts: false, ..settings.clone() };
     let scene =
         Scene::new(case, plan, &settings).map_err(|errors| Failure::Refused(errors.to_string()))?;
     if scene.warnings.iter().any(|warning| warning.code == FIBRES_IGNORED) {

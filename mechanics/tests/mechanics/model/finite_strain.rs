@@ -55,6 +55,7 @@ pub(super) fn rest_of(
         holds,
         tolerance: Tolerance { relative_residual: 1e-7, memory_mb: 1000.0 },
         with_states: false,
+        in_parts: true,
     };
     let held = holds.iter().map(|hold| *hold.values()).collect();
     let forces = vec![Vector::zeros(); mesh.nodes.len()];

@@ -73,6 +73,7 @@ fn newton_forces(mesh: &VolumeMesh, law: &Law, displacement: &[Vector]) -> Vec<V
         holds: &holds,
         tolerance: TOLERANCE,
         with_states: false,
+        in_parts: true,
     };
     let held = displacement.to_vec();
     let case =

@@ -145,8 +145,13 @@ fn ratio_and_loss_come_back_and_are_as_certain_as_published() {
             "   without loss nu is off by {first_order:.3} to first order, by {off:.3} within its bounds"
         );
         assert!((first_order / shift - 1.0).abs() < 0.4, "{by:?}: {first_order}");
-        // Outwards and along it ends at its bound.
-        assert!(off.signum() == f64::signum(shift) && off.abs() > 0.039, "{by:?}: {off}");
+        // Outwards it ends at its bound. Along, where the skin curves in nu, the first order is no guide: it hardly moves.
+        match by == MOVEMENTS[2] {
+            true => assert!(off.abs() < 0.01, "{by:?}: {off}"),
+            false => {
+                assert!(off.signum() == f64::signum(shift) && off.abs() > 0.039, "{by:?}: {off}");
+            }
+        }
         assert!((errors[1] / of_ratio - 1.0).abs() < 0.26, "{by:?}: {errors:?}");
         assert!((errors[0] / of_loss - 1.0).abs() < 0.17, "{by:?}: {errors:?}");
         assert!((together - correlation).abs() < 0.1, "{by:?}: {together}");

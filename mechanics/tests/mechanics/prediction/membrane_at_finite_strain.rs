@@ -45,6 +45,7 @@ fn forces(mesh: &VolumeMesh, sheet: PlaneStress, moved: impl Fn(&Vector) -> Vect
             holds: &holds,
             tolerance: Tolerance { relative_residual: 1e-10, memory_mb: 1000.0 },
             with_states: false,
+            in_parts: true,
         };
         let held = holds.iter().map(|hold| *hold.values()).collect();
         let forces = vec![Vector::zeros(); mesh.nodes.len()];

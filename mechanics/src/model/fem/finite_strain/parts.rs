@@ -27,14 +27,14 @@ const MOST_OF_PART: usize = 150;
 const MOST_ALTOGETHER: usize = 600;
 
 impl<'a> FiniteStrain<'a> {
-    /// Brings tissue to rest with the whole movement at once, or, where that finds no rest, in parts.
+    /// Brings tissue to rest with the whole movement at once, or, where that finds no rest and parts are wanted, in parts.
     pub(super) fn rest_at_once_or_in_parts(
         &self,
         question: Question<'a>,
         start: Start<'a>,
     ) -> Result<(Tissue<'a>, Rest<'a>), ModelError> {
         match self.rest_from(question, start.clone()) {
-            Err(error) if is_too_much(&error) => {
+            Err(error) if self.in_parts && is_too_much(&error) => {
                 let (tissue, mut rest, parts) = self.rest_in_parts(question, start)?;
                 if let Some(newton) = &mut rest.report.newton {
                     newton.parts = parts;

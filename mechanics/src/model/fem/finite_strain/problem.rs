@@ -32,4 +32,6 @@ pub struct FiniteStrain<'a> {
     pub tolerance: Tolerance,
     /// Whether stress and strain of the cells are wanted.
     pub with_states: bool,
+    /// Whether a movement that finds no rest at once is made in parts.
+    pub in_parts: bool,
 }
