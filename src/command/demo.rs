@@ -15,11 +15,12 @@ use super::serve::{ServeError, Server, stop_signal};
 use crate::config::Config;
 use crate::telemetry;
 use crate::worker::slots::Workers;
-use client::{Client, ClientError};
+use client::{Client, ClientError, Part};
 use mechanics::format::{self, FormatError, Mesh, ReadLimits, WriteError};
-use mechanics::mesh::half_head::{HalfHead, STANDARD_FINENESS, half_head};
+use mechanics::mesh::generic_face::{FaceSettings, Lips, generic_face};
+use mechanics::mesh::half_head::{STANDARD_FINENESS, half_head};
 use mechanics::mesh::refinement::refine;
-use mechanics::mesh::{TriangleSurface, VolumeMesh};
+use mechanics::mesh::{CellShape, TriangleSurface};
 use report::Report;
 
 /// How often the state of a job is asked for.
@@ -103,6 +104,7 @@ async fn beside_the_service(
     if let (true, Ok(jobs)) = (arguments.serve, &done) {
         println!("\nlistening on http://{} (stop with Ctrl-C)", client.address);
         println!("  {:<20}http://{}{}", "plan it yourself", client.address, jobs[0].page());
+        println!("  {:<20}http://{}{}", "a face with muscles", client.address, jobs[3].page());
         println!("  {:<20}http://{}/docs", "the API", client.address);
         for job in jobs {
             println!("  {:<20}http://{}{}", job.name, client.address, job.path());
@@ -114,26 +116,39 @@ async fn beside_the_service(
     Ok((workers, done.map(|_| ())))
 }
 
-async fn show(arguments: &Arguments, client: Client) -> Result<[FinishedJob; 3], DemoError> {
+async fn show(arguments: &Arguments, client: Client) -> Result<[FinishedJob; 4], DemoError> {
     let started = Instant::now();
 
     // 1. The half head, its plan, and what becomes of its skin.
     let head = half_head(STANDARD_FINENESS);
-    let coarse = predict(&client, &head, &head.mesh, ("half head", &scene::FILES)).await?;
-    let files = fetch_files(&client, &coarse, &arguments.out).await?;
+    let form = scene::case_form(&head, &head.mesh, "half head")?;
+    let predicted = |case: &str| scene::prediction_of(case, &scene::FILES);
+    let coarse = predict(&client, &form, "half head", predicted).await?;
+    let mut files = fetch_files(&client, &coarse, &scene::FILES, &arguments.out).await?;
 
     // 2. The same with every edge halved, and how far the two are apart.
     let finer = refine(&head.mesh);
-    let fine = predict(&client, &head, &finer, ("every edge halved", &["skin.vtp"])).await?;
+    let form = scene::case_form(&head, &finer, "every edge halved")?;
+    let predicted = |case: &str| scene::prediction_of(case, &["skin.vtp"]);
+    let fine = predict(&client, &form, "every edge halved", predicted).await?;
     let fine_skin = client.bytes(&fine.file("skin.vtp")).await?;
     let compared = compare(&client, &coarse, &fine_skin).await?;
     let skins = [client.bytes(&coarse.file("skin.vtp")).await?, fine_skin];
 
-    // 3. What came out.
+    // 3. A face with muscles, which smiles.
+    let settings = FaceSettings { lips: Lips::Closed, fineness: 1, shape: CellShape::Hex8 };
+    let face = generic_face(settings);
+    let form = scene::face_form(&face)?;
+    let smile = predict(&client, &form, "face that smiles", scene::smile_of).await?;
+    let folder = arguments.out.join("face");
+    files.extend(fetch_files(&client, &smile, &scene::FACE_FILES, &folder).await?);
+
+    // 4. What came out.
     let report = Report {
         coarse: &coarse.results,
         fine: &fine.results,
         comparison: &compared.results,
+        smile: &smile.results,
         node_wise: node_wise_distances(&skins)?,
         upload_s: [coarse.upload_s, fine.upload_s, compared.upload_s],
     };
@@ -143,7 +158,7 @@ async fn show(arguments: &Arguments, client: Client) -> Result<[FinishedJob; 3],
         println!("  {}", file.display());
     }
     println!("\n{:.1} s in all", started.elapsed().as_secs_f64());
-    Ok([coarse, fine, compared])
+    Ok([coarse, fine, compared, smile])
 }
 
 /// The settings of the service in the demo; the others keep their defaults.
@@ -191,18 +206,17 @@ impl FinishedJob {
 /// Two calls, as a planner makes them: the case with its meshes, and the job with its plan.
 async fn predict(
     client: &Client,
-    head: &HalfHead,
-    volume: &VolumeMesh,
-    (name, files): (&str, &[&str]),
+    form: &[Part],
+    name: &str,
+    prediction: impl Fn(&str) -> Value,
 ) -> Result<FinishedJob, DemoError> {
     let bar = progress_bar(name);
     bar.set_message("upload");
     let started = Instant::now();
-    let form = scene::case_form(head, volume, name)?;
-    let case = client.form("/v1/cases", &form).await?;
+    let case = client.form("/v1/cases", form).await?;
     let case = text(&case, "POST /v1/cases", "id")?;
     let upload_s = started.elapsed().as_secs_f64();
-    let done = run_job(client, name, &scene::prediction_of(&case, files), bar).await?;
+    let done = run_job(client, name, &prediction(&case), bar).await?;
     Ok(FinishedJob { upload_s, ..done })
 }
 
@@ -285,12 +299,13 @@ fn text(document: &Value, what: &'static str, member: &'static str) -> Result<St
 async fn fetch_files(
     client: &Client,
     job: &FinishedJob,
+    names: &[&str],
     folder: &Path,
 ) -> Result<Vec<PathBuf>, DemoError> {
     std::fs::create_dir_all(folder)
         .map_err(|source| DemoError::File { path: folder.to_owned(), source })?;
     let mut written = Vec::new();
-    for name in scene::FILES.into_iter().chain(["result.json"]) {
+    for &name in names.iter().chain(&["result.json"]) {
         let bytes = client.bytes(&job.file(name)).await?;
         let path = folder.join(name);
         std::fs::write(&path, &bytes)

@@ -9,11 +9,13 @@ use super::documents::write;
 use super::failure::CommandError;
 use crate::jobs::JobError;
 use mechanics::format::vtk::{vtp, vtu};
-use mechanics::format::{SurfaceOutput, VolumeOutput};
+use mechanics::format::{SurfaceOutput, VolumeOutput, WriteError};
 use mechanics::mesh::generic_face::{FaceSettings, GenericFace, LAYERS, Lips, generic_face};
 use mechanics::mesh::{CellShape, Frame, Vector};
 
 const SKIN_REGIONS: [&str; 5] = ["nose", "upper_lip", "lower_lip", "chin", "cheeks"];
+
+const VOLUME: &str = "face.vtu";
 
 /// The finest face, with 505 440 hexahedra.
 const FINEST: u64 = 9;
@@ -61,12 +63,8 @@ pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
     let fineness = arguments.fineness as usize;
     let face = generic_face(FaceSettings { lips, fineness, shape });
     let out = &arguments.out;
-    let unwritten = |error: mechanics::format::WriteError| JobError::from(error);
-    let volume = vtu::write(&VolumeOutput::plain(&face.mesh, Frame::Lps)).map_err(unwritten)?;
-    put(&out.join("face.vtu"), volume)?;
-    for (bone, surface) in &face.bones {
-        let bytes = vtp::write(&SurfaceOutput::plain(surface, Frame::Lps)).map_err(unwritten)?;
-        put(&out.join(format!("{bone}.vtp")), bytes)?;
+    for (name, bytes) in meshes(&face).map_err(JobError::from)? {
+        put(&out.join(name), bytes)?;
     }
     put(&out.join("case.json"), format!("{:#}\n", documents(&face)))?;
     put(&out.join("conform.json"), format!("{:#}\n", conformation(&case(&face))))?;
@@ -79,6 +77,21 @@ fn put(path: &Path, content: impl AsRef<[u8]>) -> Result<(), CommandError> {
     write(path, content)?;
     println!("wrote      {}", path.display());
     Ok(())
+}
+
+/// The volume and the bones by the names that the case has for them.
+pub fn meshes(face: &GenericFace) -> Result<Vec<(String, Vec<u8>)>, WriteError> {
+    let volume = vtu::write(&VolumeOutput::plain(&face.mesh, Frame::Lps))?;
+    let mut meshes = vec![(VOLUME.to_owned(), volume)];
+    for (bone, surface) in &face.bones {
+        let bytes = vtp::write(&SurfaceOutput::plain(surface, Frame::Lps))?;
+        meshes.push((bone_file(bone), bytes));
+    }
+    Ok(meshes)
+}
+
+fn bone_file(bone: &str) -> String {
+    format!("{bone}.vtp")
 }
 
 /// The case, and a plan that takes the jaw 5 mm forward.
@@ -117,16 +130,13 @@ fn conformation(case: &Value) -> Value {
 
 /// Tissue has 15 kPa and a Poisson ratio of 0.49, muscle at rest 6.2 kPa: Chabanas et al. 2003 (docs/methods.md#papers), section
 /// 3.4.2, after Fung 1993 and Duck 1990. The mucosa before the teeth slides on them, which the jaws carry.
-fn case(face: &GenericFace) -> Value {
+pub fn case(face: &GenericFace) -> Value {
     let set = |name: &str| json!({"node_set": name});
     let by_name = |name: &&str| ((*name).to_owned(), set(name));
     let layers: Map<String, Value> =
         LAYERS.iter().enumerate().map(|(label, name)| (label.to_string(), json!(name))).collect();
-    let bones: Vec<Value> = face
-        .bones
-        .keys()
-        .map(|bone| json!({"name": bone, "mesh": format!("{bone}.vtp")}))
-        .collect();
+    let bones: Vec<Value> =
+        face.bones.keys().map(|bone| json!({"name": bone, "mesh": bone_file(bone)})).collect();
     let skin_regions: Map<String, Value> = SKIN_REGIONS.iter().map(by_name).collect();
     let landmarks: Map<String, Value> =
         face.landmarks.iter().map(|(name, point)| (name.clone(), rounded(point))).collect();
@@ -136,7 +146,7 @@ fn case(face: &GenericFace) -> Value {
         "name": "generic face",
         "units": "mm",
         "frame": "LPS",
-        "volume": "face.vtu",
+        "volume": VOLUME,
         "bones": bones,
         "landmarks": landmarks,
         "regions": {"array": "layer", "names": layers},

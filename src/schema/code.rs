@@ -107,6 +107,7 @@ error_codes! {
     FrameConflict 422 "frame-conflict" REFUSED,
     NoClosedForm 422 "no-closed-form" REFUSED,
     NoScan 422 "no-scan" REFUSED,
+    NoThresholds 422 "no-thresholds" REFUSED,
     NotInResponse 422 "not-in-response" REFUSED,
     OtherCase 422 "other-case" REFUSED,
     UnknownArray 422 "unknown-array" REFUSED,

@@ -12,6 +12,8 @@ pub struct Report<'a> {
     pub coarse: &'a Value,
     pub fine: &'a Value,
     pub comparison: &'a Value,
+    /// Of the face that smiles.
+    pub smile: &'a Value,
     /// In mm, at the nodes that both predictions have.
     pub node_wise: Vec<f64>,
     /// Of the three jobs, as the client waited for it.
@@ -35,6 +37,7 @@ impl Report<'_> {
     pub fn table(&self) -> String {
         let mut lines = Vec::new();
         self.displacement(&mut lines);
+        self.smile(&mut lines);
         self.accuracy(&mut lines);
         self.effort(&mut lines);
         self.settings(&mut lines);
@@ -63,16 +66,15 @@ impl Report<'_> {
             lines.push(row(name, &region["nodes"]));
         }
         lines.push("landmarks, mm                        left     back       up".into());
-        for name in ["pronasale", "subnasale", "labrale_superius", "labrale_inferius", "pogonion"] {
-            let moved = &statistics["landmarks"][name];
-            // Rounding noise has a sign, zero has none.
-            let component = |axis: usize| match moved[axis].as_f64() {
-                Some(value) if value.abs() < 5e-4 => format!("{:>9.3}", 0.0),
-                Some(value) => format!("{value:>9.3}"),
-                None => format!("{:>9}", "-"),
-            };
-            lines.push(format!("  {name:<30}{}", [0, 1, 2].map(component).concat()));
-        }
+        let middle = ["pronasale", "subnasale", "labrale_superius", "labrale_inferius", "pogonion"];
+        lines.extend(middle.map(|name| landmark(statistics, name)));
+    }
+
+    fn smile(&self, lines: &mut Vec<String>) {
+        lines.push(String::new());
+        lines.push("face that smiles, landmarks, mm      left     back       up".into());
+        let mouth = ["cheilion_left", "cheilion_right", "labrale_superius", "pogonion"];
+        lines.extend(mouth.map(|name| landmark(&self.smile["statistics"], name)));
     }
 
     fn accuracy(&self, lines: &mut Vec<String>) {
@@ -148,6 +150,18 @@ impl Report<'_> {
             }
         }
     }
+}
+
+/// A row: how far a landmark of the skin moves along each axis.
+fn landmark(statistics: &Value, name: &str) -> String {
+    let moved = &statistics["landmarks"][name];
+    // Rounding noise has a sign, zero has none.
+    let component = |axis: usize| match moved[axis].as_f64() {
+        Some(value) if value.abs() < 5e-4 => format!("{:>9.3}", 0.0),
+        Some(value) => format!("{value:>9.3}"),
+        None => format!("{:>9}", "-"),
+    };
+    format!("  {name:<30}{}", [0, 1, 2].map(component).concat())
 }
 
 /// A beginning and a sentence after it, in lines that fit a terminal; the second and later ones are set in.

@@ -1,10 +1,12 @@
-//! Documents of the demo: the half head as a case, the plan, and the jobs.
+//! Documents of the demo: the half head and the generic face as cases, their plans, and the jobs.
 
 use serde_json::{Value, json};
 
 use super::client::Part;
+use crate::command::face;
 use mechanics::format::vtk::{vtp, vtu};
 use mechanics::format::{SurfaceOutput, VolumeOutput, WriteError};
+use mechanics::mesh::generic_face::GenericFace;
 use mechanics::mesh::half_head::{HalfHead, LAYERS};
 use mechanics::mesh::{Frame, VolumeMesh};
 
@@ -18,6 +20,9 @@ pub const FILES: [&str; 7] = [
     "classes.svg",
     "displacement.svg",
 ];
+
+/// The same of the face that smiles.
+pub const FACE_FILES: [&str; 3] = ["skin.vtp", "skin.glb", "displacement.svg"];
 
 /// The form that `POST /v1/cases` takes: the case and its meshes. `volume` is that of the head, or a
 /// finer one with the same sets.
@@ -107,6 +112,33 @@ pub fn prediction_of(case: &str, files: &[&str]) -> Value {
         "method": "fem_linear",
         "plan": plan(),
         "outputs": files,
+        "tags": ["demo"],
+    })
+}
+
+/// The form of the generic face as a case.
+pub fn face_form(face: &GenericFace) -> Result<Vec<Part>, WriteError> {
+    let mut case = face::case(face);
+    case["tags"] = json!(["demo"]);
+    let case = Part { name: "case".into(), bytes: case.to_string().into_bytes() };
+    let meshes = face::meshes(face)?.into_iter().map(|(name, bytes)| Part { name, bytes });
+    Ok(std::iter::once(case).chain(meshes).collect())
+}
+
+/// The job document of a smile with the mandible 5 mm forward.
+pub fn smile_of(case: &str) -> Value {
+    let smiles = ["left", "right"]
+        .map(|side| json!({"muscle": format!("zygomaticus_major_{side}"), "stress_kpa": 10}));
+    json!({
+        "kind": "predict",
+        "case": case,
+        "method": "fem_linear",
+        "plan": {
+            "segments": [{"name": "mandible", "translation_mm": [0, -5, 0]}],
+            "activations": smiles,
+            "frame": "LPS",
+        },
+        "outputs": FACE_FILES,
         "tags": ["demo"],
     })
 }

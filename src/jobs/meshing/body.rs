@@ -20,6 +20,16 @@ pub enum Body {
     Surfaces(Surfaces),
 }
 
+impl Body {
+    /// The image of a scan, in Hounsfield units.
+    pub fn image(&self) -> Option<&ImageVolume> {
+        match self {
+            Body::Scan(head) => Some(&head.image),
+            Body::Labels(_) | Body::Surfaces(_) => None,
+        }
+    }
+}
+
 /// A CT, and where there is one the surface scan that is its skin.
 pub struct ScannedHead {
     pub image: Arc<ImageVolume>,

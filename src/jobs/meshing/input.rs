@@ -73,7 +73,7 @@ impl MeshingInput {
             }
         };
         let mut faults = Faults::default();
-        let rules = self.spec.to_rules(frame, limits, &mut faults);
+        let rules = self.spec.to_rules((body.image(), frame), limits, &mut faults);
         faults.into_result()?;
         let content = |id: &str| {
             let ids = self.spec.clone().mesh_ids();

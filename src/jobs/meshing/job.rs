@@ -19,11 +19,13 @@ use crate::schema::WarningDocument;
 use crate::schema::meshing::labels::LabelsDocument;
 use crate::schema::meshing::result::MeshingResultDocument;
 use crate::schema::meshing::skin_scan::FittedScanDocument;
+use crate::schema::meshing::thresholds::HounsfieldThresholdsDocument;
 use crate::schema::predict::document::OutputName;
 use crate::schema::predict::keep::MadeName;
 use crate::schema::predict::result::{FileDocument, ResultDocument};
 use mechanics::anatomy::Anatomy;
 use mechanics::anatomy::skin_scan::FittedScan;
+use mechanics::domain::ImageOptions;
 use mechanics::format::vtk::{vtp, vtu};
 use mechanics::format::{SurfaceOutput, VolumeOutput};
 use mechanics::mesh::quality::quality;
@@ -62,6 +64,7 @@ pub fn meshing_job(
     let mut found = MeshingResultDocument::new(&anatomy, case);
     let (cuts, near) = cut_paths(&prepared.rules, &anatomy);
     found.cuts = cuts;
+    found.thresholds_hu = prepared.thresholds_hu();
     found.skin_scan = skin.as_ref().map(FittedScanDocument::from);
     if let Some(waiting) = &input.case {
         found.case = waiting.document.complete(found.case);
@@ -98,6 +101,12 @@ fn meshes_of(anatomy: Anatomy, frame: Frame, told: Vec<WarningDocument>) -> Vec<
 }
 
 impl PreparedMeshing {
+    /// Those that parted the scan.
+    fn thresholds_hu(&self) -> Option<HounsfieldThresholdsDocument> {
+        let ImageOptions { skin_threshold: skin, bone_threshold: bone, .. } = self.rules.image;
+        self.body.image().map(|_| HounsfieldThresholdsDocument { skin, bone })
+    }
+
     /// What there is to say of the scan or the surfaces, and of the mesh.
     fn told(&self, anatomy: &Anatomy) -> Vec<WarningDocument> {
         let of_meshes = self.meshes.iter().flat_map(|(_, mesh)| &mesh.warnings);

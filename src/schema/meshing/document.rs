@@ -9,6 +9,7 @@ use super::landmarks::SkinLandmarksDocument;
 use super::size::MeshSizeDocument;
 use super::skin_scan::SkinScanDocument;
 use super::surfaces::SurfacesDocument;
+use super::thresholds::ThresholdsReference;
 use super::whole_bone::WholeBoneDocument;
 use crate::schema::case::document::FrameName;
 use crate::schema::code::ErrorCode;
@@ -23,6 +24,7 @@ use crate::schema::wire::limits::Limits;
 use crate::schema::wire::names::check_tags;
 use mechanics::anatomy::{AnatomyRules, Closing};
 use mechanics::domain::ImageOptions;
+use mechanics::image::ImageVolume;
 use mechanics::mesh::Frame;
 use mechanics::meshing::MeshingSettings;
 use mechanics::osteotomy::Osteotomy;
@@ -60,7 +62,7 @@ pub struct MeshingDocument {
     pub surfaces: Option<SurfacesDocument>,
     /// Of a scan.
     #[serde(default)]
-    pub thresholds_hu: HounsfieldThresholdsDocument,
+    pub thresholds_hu: ThresholdsReference,
     /// Of a scan. Absent: bone is what lies above its threshold, and nothing else.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
@@ -115,7 +117,7 @@ impl Default for MeshingDocument {
             skin_scan: None,
             labels: None,
             surfaces: None,
-            thresholds_hu: HounsfieldThresholdsDocument::default(),
+            thresholds_hu: ThresholdsReference::default(),
             whole_bone: None,
             osteotomy: None,
             frame: None,
@@ -128,34 +130,6 @@ impl Default for MeshingDocument {
             budget: BudgetDocument::default(),
             tags: Vec::new(),
         }
-    }
-}
-
-/// Values between which an image shows soft tissue, in Hounsfield units.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-#[serde(deny_unknown_fields)]
-pub struct HounsfieldThresholdsDocument {
-    /// Below this there is air.
-    #[serde(default = "usual_skin")]
-    #[schema(default = -300.0)]
-    pub skin: f64,
-    /// From this on there is bone.
-    #[serde(default = "usual_bone")]
-    #[schema(default = 250.0)]
-    pub bone: f64,
-}
-
-fn usual_skin() -> f64 {
-    ImageOptions::default().skin_threshold
-}
-
-fn usual_bone() -> f64 {
-    ImageOptions::default().bone_threshold
-}
-
-impl Default for HounsfieldThresholdsDocument {
-    fn default() -> Self {
-        HounsfieldThresholdsDocument { skin: usual_skin(), bone: usual_bone() }
     }
 }
 
@@ -188,18 +162,15 @@ impl MeshingDocument {
         self.mesh_references_mut(&Pointer::root()).into_iter().map(|(_, id)| id.clone()).collect()
     }
 
-    /// The rules of the path for a scan or surfaces in that frame; pointers start at `/spec`.
-    pub fn to_rules(&self, scan: Frame, limits: &Limits, faults: &mut Faults) -> AnatomyRules {
+    /// The rules of the path for a scan, or for surfaces without an image, in that frame; pointers start at `/spec`.
+    pub fn to_rules(
+        &self,
+        (image, scan): (Option<&ImageVolume>, Frame),
+        limits: &Limits,
+        faults: &mut Faults,
+    ) -> AnatomyRules {
         let at = Pointer::root().key("spec");
-        let HounsfieldThresholdsDocument { skin, bone } = self.thresholds_hu;
-        let thresholds = at.key("thresholds_hu");
-        faults.check_range(&thresholds.key("skin"), skin, -1e6..=1e6, "HU");
-        faults.check_range(&thresholds.key("bone"), bone, -1e6..=1e6, "HU");
-        if skin >= bone {
-            let detail =
-                format!("tissue lies between {skin} HU and {bone} HU, which has to be larger");
-            faults.add(&thresholds, ErrorCode::OutOfRange, detail);
-        }
+        let thresholds = self.thresholds_hu.to_values(image, &at.key("thresholds_hu"), faults);
         self.budget.check(&at.key("budget"), limits, faults);
         check_tags(&self.tags, &at.key("tags"), limits, faults);
         self.check_skin_scan(&at, limits, faults);
@@ -222,8 +193,11 @@ impl MeshingDocument {
         let landmarks = self.landmarks.as_ref();
         let landmarks = landmarks
             .and_then(|given| given.to_given(&at.key("landmarks"), scan, mirrored, faults));
-        let image =
-            ImageOptions { skin_threshold: skin, bone_threshold: bone, ..ImageOptions::default() };
+        let image = ImageOptions {
+            skin_threshold: thresholds.skin,
+            bone_threshold: thresholds.bone,
+            ..ImageOptions::default()
+        };
         let whole_bone = self.whole_bone.unwrap_or_default();
         AnatomyRules {
             image,
@@ -282,7 +256,7 @@ impl MeshingDocument {
 
     /// Refuses what only a scan has.
     fn check_without_scan(&self, at: &Pointer, detail: &str, faults: &mut Faults) {
-        if self.thresholds_hu != HounsfieldThresholdsDocument::default() {
+        if self.thresholds_hu != ThresholdsReference::default() {
             faults.add(&at.key("thresholds_hu"), ErrorCode::NoScan, detail);
         }
         if self.whole_bone.is_some() {

@@ -8,6 +8,7 @@ pub mod result;
 pub mod size;
 pub mod skin_scan;
 pub mod surfaces;
+pub mod thresholds;
 pub mod whole_bone;
 
 pub use document::MeshingDocument;

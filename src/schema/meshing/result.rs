@@ -7,6 +7,7 @@ use utoipa::ToSchema;
 
 use super::cuts::CutPathDocument;
 use super::skin_scan::FittedScanDocument;
+use super::thresholds::HounsfieldThresholdsDocument;
 use crate::schema::Triple;
 use crate::schema::case::document::CaseDocument;
 use crate::schema::predict::check::CheckDocument;
@@ -24,6 +25,10 @@ pub struct MeshingResultDocument {
     pub finest_mm: f64,
     pub dihedral_angles_deg: AnglesDocument,
     pub segments: Vec<FoundSegmentDocument>,
+    /// Of a scan: the values that part air, tissue and bone in it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub thresholds_hu: Option<HounsfieldThresholdsDocument>,
     /// Cuts through their bone, for navigation.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub cuts: Vec<CutPathDocument>,
@@ -101,6 +106,7 @@ impl MeshingResultDocument {
             finest_mm: report.finest,
             dihedral_angles_deg: (&report.angles).into(),
             segments: anatomy.bone.segments.iter().map(segment).collect(),
+            thresholds_hu: None,
             cuts: Vec::new(),
             skin_scan: None,
             node_sets: sets.map(|(name, nodes)| (name.clone(), nodes.len() as u64)).collect(),

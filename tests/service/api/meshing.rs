@@ -64,6 +64,26 @@ async fn a_scan_becomes_a_case_on_which_a_plan_is_predicted() {
     assert!((2.0..4.0).contains(&largest), "{largest}");
 }
 
+#[tokio::test]
+async fn thresholds_are_found_in_the_histogram_of_the_scan() {
+    let server = Server::start();
+    let mut asked = spec(&scan(&server).await);
+    let stated = ended(&server, &asked).await;
+    let found = &stated["results"]["meshing"]["thresholds_hu"];
+    assert_eq!(found, &json!({"skin": -480.0, "bone": 620.0}), "{stated}");
+    asked["thresholds_hu"] = json!("auto");
+    let job = ended(&server, &asked).await;
+    assert_eq!(job["status"], "successful", "{job}");
+    // Between air at -1000 HU, tissue at 40 HU and bone at 1200 HU; skin and bone are within a quarter of a voxel of 4 mm, so that
+    // of 4/3 pi (50^3 - 30^3) mm3 at most 8 % are missing.
+    let made = &job["results"]["meshing"];
+    let found = |name: &str| made["thresholds_hu"][name].as_f64().unwrap();
+    assert!((-600.0..-300.0).contains(&found("skin")), "{made}");
+    assert!((190.0..640.0).contains(&found("bone")), "{made}");
+    let volume = made["volume_ml"].as_f64().unwrap();
+    assert!((volume / 410.5 - 1.0).abs() < 0.08, "{volume}");
+}
+
 /// Enamel on the front of the lower half of the bone.
 fn toothed_ct() -> Vec<u8> {
     let middle = Vector::new(60.0, 55.0, 60.0);
@@ -319,10 +339,20 @@ async fn values_that_are_no_hounsfield_units_are_not_taken_for_a_head() {
     assert_eq!(job["error"]["type"], "no-tissue", "{job}");
     assert!(job["error"]["detail"].as_str().unwrap().contains("outer skin"), "{job}");
 
-    let turned =
-        json!({"kind": "mesh", "scan": scan["id"], "thresholds_hu": {"skin": 250, "bone": -300}});
-    let problem = server.job(&turned).await.problem(422, "validation-failed");
-    assert_eq!(problem["errors"][0]["pointer"], "/thresholds_hu", "{problem}");
+    let with = |thresholds: Value| json!({"kind": "mesh", "scan": scan["id"], "thresholds_hu": thresholds});
+    for (thresholds, code) in [
+        (json!({"skin": 250, "bone": -300}), "out-of-range"),
+        (json!("auto"), "no-thresholds"),
+        (json!("otsu"), "unknown-word"),
+    ] {
+        let problem = server.job(&with(thresholds)).await.problem(422, "validation-failed");
+        let fault = &problem["errors"][0];
+        assert_eq!(
+            (&fault["pointer"], &fault["code"]),
+            (&json!("/thresholds_hu"), &json!(code)),
+            "{problem}"
+        );
+    }
 }
 
 #[tokio::test]

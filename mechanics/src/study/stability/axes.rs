@@ -56,8 +56,8 @@ fn poisson_ratio() -> Axis {
             found(case_of_nu(nu, shape_for(&variant.settings))?, jaw(shift(moved())), variant)
         },
         truth: |nu| finer(case_of_nu(nu, CellShape::Tet4), jaw(shift(moved()))),
-        finite_truth: Some(|nu| {
-            finer_at_finite_strain(case_of_nu(nu, CellShape::Tet4), jaw(shift(moved())))
+        finite_truth: Some(|nu, laws| {
+            finer_at_finite_strain(case_of_nu(nu, CellShape::Tet4), jaw(shift(moved())), laws)
         }),
     }
 }
@@ -86,7 +86,7 @@ fn movement() -> Axis {
             found(case, plan, variant)
         },
         truth: swollen,
-        finite_truth: Some(swollen),
+        finite_truth: Some(|by, _| swollen(by)),
     }
 }
 
@@ -117,7 +117,7 @@ fn rotation() -> Axis {
             found(case, jaw(turn(degrees)), variant)
         },
         truth: turned,
-        finite_truth: Some(turned),
+        finite_truth: Some(|degrees, _| turned(degrees)),
     }
 }
 
@@ -148,7 +148,7 @@ fn sliding() -> Axis {
             found(case, jaw(about_z(degrees)), variant)
         },
         truth: turned_about_z,
-        finite_truth: Some(turned_about_z),
+        finite_truth: Some(|degrees, _| turned_about_z(degrees)),
     }
 }
 
@@ -220,8 +220,9 @@ fn stiffness_contrast() -> Axis {
             found(case, jaw(shift(moved())), variant)
         },
         truth: |contrast| finer(stiff_case(contrast, CellShape::Tet4), jaw(shift(moved()))),
-        finite_truth: Some(|contrast| {
-            finer_at_finite_strain(stiff_case(contrast, CellShape::Tet4), jaw(shift(moved())))
+        finite_truth: Some(|contrast, laws| {
+            let case = stiff_case(contrast, CellShape::Tet4);
+            finer_at_finite_strain(case, jaw(shift(moved())), laws)
         }),
     }
 }

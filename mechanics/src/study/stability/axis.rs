@@ -2,9 +2,10 @@
 
 use super::scenes::{POISSON_RATIO, YOUNG_MODULUS, halved, layer, on_bone, tissue};
 use super::{Probe, Refusal, Truth, Variant};
+use crate::material::hyperelastic::{Law, SaintVenantKirchhoff};
 use crate::material::{LinearElastic, MaterialError};
 use crate::mesh::{CellShape, Vector};
-use crate::prediction::{Case, ElementChoice, Method, Plan, Settings};
+use crate::prediction::{Case, ElementChoice, Laws, Method, Plan, Settings};
 
 /// A tenth of the movement of 2.24 mm that linear axes make.
 pub(super) const TENTH_OF_MOVEMENT: f64 = 0.22;
@@ -16,7 +17,7 @@ pub(super) const FINER: &str = "linear finite elements, quadratic, every edge ha
 
 /// The same for both kinds of strain.
 pub(super) const FINER_OF_ITS_STRAIN: &str = "linear finite elements, quadratic, every edge halved; for methods of finite \
-    strain nonlinear ones, stabilised, on the same mesh";
+    strain nonlinear ones, stabilised, of the same law, on the same mesh";
 
 pub(super) type ProbeOutcome = Result<Option<Probe>, Refusal>;
 
@@ -59,10 +60,24 @@ pub(super) fn finer(case: Result<Case, Refusal>, plan: Plan) -> Truth {
     halved_by(case, plan, settings)
 }
 
-/// The same at finite strain.
-pub(super) fn finer_at_finite_strain(case: Result<Case, Refusal>, plan: Plan) -> Truth {
+/// The same at finite strain, of the law that a method with such laws solves where none is stated.
+pub(super) fn finer_at_finite_strain(case: Result<Case, Refusal>, plan: Plan, laws: Laws) -> Truth {
     let (method, element) = (Method::FemNonlinear, ElementChoice::Stabilised);
+    let case = case.and_then(|case| match laws {
+        Laws::SaintVenantKirchhoff => of_saint_venant_kirchhoff(case),
+        Laws::AtRest | Laws::Any => Ok(case),
+    });
     halved_by(case, plan, Settings { method, element, ..Settings::default() })
+}
+
+fn of_saint_venant_kirchhoff(mut case: Case) -> Result<Case, Refusal> {
+    for material in case.materials.values_mut() {
+        let (lambda, mu) = (material.lambda(), material.shear_modulus());
+        let law = Law::SaintVenantKirchhoff(SaintVenantKirchhoff { lambda, mu });
+        *material = LinearElastic::of_law(law, material.density())
+            .map_err(|error| Refusal::new("/case/materials", "out-of-range", &error.to_string()))?;
+    }
+    Ok(case)
 }
 
 fn halved_by(case: Result<Case, Refusal>, plan: Plan, settings: Settings) -> Truth {

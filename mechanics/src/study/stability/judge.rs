@@ -26,16 +26,21 @@ pub fn map(variants: &[Variant], axes: &[Axis], bounds: &Bounds, told: &dyn Fn(&
 
 fn sweep(axis: &Axis, variants: &[Variant], bounds: &Bounds) -> AxisMap {
     let mut findings: Vec<Vec<Option<Finding>>> = vec![Vec::new(); variants.len()];
-    let (mut first, mut first_finite) = (None, None);
-    let is_finite = |variant: &Variant| variant.settings.method.properties().laws != Laws::AtRest;
-    let finite_truth = axis.finite_truth.filter(|_| variants.iter().any(is_finite));
+    let laws_of = |variant: &Variant| variant.settings.method.properties().laws;
+    let mut families: Vec<(Laws, Option<DisplacementByPosition>)> = Vec::new();
+    for laws in variants.iter().map(laws_of) {
+        if families.iter().all(|(known, _)| *known != laws) {
+            families.push((laws, None));
+        }
+    }
     for (value, _) in &axis.values {
-        let truth = ReferenceAnswer::of((axis.truth)(*value), &mut first);
-        let finite =
-            finite_truth.map(|truth| ReferenceAnswer::of(truth(*value), &mut first_finite));
+        let truths = families.iter_mut().filter_map(|(laws, first)| {
+            Some((*laws, ReferenceAnswer::of(axis.truth_of(*value, *laws)?, first)))
+        });
+        let truths: Vec<(Laws, ReferenceAnswer)> = truths.collect();
         for (row, variant) in findings.iter_mut().zip(variants) {
-            let truth = if is_finite(variant) { finite.as_ref() } else { Some(&truth) };
-            row.push(truth.and_then(|truth| match (axis.probe)(*value, variant) {
+            let truth = truths.iter().find(|(laws, _)| *laws == laws_of(variant));
+            row.push(truth.and_then(|(_, truth)| match (axis.probe)(*value, variant) {
                 Ok(None) => None,
                 Ok(Some(probe)) => Some(judged(&probe, truth, axis.bound_mm, bounds)),
                 Err(refusal) => Some(refused(refusal)),

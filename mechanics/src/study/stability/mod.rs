@@ -13,7 +13,7 @@ mod scenes;
 
 use super::{Stopwatch, Variant};
 use crate::mesh::{Vector, Warning};
-use crate::prediction::{Case, Plan, Settings};
+use crate::prediction::{Case, Laws, Plan, Settings};
 
 pub use judge::map;
 
@@ -35,8 +35,20 @@ pub struct Axis {
     pub probe: fn(f64, &Variant) -> Result<Option<Probe>, Refusal>,
     /// The right answer at a value.
     pub truth: fn(f64) -> Truth,
-    /// The right answer for methods of finite strain; none where the axis says nothing of them.
-    pub finite_truth: Option<fn(f64) -> Truth>,
+    /// The right answer for methods of finite strain, of the law that they solve; none where the axis says nothing of them.
+    pub finite_truth: Option<fn(f64, Laws) -> Truth>,
+}
+
+impl Axis {
+    /// The right answer at a value for a method that knows such laws.
+    fn truth_of(&self, value: f64, laws: Laws) -> Option<Truth> {
+        match laws {
+            Laws::AtRest => Some((self.truth)(value)),
+            Laws::SaintVenantKirchhoff | Laws::Any => {
+                self.finite_truth.map(|truth| truth(value, laws))
+            }
+        }
+    }
 }
 
 /// What a method is given.
