@@ -1,5 +1,7 @@
 //! `facies face`: the generic face as files, so that a case with lips and muscles is there without data.
 
+pub mod case;
+
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
@@ -8,14 +10,9 @@ use serde_json::{Map, Value, json};
 use super::documents::write;
 use super::failure::CommandError;
 use crate::jobs::JobError;
-use mechanics::format::vtk::{vtp, vtu};
-use mechanics::format::{SurfaceOutput, VolumeOutput, WriteError};
-use mechanics::mesh::generic_face::{FaceSettings, GenericFace, LAYERS, Lips, generic_face};
-use mechanics::mesh::{CellShape, Frame, Vector};
-
-const SKIN_REGIONS: [&str; 5] = ["nose", "upper_lip", "lower_lip", "chin", "cheeks"];
-
-const VOLUME: &str = "face.vtu";
+use case::{SKIN_REGIONS, case_of, meshes};
+use mechanics::mesh::CellShape;
+use mechanics::mesh::generic_face::{FaceSettings, GenericFace, Lips, generic_face};
 
 /// The finest face, with 505 440 hexahedra.
 const FINEST: u64 = 9;
@@ -67,7 +64,7 @@ pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
         put(&out.join(name), bytes)?;
     }
     put(&out.join("case.json"), format!("{:#}\n", documents(&face)))?;
-    put(&out.join("conform.json"), format!("{:#}\n", conformation(&case(&face))))?;
+    put(&out.join("conform.json"), format!("{:#}\n", conformation(&case_of(&face))))?;
     let (cells, muscles) = (face.mesh.cells.len(), face.muscles.len());
     println!("{cells} cells, {} landmarks, {muscles} muscles", face.landmarks.len());
     Ok(())
@@ -79,25 +76,10 @@ fn put(path: &Path, content: impl AsRef<[u8]>) -> Result<(), CommandError> {
     Ok(())
 }
 
-/// The volume and the bones by the names that the case has for them.
-pub fn meshes(face: &GenericFace) -> Result<Vec<(String, Vec<u8>)>, WriteError> {
-    let volume = vtu::write(&VolumeOutput::plain(&face.mesh, Frame::Lps))?;
-    let mut meshes = vec![(VOLUME.to_owned(), volume)];
-    for (bone, surface) in &face.bones {
-        let bytes = vtp::write(&SurfaceOutput::plain(surface, Frame::Lps))?;
-        meshes.push((bone_file(bone), bytes));
-    }
-    Ok(meshes)
-}
-
-fn bone_file(bone: &str) -> String {
-    format!("{bone}.vtp")
-}
-
 /// The case, and a plan that takes the jaw 5 mm forward.
 fn documents(face: &GenericFace) -> Value {
     json!({
-        "case": case(face),
+        "case": case_of(face),
         "plan": {"segments": [{"name": "mandible", "translation_mm": [0, -5, 0]}], "frame": "LPS"},
         "spec": {"kind": "predict"},
     })
@@ -126,58 +108,4 @@ fn conformation(case: &Value) -> Value {
         },
         "patient": {"skin": "patient_skin.stl", "bone": "patient_bone.stl"},
     })
-}
-
-/// Tissue has 15 kPa and a Poisson ratio of 0.49, muscle at rest 6.2 kPa: Chabanas et al. 2003 (docs/methods.md#papers), section
-/// 3.4.2, after Fung 1993 and Duck 1990. The mucosa before the teeth slides on them, which the jaws carry.
-pub fn case(face: &GenericFace) -> Value {
-    let set = |name: &str| json!({"node_set": name});
-    let by_name = |name: &&str| ((*name).to_owned(), set(name));
-    let layers: Map<String, Value> =
-        LAYERS.iter().enumerate().map(|(label, name)| (label.to_string(), json!(name))).collect();
-    let bones: Vec<Value> =
-        face.bones.keys().map(|bone| json!({"name": bone, "mesh": bone_file(bone)})).collect();
-    let skin_regions: Map<String, Value> = SKIN_REGIONS.iter().map(by_name).collect();
-    let landmarks: Map<String, Value> =
-        face.landmarks.iter().map(|(name, point)| (name.clone(), rounded(point))).collect();
-    let slides = |nodes: &str, segment: &str| json!({"nodes": set(nodes), "normal": "surface", "segment": segment});
-    json!({
-        "schema": 1,
-        "name": "generic face",
-        "units": "mm",
-        "frame": "LPS",
-        "volume": VOLUME,
-        "bones": bones,
-        "landmarks": landmarks,
-        "regions": {"array": "layer", "names": layers},
-        "skin": set("skin"),
-        "skin_regions": skin_regions,
-        "segments": [
-            {"name": "maxilla", "nodes": set("maxilla")},
-            {"name": "mandible", "nodes": set("mandible")},
-        ],
-        "fixed": [set("skull"), set("rim")],
-        "sliding": [slides("upper_vestibule", "maxilla"), slides("lower_vestibule", "mandible")],
-        "materials": {
-            "*": {"young_modulus_kpa": 15, "poisson_ratio": 0.49, "density_g_per_cm3": 1.04},
-            "muscle": {"young_modulus_kpa": 6.2, "poisson_ratio": 0.49, "density_g_per_cm3": 1.06},
-        },
-        "muscles": muscles(face),
-    })
-}
-
-fn muscles(face: &GenericFace) -> Vec<Value> {
-    let line = |line: &Vec<Vector>| line.iter().map(rounded).collect::<Vec<Value>>();
-    let muscles = face.muscles.iter();
-    muscles
-        .map(|own| {
-            let lines: Vec<Vec<Value>> = own.lines.iter().map(line).collect();
-            json!({"name": own.name, "lines_mm": lines, "within_mm": own.within})
-        })
-        .collect()
-}
-
-/// To 0.001 mm, to be read.
-fn rounded(point: &Vector) -> Value {
-    json!([0, 1, 2].map(|axis| (point[axis] * 1e3).round() / 1e3))
 }

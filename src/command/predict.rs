@@ -118,6 +118,7 @@ fn usual_outputs() -> Vec<OutputName> {
         OutputName::ClassesSvg,
         OutputName::DisplacementSvg,
         OutputName::GapsSvg,
+        OutputName::MusclesSvg,
         OutputName::ReportHtml,
         OutputName::ReportPdf,
     ]

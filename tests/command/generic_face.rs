@@ -1,9 +1,10 @@
 //! The generic face as files: a case that checks and predicts as it stands.
 
+use std::collections::BTreeSet;
 use std::fs;
 
-use mechanics::format::SurfaceOutput;
 use mechanics::format::vtk::vtp;
+use mechanics::format::{self, Mesh, ReadLimits, SurfaceOutput};
 use mechanics::mesh::generic_face::{FaceSettings, Lips, generic_face};
 use mechanics::mesh::{CellShape, Frame, Vector};
 use serde_json::{Value, json};
@@ -35,7 +36,33 @@ fn the_generic_face_is_a_case_that_predicts_a_jaw_and_a_smile_as_it_stands() {
         assert_eq!(done.status.code(), Some(0), "{}", text(&done.stderr));
         let corner = result(&out).statistics.unwrap().landmarks["cheilion_left"];
         assert!(corner.0[0] > 0.2 && corner.0[2] > 0.2, "{lips}: {corner:?}");
+        // Both sides of seven muscles, and the orbicularis, each a patch and a name.
+        let picture = fs::read_to_string(out.join("muscles.svg")).unwrap();
+        assert_eq!(picture.matches("largest share of").count(), 8, "{lips}");
+        assert!(picture.contains("15 muscles in") && picture.contains("zygomaticus major<"));
     }
+}
+
+#[test]
+fn the_volume_says_which_muscle_has_the_largest_share_of_each_cell() {
+    let folder = tempfile::tempdir().unwrap();
+    let face = folder.path().join("face");
+    assert!(facies(&["face", "--out", path(&face)]).status.success());
+    let (case, out) = (face.join("case.json"), folder.path().join("result"));
+    let mut document: Value = serde_json::from_slice(&fs::read(&case).unwrap()).unwrap();
+    document["spec"]["outputs"] = json!(["volume.vtu"]);
+    fs::write(&case, document.to_string()).unwrap();
+    let done = facies(&["predict", "--case", path(&case), "--out", path(&out)]);
+    assert_eq!(done.status.code(), Some(0), "{}", text(&done.stderr));
+    let read = format::read(&fs::read(out.join("volume.vtu")).unwrap(), &ReadLimits::default());
+    let Mesh::Volume(volume) = read.unwrap().mesh else { panic!("no volume") };
+    let muscle = &volume.cell_labels["muscle"];
+    assert_eq!(muscle.len(), 5616);
+    let names: BTreeSet<i64> = muscle.iter().copied().collect();
+    assert_eq!(names, (-1..15).collect());
+    // The corners of a mesh that is symmetric mirror each other, and so do their muscles.
+    let count = |number: i64| muscle.iter().filter(|own| **own == number).count();
+    assert_eq!(count(0), count(1), "zygomaticus major of both sides");
 }
 
 /// The skin or bone of the generic face on a patient who is larger by 7 % and 1.5 mm bent.

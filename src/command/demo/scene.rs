@@ -3,7 +3,7 @@
 use serde_json::{Value, json};
 
 use super::client::Part;
-use crate::command::face;
+use crate::command::face::case::{case_of, meshes};
 use mechanics::format::vtk::{vtp, vtu};
 use mechanics::format::{SurfaceOutput, VolumeOutput, WriteError};
 use mechanics::mesh::generic_face::GenericFace;
@@ -22,7 +22,7 @@ pub const FILES: [&str; 7] = [
 ];
 
 /// The same of the face that smiles.
-pub const FACE_FILES: [&str; 3] = ["skin.vtp", "skin.glb", "displacement.svg"];
+pub const FACE_FILES: [&str; 4] = ["skin.vtp", "skin.glb", "displacement.svg", "muscles.svg"];
 
 /// The form that `POST /v1/cases` takes: the case and its meshes. `volume` is that of the head, or a
 /// finer one with the same sets.
@@ -118,10 +118,10 @@ pub fn prediction_of(case: &str, files: &[&str]) -> Value {
 
 /// The form of the generic face as a case.
 pub fn face_form(face: &GenericFace) -> Result<Vec<Part>, WriteError> {
-    let mut case = face::case(face);
+    let mut case = case_of(face);
     case["tags"] = json!(["demo"]);
     let case = Part { name: "case".into(), bytes: case.to_string().into_bytes() };
-    let meshes = face::meshes(face)?.into_iter().map(|(name, bytes)| Part { name, bytes });
+    let meshes = meshes(face)?.into_iter().map(|(name, bytes)| Part { name, bytes });
     Ok(std::iter::once(case).chain(meshes).collect())
 }
 

@@ -13,6 +13,7 @@ use crate::jobs::predict::{
 };
 use crate::jobs::report::{PredictionFacts, write_reports};
 use crate::jobs::result::folder::ResultFolder;
+use crate::jobs::result::muscles::muscles_picture;
 use crate::jobs::result::pictures::displacement_picture;
 use crate::jobs::result::provenance::{
     Origin, add_method, encode_result, mesh_summary, solver_document,
@@ -195,6 +196,10 @@ impl OptimisedPlan {
             let bytes = match name {
                 OutputName::BonesVtp => bones_file(&planned.case, scene, &field_data)?,
                 OutputName::GapsSvg => match gaps_picture(&planned.case, scene)? {
+                    Some(picture) => picture.into_bytes(),
+                    None => continue,
+                },
+                OutputName::MusclesSvg => match muscles_picture(&planned.case, scene)? {
                     Some(picture) => picture.into_bytes(),
                     None => continue,
                 },

@@ -15,6 +15,7 @@ use crate::jobs::failure::JobError;
 use crate::jobs::output::{JobOutput, MadeMesh};
 use crate::jobs::report::{PredictionFacts, write_reports};
 use crate::jobs::result::folder::ResultFolder;
+use crate::jobs::result::muscles::muscles_picture;
 use crate::jobs::result::pictures::displacement_picture;
 use crate::jobs::result::provenance::{
     Origin, add_method, encode_result, laws, mesh_summary, presets, solver_document,
@@ -221,6 +222,10 @@ impl Finished<'_> {
                 OutputName::VolumeVtu => encode_volume(scene, self.prediction, frame, &field_data)?,
                 OutputName::BonesVtp => bones_file(&self.prepared.case, scene, &field_data)?,
                 OutputName::GapsSvg => match gaps_picture(&self.prepared.case, scene)? {
+                    Some(picture) => picture.into_bytes(),
+                    None => continue,
+                },
+                OutputName::MusclesSvg => match muscles_picture(&self.prepared.case, scene)? {
                     Some(picture) => picture.into_bytes(),
                     None => continue,
                 },

@@ -28,6 +28,7 @@ impl ReportForm {
             | OutputName::ClassesSvg
             | OutputName::DisplacementSvg
             | OutputName::GapsSvg
+            | OutputName::MusclesSvg
             | OutputName::ResultJson => None,
         }
     }

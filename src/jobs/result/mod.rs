@@ -1,6 +1,7 @@
 //! The files of a result.
 
 pub mod folder;
+pub mod muscles;
 pub mod pictures;
 pub mod provenance;
 pub mod skin;

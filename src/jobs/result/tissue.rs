@@ -1,5 +1,6 @@
 //! The moved tissue and the moved bones as files.
 
+use super::muscles::CellMuscles;
 use super::skin::ContactArrays;
 use super::stress::{StressArrays, strain_measure};
 use mechanics::format::vtk::{vtp, vtu};
@@ -47,6 +48,11 @@ pub fn encode_volume(
     if let Some(imaged) = &imaged {
         field_data.push(("tissue_names".to_owned(), imaged.names.join("\n")));
         cell_arrays.extend(imaged.arrays());
+    }
+    let muscles = CellMuscles::of(scene);
+    if let Some(muscles) = &muscles {
+        field_data.push(("muscle_names".to_owned(), muscles.names.join("\n")));
+        cell_arrays.extend(muscles.arrays());
     }
     let mut point_arrays = vec![
         named("displacement_mm", ArrayValues::Vectors(&displacement)),

@@ -28,6 +28,8 @@ pub enum OutputName {
     DisplacementSvg,
     #[serde(rename = "gaps.svg")]
     GapsSvg,
+    #[serde(rename = "muscles.svg")]
+    MusclesSvg,
     #[serde(rename = "report.html")]
     ReportHtml,
     #[serde(rename = "report.pdf")]
@@ -101,6 +103,7 @@ impl OutputName {
             OutputName::ClassesSvg => "classes.svg",
             OutputName::DisplacementSvg => "displacement.svg",
             OutputName::GapsSvg => "gaps.svg",
+            OutputName::MusclesSvg => "muscles.svg",
             OutputName::ReportHtml => "report.html",
             OutputName::ReportPdf => "report.pdf",
             OutputName::ResultJson => "result.json",
@@ -116,9 +119,10 @@ impl OutputName {
             OutputName::SkinPly => "application/vnd.ply",
             OutputName::SkinGlb => "model/gltf-binary",
             OutputName::SkinCsv => "text/csv; charset=utf-8",
-            OutputName::ClassesSvg | OutputName::DisplacementSvg | OutputName::GapsSvg => {
-                "image/svg+xml"
-            }
+            OutputName::ClassesSvg
+            | OutputName::DisplacementSvg
+            | OutputName::GapsSvg
+            | OutputName::MusclesSvg => "image/svg+xml",
             OutputName::ReportHtml => "text/html; charset=utf-8",
             OutputName::ReportPdf => "application/pdf",
             OutputName::ResultJson => "application/json",
