@@ -100,6 +100,7 @@ class Result {
     this.displacement_mm = skin.values._DISPLACEMENT_MM ?? new Float32Array(skin.points_mm.length);
     this.before = { triangles: skin.triangles, points_mm: skin.points_mm.map((value, at) => value - this.displacement_mm[at]!) };
     this.bench = new Workbench(app, crumbs(app.words, this.opened.id, this.opened.name, "result"));
+    this.trust();
     this.bench.scene.orient(this.opened.frame);
     this.bench.scene.showSkin(this.before);
     this.bench.scene.moveSkin(this.displacement_mm);
@@ -164,14 +165,19 @@ class Result {
     return maps;
   }
 
+  /** Over the head from the beginning: nothing is to be waited for. */
+  private trust(): void {
+    const { app: { words }, bench, results, opened, job } = this;
+    const { optimisation } = results;
+    const aims = optimisation === undefined ? [] : [foundLine(words, optimisation, targetsOf(words, job.tags, optimisation.targets.length), results.provenance?.frame ?? opened.frame, job.warnings)];
+    drawTrust(bench.strip, words, [...aims, ...resultLines(words, results, job.warnings)]);
+  }
+
   private draw(): void {
     const { app: { words }, bench, results, opened } = this;
     const probe = make("p", { className: "told", role: "status" }, words.probe);
     const list = this.job.warnings;
     const places = placesOf(words, opened, bench.scene, () => this.parts);
-    const { optimisation } = results;
-    const aims = optimisation === undefined ? [] : [foundLine(words, optimisation, targetsOf(words, this.job.tags, optimisation.targets.length), results.provenance?.frame ?? opened.frame)];
-    drawTrust(bench.strip, words, [...aims, ...resultLines(words, results, list)]);
     bench.section(words.beforeAfter, this.slider(), probe);
     bench.section(words.warnings, warnings(list, words, places));
     const report = reportLinks(this.app, this.job);
