@@ -205,6 +205,27 @@ async function largeResponse(page, order) {
   return { nodes, gone: async () => { await page.unroute(there); await page.unroute(apply); } };
 }
 
+/** Steps of a slider between two frames are one picture: what a frame costs does not grow with how fast somebody drags. */
+export async function stepped(page) {
+  await page.evaluate(() => performance.clearMeasures());
+  const { drawn, nodes } = await page.evaluate(async () => {
+    const { scene } = document.querySelector(".screen");
+    const input = document.querySelector("details.segment input[type=range][data-word=yaw]");
+    const usual = Object.getPrototypeOf(scene).render;
+    let pictures = 0;
+    scene.render = function render() { pictures += 1; usual.call(this); };
+    for (let step = 0; step < 40; step += 1) { input.value = String(step / 10); input.dispatchEvent(new Event("input", { bubbles: true })); }
+    await new Promise((done) => { requestAnimationFrame(() => requestAnimationFrame(done)); });
+    delete scene.render;
+    return { drawn: pictures, nodes: scene.skinPositions_mm.length / 3 };
+  });
+  const took = await page.evaluate(() => performance.getEntriesByName("slider", "measure").map(({ duration }) => duration).sort((a, b) => a - b));
+  // Times are printed and not judged: the machine does other things too.
+  console.log(`   script of a slider's step: median ${took[took.length >> 1].toFixed(1)} ms, longest ${took.at(-1).toFixed(1)} ms, ${took.length} steps, ${nodes} nodes`);
+  assert.equal(took.length, 40);
+  assert(drawn >= 1 && drawn <= 2, `${drawn} pictures of two frames`);
+}
+
 /** Script of a slider's frame: of its step and of the picture after it. */
 export async function slid(page) {
   for (const order of [1, 2]) {

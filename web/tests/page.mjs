@@ -6,13 +6,13 @@ import { compared } from "./compared.mjs";
 import { cuts } from "./cuts.mjs";
 import { facts } from "./facts.mjs";
 import { kinds } from "./kinds.mjs";
-import { dragged, figured, framed } from "./frames.mjs";
+import { dragged, figured, framed, stepped } from "./frames.mjs";
 import { mended } from "./mended.mjs";
 import { muscles } from "./muscles.mjs";
 import { meshed } from "./meshed.mjs";
 import { plans } from "./plans.mjs";
 import { printed } from "./printed.mjs";
-import { allViews, reached } from "./reached.mjs";
+import { allViews, reached, turned } from "./reached.mjs";
 import { guarded } from "./service.mjs";
 import { told } from "./told.mjs";
 import {
@@ -144,25 +144,7 @@ await check("the state is in the address, and what was done is taken back", asyn
 });
 
 await check("everything works from the keyboard", async () => {
-  await page.locator(".screen canvas").focus();
-  const direction = () => page.evaluate(() => { const { camera, controls } = document.querySelector(".screen").scene; return camera.position.clone().sub(controls.target).normalize().toArray(); });
-  // To the patient's left, up, to the front: an oblique view is halfway between the front and a side, and the last one halfway to below.
-  const half = Math.SQRT1_2;
-  const wanted = { 1: [0, 0, 1], 2: [-1, 0, 0], 3: [1, 0, 0], 4: [-half, 0, half], 5: [half, 0, half], 6: [0, -half, half] };
-  for (const [key, from] of Object.entries(wanted)) {
-    await page.keyboard.press(key);
-    assert(apart(await direction(), from) < (key < 4 ? 1e-6 : 0.1), `${key}: ${await direction()}`);
-    assert.equal(await page.locator(".views [aria-pressed=true]").getAttribute("data-view"), key);
-    await addressed(page, new RegExp(`view=${key}`));
-  }
-  // Both obliques are mirror images.
-  await page.keyboard.press("4");
-  const [left, up, front] = await direction();
-  await page.keyboard.press("5");
-  assert(apart(await direction(), [-left, up, front]) < 1e-6);
-  await page.keyboard.press("3");
-  await page.keyboard.press("ArrowLeft");
-  assert(apart(await direction(), [1, 0, 0]) > 0.1);
+  await turned(page);
   await slider(page, "mandible", "left").focus();
   await page.keyboard.press("ArrowRight");
   await addressed(page, /mandible,-6,0,0\.1,3/);
@@ -205,25 +187,7 @@ await check("colours are those of the legend", async () => {
   assert(seen.some(({ share }) => share > 0.4) && seen.some(({ share }) => share < 0.1));
 });
 
-await check("steps of a slider are one picture a frame", async () => {
-  await page.evaluate(() => performance.clearMeasures());
-  const drawn = await page.evaluate(async () => {
-    const { scene } = document.querySelector(".screen");
-    const input = document.querySelector("details.segment input[type=range][data-word=yaw]");
-    const usual = Object.getPrototypeOf(scene).render;
-    let pictures = 0;
-    scene.render = function render() { pictures += 1; usual.call(this); };
-    for (let step = 0; step < 40; step += 1) { input.value = String(step / 10); input.dispatchEvent(new Event("input", { bubbles: true })); }
-    await new Promise((done) => { requestAnimationFrame(() => requestAnimationFrame(done)); });
-    delete scene.render;
-    return pictures;
-  });
-  const took = await page.evaluate(() => performance.getEntriesByName("slider", "measure").map(({ duration }) => duration).sort((a, b) => a - b));
-  // Times are printed: the machine does other things too.
-  console.log(`   script of a slider's step: median ${took[took.length >> 1].toFixed(1)} ms, longest ${took.at(-1).toFixed(1)} ms, ${took.length} steps, ${rest.length / 3} nodes`);
-  assert.equal(took.length, 40);
-  assert(drawn >= 1 && drawn <= 2, `${drawn} pictures of two frames`);
-});
+await check("steps of a slider are one picture a frame", () => stepped(page));
 
 await check("a plan is saved, laid over the one that is planned on, and removed", async () => {
   await page.getByRole("button", { name: "Save plan" }).click();

@@ -1,6 +1,6 @@
 // Each view by keys alone, in both languages, light and dark, wide and narrow.
 import assert from "node:assert/strict";
-import { check, fits, go, json, opened, pictured, planned, serious, address, caseId, plan } from "./tools.mjs";
+import { addressed, apart, check, fits, go, json, opened, pictured, planned, serious, address, caseId, plan } from "./tools.mjs";
 
 /** Every view of the page by its address, those of results of all kinds among them. */
 export async function allViews(job) {
@@ -13,6 +13,30 @@ export async function allViews(job) {
     compare: `#/case/${caseId}/compare?job=${job}`, comparison: `#/case/${caseId}/compare?comparison=${comparison}`, plans: `#/case/${caseId}/plans`,
     result: `#/job/${job}?map=displacement&view=1&show=sides`, jobs: "#/jobs", studies: "#/studies", study: `#/studies?study=${study}`,
     ...Object.fromEntries(Object.entries(kinds).map(([kind, id]) => [kind, `#/job/${id}`])) };
+}
+
+/** Standard views by their keys, and the head turned by arrows, told by where the camera stands. */
+export async function turned(page) {
+  await page.locator(".screen canvas").focus();
+  // Of a head that looks along LPS: to the patient's left, up, to the front.
+  const direction = () => page.evaluate(() => { const { camera, controls } = document.querySelector(".screen").scene; return camera.position.clone().sub(controls.target).normalize().toArray(); });
+  // An oblique view is halfway between the front and a side, the last one halfway to below.
+  const half = Math.SQRT1_2;
+  const wanted = { 1: [0, 0, 1], 2: [-1, 0, 0], 3: [1, 0, 0], 4: [-half, 0, half], 5: [half, 0, half], 6: [0, -half, half] };
+  for (const [key, from] of Object.entries(wanted)) {
+    await page.keyboard.press(key);
+    assert(apart(await direction(), from) < (key < 4 ? 1e-6 : 0.1), `${key}: ${await direction()}`);
+    assert.equal(await page.locator(".views [aria-pressed=true]").getAttribute("data-view"), key);
+    await addressed(page, new RegExp(`view=${key}`));
+  }
+  // Both obliques are mirror images.
+  await page.keyboard.press("4");
+  const [left, up, front] = await direction();
+  await page.keyboard.press("5");
+  assert(apart(await direction(), [-left, up, front]) < 1e-6);
+  await page.keyboard.press("3");
+  await page.keyboard.press("ArrowLeft");
+  assert(apart(await direction(), [1, 0, 0]) > 0.1);
 }
 
 async function arrived(page, name, path) {
