@@ -145,7 +145,14 @@ export async function facts(page) {
     assert(codes.includes("constant-not-determined") || codes.includes("constant-at-end"), codes.join());
     await page.locator(".trust.heed", { hasText: "Targets" }).waitFor();
     assert.deepEqual(await serious(page), []);
+    await page.locator("section", { has: page.getByRole("heading", { name: "What was found" }) }).scrollIntoViewIfNeeded();
     await pictured(page, "found-tissue");
+    const { value } = tissue.find(({ name }) => name === "poisson_ratio");
+    await page.getByRole("button", { name: "Make a case with these constants" }).click();
+    await page.getByRole("heading", { name: "What the check found" }).waitFor();
+    const made = (await json(`/v1/cases/${await page.evaluate(() => /case\/([0-9a-f-]+)/.exec(location.hash)[1])}`)).case;
+    const before = (await json(`/v1/cases/${layers}`)).case;
+    assert.deepEqual(made.materials, { ...before.materials, skin: { ...before.materials.skin, poisson_ratio: value } });
   });
 
   await check("warnings are named in the language of the page, with the sentence of the service", async () => {

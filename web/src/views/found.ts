@@ -1,8 +1,8 @@
 // What inverse planning found, with what is uncertain about it.
-import type { Documents, Job, Warning } from "../api.js";
+import type { CaseDocument, Documents, Job, Warning } from "../api.js";
 import { rowChart, type Row } from "../charts.js";
-import type { App } from "../app.js";
-import { make, table } from "../dom.js";
+import { refusal, type App } from "../app.js";
+import { button, make, table } from "../dom.js";
 import { wordOf, type FrameName } from "../frame.js";
 import type { Opened } from "../loading.js";
 import { planState } from "../plan.js";
@@ -68,7 +68,26 @@ export function foundLine(words: Words, found: Found, named: NamedTarget[], fram
   return { name: words.targets, value: words.leftAtMost(mm(most)), trusted: missed.length + stopped.length + told.length > 0 ? "heed" : "good", why };
 }
 
-export function foundFacts({ words, route }: App, job: Job, opened: Opened, found: Found): HTMLElement {
+/** The document with the constants that were found over its own, field by field. */
+export function withFound(document: CaseDocument, found: NonNullable<Found["materials"]>): CaseDocument {
+  const stated = document.materials ?? {};
+  const changed = Object.entries(found).map(([region, constants]) => [region, { ...(stated[region] ?? stated["*"]), ...constants }] as const);
+  return { ...document, materials: { ...stated, ...Object.fromEntries(changed) } } as CaseDocument;
+}
+
+/** A case of its own with the constants that were found: this one stays as it is. */
+function asCase({ words, service }: App, opened: Opened, materials: NonNullable<Found["materials"]>): HTMLElement {
+  const said = make("div", { role: "status" });
+  const document = { ...withFound(opened.document, materials), name: `${opened.name} · ${words.foundConstants}` };
+  const made = button(words.caseWithFound, () => {
+    service.post<{ id: string }>("/v1/cases", document)
+      .then(({ id }) => { location.hash = address(["case", id]); }, (error: unknown) => said.replaceChildren(refusal(error, words)));
+  });
+  return make("div", {}, made, said);
+}
+
+export function foundFacts(app: App, job: Job, opened: Opened, found: Found): HTMLElement {
+  const { words, route } = app;
   const frame = job.results?.provenance?.frame ?? opened.frame;
   const error = (of: Parameter, at: number) => Math.abs(inWords(words, frame, { ...of, value: found.standard_error[at]! }).value);
   const all = found.parameters.map((of, at) => ({ ...inWords(words, frame, of), at, of, error: error(of, at) }));
@@ -79,7 +98,7 @@ export function foundFacts({ words, route }: App, job: Job, opened: Opened, foun
   const tissue = all.filter(({ of }) => of.region !== undefined).map(({ label, value, error, digits, at, of }) => {
     const other = closest(found.correlation, at);
     const isStopped = found.at_bound.some(({ region, name }) => region === of.region && name === of.name);
-    return [isStopped ? `${label} (${words.atBound})` : label, figure(value, digits), figure(error, digits), other === undefined ? "–" : `${fixed(other.correlation, 2)}: ${all[other.at]!.label}`];
+    return [isStopped ? `${label} (${words.atBound})` : label, figure(value, digits), figure(error, digits), other === undefined ? "–" : make("span", { className: "long" }, `${fixed(other.correlation, 2)}: ${all[other.at]!.label}`)];
   });
   const named = targetsOf(words, job.tags, found.targets.length);
   const targets = found.targets.map(({ residual_mm, largest_mm, points }, at) =>
@@ -93,9 +112,10 @@ export function foundFacts({ words, route }: App, job: Job, opened: Opened, foun
   return make("div", {},
     bars.length > 0 && rowChart(words.movement, "mm, °", bars, true),
     numbers.length > 0 && table(words.movement, ["", "mm, °", words.standardError], numbers),
-    ...(tissue.length === 0 ? [] : [table(words.tissue, ["", words.found, words.standardError, words.boundTo], tissue),
-      make("p", { className: "fine" }, words.boundToHint, factor === undefined ? "" : ` ${words.residualSays(figure(factor, 2))}`)]),
+    ...(tissue.length === 0 ? [] : [table(words.tissue, ["", words.foundValue, words.standardError, words.correlatedWith], tissue),
+      make("p", { className: "fine" }, words.correlationHint, factor === undefined ? "" : ` ${words.residualSays(figure(factor, 2))}`)]),
     table(words.targets, ["", `${words.left_} mm`, words.max], targets),
     loose.length > 0 && make("div", { className: "warned" }, words.notDetermined, make("ul", {}, ...loose)),
-    make("a", { className: "button primary", href: address(["case", opened.id, "plan"], planState(route.state)), data: { job: job.id } }, words.openPlan));
+    make("a", { className: "button primary", href: address(["case", opened.id, "plan"], planState(route.state)), data: { job: job.id } }, words.openPlan),
+    tissue.length > 0 && found.materials !== undefined && asCase(app, opened, found.materials));
 }

@@ -10,7 +10,7 @@ import { beyondBounds, readBounds, readTargets, writeBounds, writeTargets, type 
 import { closest, readTissue, regionsOf, usualEnds, writeTissue, type TissueBounds } from "../../src/tissue.js";
 import { called } from "../../src/views/anything.js";
 import { jobInWords, planInWords } from "../../src/views/called.js";
-import { foundLine, targetsOf, targetTags } from "../../src/views/found.js";
+import { foundLine, targetsOf, targetTags, withFound } from "../../src/views/found.js";
 import { surfaceRole, surfacesDocument } from "../../src/views/meshed.js";
 import { names } from "../../src/views/places.js";
 import { appliedLines, resultLines } from "../../src/views/trusted.js";
@@ -131,6 +131,12 @@ test("growth and constants have their units, and are heeded where they are warne
   }
   assert.match(line([{ region: "fat", name: "volume_change", value: -0.3, bound: "lower" }], []).why!, /fat: growth, % is stopped by its bound at -30\.00\./);
   assert.match(line([{ region: "*", name: "poisson_ratio", value: 0.4875, bound: "upper" }], []).why!, /all tissue: Poisson's ratio is stopped by its bound at 0\.4875\./);
+});
+
+test("constants that were found stand over those of the case, field by field", () => {
+  const document = { materials: { "*": { young_modulus_kpa: 15, poisson_ratio: 0.4 }, fat: { young_modulus_kpa: 5, poisson_ratio: 0.45, density_g_per_cm3: 0.9 } } } as unknown as Documents["CaseDocument"];
+  assert.deepEqual(withFound(document, { fat: { poisson_ratio: 0.48 }, skin: { young_modulus_kpa: 60 } }).materials,
+    { "*": { young_modulus_kpa: 15, poisson_ratio: 0.4 }, fat: { young_modulus_kpa: 5, poisson_ratio: 0.48, density_g_per_cm3: 0.9 }, skin: { young_modulus_kpa: 60, poisson_ratio: 0.4 } });
 });
 
 test("what is looked for of tissue is in the address and comes back, and what is none is left out", () => {
