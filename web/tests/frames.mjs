@@ -226,6 +226,16 @@ export async function stepped(page) {
   assert(drawn >= 1 && drawn <= 2, `${drawn} pictures of two frames`);
 }
 
+/** Processor time of script in a page, so far, in ms: it does not depend on what else the machine does. */
+async function scripted(page) {
+  const session = await page.context().newCDPSession(page);
+  await session.send("Performance.enable", { timeDomain: "threadTicks" });
+  return async () => {
+    const { metrics } = await session.send("Performance.getMetrics");
+    return 1000 * metrics.find(({ name }) => name === "ScriptDuration").value;
+  };
+}
+
 /** Script of a slider's frame: of its step and of the picture after it. */
 export async function slid(page) {
   for (const order of [1, 2]) {
@@ -233,6 +243,8 @@ export async function slid(page) {
     await go(page, "#/jobs");
     await go(page, `${plan}?p=mandible,-4,1,0,3,0,0;maxilla,3,1,0,2,1,0&map=displacement&view=1`);
     await planned(page);
+    const spent = await scripted(page);
+    const before = await spent();
     const took = await page.evaluate(async () => {
       const { scene } = document.querySelector(".screen");
       const input = document.querySelectorAll("details.segment")[1].querySelector("input[type=range][data-word=yaw]");
@@ -253,8 +265,9 @@ export async function slid(page) {
       delete scene.render;
       return found.sort((a, b) => a - b);
     });
+    const cpu_ms = (await spent() - before) / took.length;
     const [median, longest] = [took[took.length >> 1], took.at(-1)];
-    console.log(`   order ${order}: script of a slider's frame, ${nodes} nodes, two segments that turn: median ${median.toFixed(1)} ms, longest ${longest.toFixed(1)} ms of ${took.length}, load ${load()}`);
+    console.log(`   order ${order}: script of a slider's frame, ${nodes} nodes, two segments that turn: median ${median.toFixed(1)} ms, longest ${longest.toFixed(1)} ms of ${took.length}; ${cpu_ms.toFixed(1)} ms of processor time in the mean, load ${load()}`);
     // Times are printed and not judged: how many nodes move with a slider does not depend on the machine.
     assert(nodes >= 14_000 && took.length === 60, `order ${order}: ${nodes} nodes`);
     await gone();

@@ -44,14 +44,17 @@ async function arrived(page, name, path) {
   await page.locator(".loading").waitFor({ state: "detached" });
   if (name === "plan") await planned(page);
   if (name === "case") await page.locator(".sets li").first().waitFor();
-  if (name === "result") await page.locator("[data-share]").waitFor();
+  if (name === "result" || name === "optimise") await page.locator("[data-share]").waitFor();
   if (name === "study") await page.locator(".chart .mark").first().waitFor();
 }
+
+/** More than any view has. */
+const MOST_STOPS = 500;
 
 /** Presses the tab key from one end of a view to the other: what can be done in it and is not reached, and what is reached and does not show
  * that it has the focus. */
 async function tabbed(page) {
-  const wanted = await page.evaluate(() => {
+  await page.evaluate(() => {
     const controls = "button, a[href], input, select, textarea, summary, canvas, [tabindex='0']";
     const all = [...document.querySelectorAll(controls)].filter((one) => one.checkVisibility() && !one.disabled);
     all.forEach((one) => one.setAttribute("data-wanted", ""));
@@ -61,11 +64,16 @@ async function tabbed(page) {
       if (target.type === "radio") document.getElementsByName(target.name).forEach((one) => one.removeAttribute("data-wanted"));
     });
     document.activeElement.blur();
-    return all.length;
   });
   const unseen = new Set();
-  for (let press = 0; press <= wanted + 5; press += 1) {
+  for (let press = 0; press < MOST_STOPS; press += 1) {
     await page.keyboard.press("Tab");
+    // Once around: what came meanwhile was passed too.
+    if (await page.evaluate((isFirst) => {
+      const one = document.activeElement;
+      if (isFirst) one.setAttribute("data-first", "");
+      return !isFirst && one.hasAttribute("data-first");
+    }, press === 0)) break;
     const fault = await page.evaluate(() => {
       const one = document.activeElement;
       if (one === document.body || one === null) return undefined;
@@ -134,7 +142,7 @@ export async function reached(views) {
       }
       await wide.context().close();
     }
-    assert.deepEqual(faults, []);
+    assert.equal(faults.length, 0, faults.join("\n"));
   });
 
   await check("each view by keyboard: what can be done is reached with the tab key, shows that it has the focus, and has a name", async () => {
@@ -148,6 +156,6 @@ export async function reached(views) {
       faults.push(...[...await nameless(wide), ...await tabbed(wide)].map((fault) => `${name}: ${fault}`));
     }
     await wide.context().close();
-    assert.deepEqual(faults, []);
+    assert.equal(faults.length, 0, faults.join("\n"));
   });
 }
