@@ -100,10 +100,31 @@ export async function facts(page) {
       const [word, sign] = SLIDERS[name];
       assert.deepEqual(shown[`${segment} ${word}`].map(Number), [sign * value, standard_error[at]].map((one) => Number(one.toFixed(2))), `${segment} ${name}`);
     });
+    // The address of the plan that was found says it.
+    const opens = new URLSearchParams((await page.getByRole("link", { name: "Open as plan" }).getAttribute("href")).split("?")[1]).get("p");
+    for (const { segment, name, value } of parameters) {
+      const numbers = opens.split(";").find((part) => part.startsWith(`${segment},`)).split(",").slice(1).map(Number);
+      const [word, sign] = SLIDERS[name];
+      assert(Math.abs(numbers[["forward, mm", "up, mm", "left, mm"].indexOf(word)] - sign * value) < 1e-9, `${opens}: ${segment} ${name} ${value}`);
+    }
     // A bar's whiskers are the standard error.
     const [{ segment, name, value }] = parameters;
     const [word, sign] = SLIDERS[name];
     await page.locator("svg[aria-label=Movement] title", { hasText: `${segment} ${word}: ${figure(sign * value || 0, 2)} ± ${figure(standard_error[0], 2)}` }).waitFor({ state: "attached" });
+  });
+
+  await check("what was found backwards is told where no skin was asked for as a model", async () => {
+    const layers = await block();
+    const job = successful(await ended({ kind: "optimise", case: layers, targets: [{ landmark: "pogonion", displacement_mm: [null, 0, 1], sigma_mm: 0.5 }], bounds: { mandible: { translation_mm: [[0, 0], [-5, 5], [-5, 5]] } }, outputs: ["skin.csv"] }));
+    const { parameters, standard_error } = job.results.optimisation;
+    await go(page, `#/job/${job.id}`);
+    const shown = await rows(page, "Movement");
+    parameters.forEach(({ segment, name, value }, at) => {
+      const [word, sign] = SLIDERS[name];
+      assert.deepEqual(shown[`${segment} ${word}`].map(Number), [sign * value, standard_error[at]].map((one) => Number(one.toFixed(2))));
+    });
+    await page.getByRole("link", { name: "Open as plan" }).waitFor();
+    assert.deepEqual(await serious(page), []);
   });
 
   await check("growth and constants of tissue are looked for with a movement, and told with errors, correlations and what they are warned of", async () => {

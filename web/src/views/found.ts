@@ -1,11 +1,11 @@
 // What inverse planning found, with what is uncertain about it.
-import type { CaseDocument, Documents, Job, Warning } from "../api.js";
+import type { CaseDocument, Documents, Job, Triple, Warning } from "../api.js";
 import { rowChart, type Row } from "../charts.js";
 import { refusal, type App } from "../app.js";
 import { button, make, table } from "../dom.js";
 import { wordOf, type FrameName } from "../frame.js";
 import type { Opened } from "../loading.js";
-import { planState } from "../plan.js";
+import { fromDocument, pivotsOf, written, type Pivots, type Plan } from "../plan.js";
 import { address } from "../route.js";
 import { figure, fixed, mm } from "../figures.js";
 import { closest, TISSUE, TISSUE_SCALES } from "../tissue.js";
@@ -86,8 +86,16 @@ function asCase({ words, service }: App, opened: Opened, materials: NonNullable<
   return make("div", {}, made, said);
 }
 
+/** A plan of the service as sliders have it, about the points that it names; undefined where six numbers of each segment do not say it. */
+export function planOf({ document, frame }: Opened, stored: Documents["PlanDocument"]): { plan: Plan | undefined; pivots: Pivots } {
+  const names = (document.segments ?? []).map(({ name }) => name);
+  const pivots = { ...Object.fromEntries(names.map((name) => [name, [0, 0, 0] as Triple])), ...pivotsOf(stored, frame) };
+  return { plan: fromDocument(stored, pivots, frame), pivots };
+}
+
 export function foundFacts(app: App, job: Job, opened: Opened, found: Found): HTMLElement {
-  const { words, route } = app;
+  const { words } = app;
+  const { plan, pivots } = planOf(opened, found.plan);
   const frame = job.results?.provenance?.frame ?? opened.frame;
   const error = (of: Parameter, at: number) => Math.abs(inWords(words, frame, { ...of, value: found.standard_error[at]! }).value);
   const all = found.parameters.map((of, at) => ({ ...inWords(words, frame, of), at, of, error: error(of, at) }));
@@ -116,6 +124,6 @@ export function foundFacts(app: App, job: Job, opened: Opened, found: Found): HT
       make("p", { className: "fine" }, words.correlationHint, factor === undefined ? "" : ` ${words.residualSays(figure(factor, 2))}`)]),
     table(words.targets, ["", `${words.left_} mm`, words.max], targets),
     loose.length > 0 && make("div", { className: "warned" }, words.notDetermined, make("ul", {}, ...loose)),
-    make("a", { className: "button primary", href: address(["case", opened.id, "plan"], planState(route.state)), data: { job: job.id } }, words.openPlan),
+    plan !== undefined && make("a", { className: "button primary", href: address(["case", opened.id, "plan"], written(plan, pivots)), data: { job: job.id } }, words.openPlan),
     tissue.length > 0 && found.materials !== undefined && asCase(app, opened, found.materials));
 }

@@ -6,7 +6,7 @@ import { button, choice, make } from "../dom.js";
 import { inWords, still } from "../frame.js";
 import { addBones, openCase, type Opened } from "../loading.js";
 import { matrix } from "../matrix.js";
-import { fromDocument, PLAN_STATE, pivotsOf, planState, read, readPivots, written, type Plan, type Pivots } from "../plan.js";
+import { PLAN_STATE, planState, read, readPivots, written, type Plan, type Pivots } from "../plan.js";
 import { ACCENT, hex } from "../palette.js";
 import { address, note } from "../route.js";
 import type { Hit, Shape } from "../scene.js";
@@ -16,7 +16,7 @@ import { Workbench, type SkinMap } from "../workbench.js";
 import { resultBeside } from "./above.js";
 import { correctionFacts } from "./corrected.js";
 import { crumbs } from "./crumbs.js";
-import { foundFacts, foundLine, targetsOf } from "./found.js";
+import { foundFacts, foundLine, planOf, targetsOf } from "./found.js";
 import { comparisonFacts } from "./distances.js";
 import { fileList } from "./files.js";
 import { told } from "./movements.js";
@@ -258,11 +258,8 @@ class Result {
     const state = planState(this.app.route.state);
     const found = this.results.optimisation?.plan ?? this.results.provenance?.plan ?? undefined;
     const names = (this.opened.document.segments ?? []).map(({ name }) => name);
-    const origins = Object.fromEntries(names.map((name) => [name, [0, 0, 0] as Triple]));
-    this.pivots = found === undefined ? readPivots(state)
-      : { ...origins, ...pivotsOf(found, this.opened.frame) };
-    this.plan = found === undefined ? (PLAN_STATE.some((name) => state[name] !== undefined) ? read(state, names) : undefined)
-      : fromDocument(found, this.pivots, this.opened.frame);
+    const inAddressOnly = { plan: PLAN_STATE.some((name) => state[name] !== undefined) ? read(state, names) : undefined, pivots: readPivots(state) };
+    ({ plan: this.plan, pivots: this.pivots } = found === undefined ? inAddressOnly : planOf(this.opened, found));
     if (this.plan === undefined) return;
     const inAddress = written(this.plan, this.pivots);
     for (const name of PLAN_STATE) if (inAddress[name] !== undefined) this.app.route.state.set(name, inAddress[name]);
