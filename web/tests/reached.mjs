@@ -63,6 +63,8 @@ async function tabbed(page) {
       // Of radio buttons the chosen one is reached, and arrows choose the others.
       if (target.type === "radio") document.getElementsByName(target.name).forEach((one) => one.removeAttribute("data-wanted"));
     });
+    // The head and foot of the page are those of the view before.
+    document.querySelectorAll("[data-first]").forEach((one) => one.removeAttribute("data-first"));
     document.activeElement.blur();
   });
   const unseen = new Set();
