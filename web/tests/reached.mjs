@@ -113,6 +113,12 @@ async function nameless(page) {
     .map((node) => `no name: ${node.role.value} ${JSON.stringify(node.value?.value ?? "")}`);
 }
 
+/** The list of jobs is seen whole, however long the name of a case is. */
+async function listed(page) {
+  const [is, most] = await page.locator(".scroll", { has: page.locator(".listed") }).evaluate((one) => [one.scrollWidth, one.clientWidth]);
+  assert(is <= most, `jobs are ${is} px wide in ${most} px`);
+}
+
 export async function reached(views) {
   await check("German and dark, and at 390 pixels nothing is cut off", async () => {
     const small = await opened({ width: 390, height: 844 }, { locale: "de-DE", colorScheme: "dark", reducedMotion: "reduce" });
@@ -120,6 +126,7 @@ export async function reached(views) {
       await arrived(small, name, path);
       assert.equal(await small.locator("html").getAttribute("lang"), "de");
       await fits(small);
+      if (name === "jobs") await listed(small);
       assert.deepEqual(await serious(small), [], name);
       await pictured(small, `${name}-390-dark-german`);
     }
@@ -139,6 +146,7 @@ export async function reached(views) {
         for (const colorScheme of ["light", "dark"]) {
           await wide.emulateMedia({ colorScheme });
           faults.push(...(await serious(wide)).map((fault) => `${name} ${language} ${colorScheme}: ${fault}`));
+          if (name === "jobs") await listed(wide);
           if (language === "en" || colorScheme === "dark") await pictured(wide, `${name}-1280-${colorScheme}-${language}`);
         }
       }

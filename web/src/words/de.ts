@@ -180,7 +180,7 @@ export const de: Words = {
   plansHint: "Die Haut ist die des zweiten Plans, der grüne Umriss die des ersten; nebeneinander steht der erste links. Beide sind Antworten des Dienstes auf der Antwort dieses Falls.",
   plansApart: "Zwischen beiden Plänen",
   plansApartBy: "Wie weit die Haut sich bewegt, mm, nach Fläche",
-  apart: "Unterschied",
+  apart: "Differenz",
   bothPlans: "Zahlen beider Pläne",
   plansAre: (mean, most) => `Die Häute beider Pläne liegen im Mittel ${mean} mm und höchstens ${most} mm auseinander.`,
   partsNotTold: (names) => `Hier nicht gesagt, da keine Menge des Netzes ihre Knoten nennt: ${names}.`,
