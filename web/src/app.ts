@@ -47,12 +47,19 @@ export interface Place {
   show: () => void;
 }
 
-/** Warnings in words, each with its code and what it names in the view. */
+/** Warnings in words, each with its code and what it names in the view: what it is of in the language of the page, then the sentence of the
+ * service, which is English. */
 export function warnings(list: Warning[] | undefined, words: Words, places: (warning: Warning) => Place[] = () => []): HTMLElement {
   if (list === undefined || list.length === 0) return make("p", { className: "fine" }, words.noWarnings);
   return make("ul", { className: "warnings" }, ...list.map((warning) =>
-    make("li", {}, warning.detail, " ", make("a", { href: `/errors#${warning.code}`, className: "code" }, warning.code),
+    make("li", {}, warningName(warning, words), make("span", { lang: "en" }, warning.detail), " ", make("a", { href: `/errors#${warning.code}`, className: "code" }, warning.code),
       ...places(warning).map(({ label, show }) => button(words.showPlace(label), show, { className: "place" })))));
+}
+
+/** Of a code that the page does not know the sentence alone stands. */
+function warningName({ code }: Warning, words: Words): HTMLElement | false {
+  const name = words.warningNames[code];
+  return name !== undefined && make("strong", {}, `${name.charAt(0).toUpperCase()}${name.slice(1)}: `);
 }
 
 /** Solving ends here in per cent of a job. */

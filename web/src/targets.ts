@@ -37,10 +37,15 @@ const PARTS = ";";
 const NUMBERS = ",";
 const numbersOf = (text: string[]): (number | null)[] => text.map((one) => (one === "" || !Number.isFinite(Number(one)) ? null : Number(one)));
 
-/** Targets as they stand in addresses: a landmark by its name, a point by its place, then forward, up and left; nothing is free. */
+/** Of a component of a target in mm, where nothing else is stated. */
+export const USUAL_SIGMA_MM = 1;
+
+/** Targets as they stand in addresses: a landmark by its name, a point by its place, then forward, up and left; nothing is free. Last its
+ * standard deviation where that is another one than usual. */
 export function writeTargets(targets: Target[]): string {
   const place = ({ landmark, at_mm }: Target) => (landmark === undefined ? at_mm.map((one) => `@${one.toFixed(3)}`).join("") : encodeURIComponent(landmark));
-  return targets.map((target) => [place(target), ...target.by.map((one) => one ?? "")].join(NUMBERS)).join(PARTS);
+  const sigma = ({ sigma_mm }: Target) => (sigma_mm === USUAL_SIGMA_MM ? [] : [sigma_mm]);
+  return targets.map((target) => [place(target), ...target.by.map((one) => one ?? ""), ...sigma(target)].join(NUMBERS)).join(PARTS);
 }
 
 /** Those of an address; what is no target, or names a landmark that the case has not, is left out. */
@@ -48,17 +53,19 @@ export function readTargets(text: string, landmarks: Record<string, Triple>, poi
   let points = 0;
   return text.split(PARTS).flatMap((part): Target[] => {
     const [place = "", ...rest] = part.split(NUMBERS);
-    if (rest.length !== 3) return [];
-    const by = numbersOf(rest) as Target["by"];
+    if (rest.length !== 3 && rest.length !== 4) return [];
+    const [forward, up, left, sigma] = numbersOf(rest);
+    const by = [forward, up, left] as Target["by"];
+    const sigma_mm = sigma !== undefined && sigma !== null && sigma > 0 ? sigma : USUAL_SIGMA_MM;
     if (place.startsWith("@")) {
       const at_mm = place.slice(1).split("@").map(Number);
       if (at_mm.length !== 3 || !at_mm.every(Number.isFinite)) return [];
       points += 1;
-      return [{ label: point(points), at_mm: at_mm as Triple, by, sigma_mm: 1 }];
+      return [{ label: point(points), at_mm: at_mm as Triple, by, sigma_mm }];
     }
     const landmark = decodeURIComponent(place);
     const at_mm = landmarks[landmark];
-    return at_mm === undefined ? [] : [{ label: landmark, landmark, at_mm, by, sigma_mm: 1 }];
+    return at_mm === undefined ? [] : [{ label: landmark, landmark, at_mm, by, sigma_mm }];
   });
 }
 

@@ -59,6 +59,8 @@ export class Workbench {
       clearTimeout(this.turning);
       this.turning = setTimeout(() => note({ [CAMERA]: this.scene.turnedTo.join(",") }), STOOD);
     };
+    // Colours come with the skin, and have their room before.
+    this.colours.append(select(words.map, [["", words.plain]], "", () => {}));
     this.screen.append(this.sides, this.legend, this.caption);
     this.viewport.append(this.tools(), this.screen);
     app.stage.replaceChildren(make("div", { className: "bench" }, crumbs, this.strip, this.viewport, this.panel));
@@ -83,6 +85,7 @@ export class Workbench {
   /** What went wrong, in the place of what was waited for. */
   refuse(error: unknown): void {
     for (const wait of this.panel.querySelectorAll(".wait")) wait.remove();
+    this.strip.replaceChildren();
     this.panel.append(refusal(error, this.app.words));
   }
 

@@ -4,13 +4,15 @@ import { readFile, writeFile } from "node:fs/promises";
 import { join } from "node:path";
 import { compared } from "./compared.mjs";
 import { cuts } from "./cuts.mjs";
+import { facts } from "./facts.mjs";
 import { kinds } from "./kinds.mjs";
-import { dragged, figured, framed } from "./frames.mjs";
+import { dragged, figured, framed, stepped } from "./frames.mjs";
 import { mended } from "./mended.mjs";
 import { muscles } from "./muscles.mjs";
 import { meshed } from "./meshed.mjs";
 import { plans } from "./plans.mjs";
 import { printed } from "./printed.mjs";
+import { allViews, reached, turned } from "./reached.mjs";
 import { guarded } from "./service.mjs";
 import { told } from "./told.mjs";
 import {
@@ -142,14 +144,7 @@ await check("the state is in the address, and what was done is taken back", asyn
 });
 
 await check("everything works from the keyboard", async () => {
-  await page.locator(".screen canvas").focus();
-  const direction = () => page.evaluate(() => { const { camera, controls } = document.querySelector(".screen").scene; return camera.position.clone().sub(controls.target).normalize().toArray(); });
-  await page.keyboard.press("1");
-  assert(apart(await direction(), [0, 0, 1]) < 1e-6);
-  await page.keyboard.press("3");
-  assert(apart(await direction(), [1, 0, 0]) < 1e-6, "from the patient's left");
-  await page.keyboard.press("ArrowLeft");
-  assert(apart(await direction(), [1, 0, 0]) > 0.1);
+  await turned(page);
   await slider(page, "mandible", "left").focus();
   await page.keyboard.press("ArrowRight");
   await addressed(page, /mandible,-6,0,0\.1,3/);
@@ -192,14 +187,7 @@ await check("colours are those of the legend", async () => {
   assert(seen.some(({ share }) => share > 0.4) && seen.some(({ share }) => share < 0.1));
 });
 
-await check("a slider's frame is short", async () => {
-  await page.evaluate(() => performance.clearMeasures());
-  for (let step = 0; step < 40; step += 1) await slider(page, "mandible", "yaw").fill(String(step / 10));
-  const took = await page.evaluate(() => performance.getEntriesByName("slider", "measure").map(({ duration }) => duration).sort((a, b) => a - b));
-  console.log(`   script of a slider's frame: median ${took[took.length >> 1].toFixed(1)} ms, longest ${took.at(-1).toFixed(1)} ms, ${took.length} frames, ${rest.length / 3} nodes`);
-  // The machine does other things too: what it does in most of a second's steps is not what the script takes.
-  assert(took.length === 40 && took[took.length >> 2] < 16);
-});
+await check("steps of a slider are one picture a frame", () => stepped(page));
 
 await check("a plan is saved, laid over the one that is planned on, and removed", async () => {
   await page.getByRole("button", { name: "Save plan" }).click();
@@ -549,6 +537,7 @@ await meshed(page);
 await muscles(page);
 await printed();
 await kinds(page);
+await facts(page);
 
 await check("jobs are listed, and studies", async () => {
   await go(page, `#/jobs`);
@@ -610,68 +599,14 @@ await check("a lost connection is told, and taken up again", async () => {
   await page.getByRole("heading", { name: "Jobs" }).waitFor();
 });
 
-await check("cases and a plan are seen early, do not jump, and answer meanwhile", () => figured());
+const views = await allViews(job);
+await check("views do not jump as they open", () => figured(views));
 
 await check("a large head turns with fewer pixels and triangles, and stands with all", () => framed(page));
 
 await check("memory is steady while sliders are dragged", () => dragged(page, DRAGGED_S));
 
-/** What can be done in a view and is not reached by its tab key from one end to the other. */
-async function unreached(wide) {
-  const wanted = await wide.evaluate(() => {
-    const all = [...document.querySelectorAll("button, a[href], input, select, textarea, summary, canvas, [tabindex='0']")].filter((one) => one.checkVisibility() && !one.disabled);
-    all.forEach((one) => one.setAttribute("data-wanted", ""));
-    addEventListener("focusin", ({ target }) => {
-      target.removeAttribute("data-wanted");
-      // Of radio buttons the chosen one is reached, and arrows choose the others.
-      if (target.type === "radio") document.getElementsByName(target.name).forEach((one) => one.removeAttribute("data-wanted"));
-    });
-    document.activeElement.blur();
-    return all.length;
-  });
-  for (let press = 0; press <= wanted + 5; press += 1) await wide.keyboard.press("Tab");
-  return wide.evaluate(() => [...document.querySelectorAll("[data-wanted]")].map((one) => one.outerHTML.slice(0, 100)));
-}
-
-/** Views through which the tab key is pressed. */
-const TABBED = ["cases", "case", "plan", "inverse", "jobs"];
-const views = { cases: "#/cases", case: `#/case/${caseId}`, plan: `${plan}?p=mandible,-4,0,0,0,0,0&view=1`, inverse: `#/case/${caseId}/inverse`,
-  compare: `#/case/${caseId}/compare?job=${job}`, plans: `#/case/${caseId}/plans`, result: `#/job/${job}?map=displacement&view=1&show=sides`, jobs: "#/jobs", studies: "#/studies" };
-await check("German and dark, and at 390 pixels nothing is cut off", async () => {
-  const small = await opened({ width: 390, height: 844 }, { locale: "de-DE", colorScheme: "dark", reducedMotion: "reduce" });
-  for (const [name, path] of Object.entries(views)) {
-    await go(small, path);
-    await small.locator(".loading").waitFor({ state: "detached" });
-    if (name === "plan") await planned(small);
-    if (name === "result") await small.getByRole("heading", { name: "Vorher und nachher" }).waitFor();
-    assert.equal(await small.locator("html").getAttribute("lang"), "de");
-    await fits(small);
-    assert.deepEqual(await serious(small), [], name);
-    await pictured(small, `${name}-390-dark-german`);
-  }
-  const moving = await small.evaluate(() => [...document.querySelectorAll("*")].filter((one) => getComputedStyle(one).transitionDuration !== "0s" || getComputedStyle(one).animationName !== "none").length);
-  assert.equal(moving, 0, "nothing moves for whoever asked for that");
-  await small.context().close();
-});
-
-await check("each view by keyboard: what can be done is reached with the tab key and has a name", async () => {
-  const wide = await opened();
-  for (const [name, path] of Object.entries(views)) {
-    await go(wide, path);
-    await wide.locator(".loading").waitFor({ state: "detached" });
-    if (name === "plan") await planned(wide);
-    const lost = await wide.evaluate(() => [...document.querySelectorAll("button, a[href], input, select, textarea, summary, canvas")]
-      .filter((one) => one.checkVisibility() && !one.disabled && one.tabIndex < 0).map((one) => one.outerHTML.slice(0, 80)));
-    assert.deepEqual(lost, [], name);
-    // The tab says which view it is, and whoever followed a link by keys is in it.
-    assert.match(await wide.title(), /.+ · facies$/, name);
-    assert.equal(await wide.evaluate(() => document.activeElement.id), name === "cases" ? "" : "stage", name);
-    if (TABBED.includes(name)) assert.deepEqual(await unreached(wide), [], name);
-    assert.deepEqual(await serious(wide), [], name);
-    await pictured(wide, `${name}-1280`);
-  }
-  await wide.context().close();
-});
+await reached(views);
 
 await check("where keys are asked for the page asks, and keeps the key for the tab only", async () => {
   const closed = await guarded(BINARY, KEY);

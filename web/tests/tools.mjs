@@ -47,7 +47,9 @@ const TYPES = { html: "text/html", js: "text/javascript", css: "text/css", svg: 
 async function fresh(route) {
   const { pathname } = new URL(route.request().url());
   const file = pathname === "/" ? "index.html" : pathname.slice(1);
-  const response = await route.fetch();
+  // The page may have gone meanwhile.
+  const response = await route.fetch().catch(() => undefined);
+  if (response === undefined) return;
   await route.fulfill({ response, status: 200, contentType: TYPES[file.split(".").at(-1)], body: await readFile(join(PAGE, file)) });
 }
 

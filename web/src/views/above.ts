@@ -41,8 +41,8 @@ export async function resultBeside(app: App, job: Job): Promise<Leave> {
   bench.caption.textContent = kindOf(words, job.kind);
   bench.provenance = `job ${job.id}`;
   bench.start();
-  // The head stands there already.
-  stage.append(make("div", { className: "below" }, ...facts.slice(1)));
+  // The heading and the time stand there already.
+  stage.append(make("div", { className: "below" }, ...facts.slice(2)));
   return () => bench.leave();
 }
 

@@ -3,6 +3,7 @@ import { readGlb, type Documents, type Job } from "../api.js";
 import { ProgressLine, refusal, type App, type Leave } from "../app.js";
 import { button, choice, make, select } from "../dom.js";
 import { meshOf, openCase, type Opened } from "../loading.js";
+import { nodeAreas } from "../regions.js";
 import { note } from "../route.js";
 import type { Shape } from "../scene.js";
 import { readVtp } from "../vtp.js";
@@ -131,7 +132,7 @@ class Comparing {
     this.actual = real === undefined ? undefined : { ...real, points_mm: moved(real.points_mm, comparison.alignment.matrix4x4) };
     this.beside();
     this.facts.replaceChildren(make("section", {}, make("h2", {}, words.histogram), this.ways, comparisonFacts(app, comparison),
-      distances === undefined ? "" : histogram(words, distances), reportLinks(app, job) ?? ""));
+      distances === undefined ? "" : histogram(words, distances, nodeAreas(skin.points_mm, skin.triangles)), reportLinks(app, job) ?? ""));
   }
 
   /** The real skin as an outline over the predicted one, beside it, or not. */

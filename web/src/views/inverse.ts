@@ -7,12 +7,14 @@ import { addBones, openCase, restingSkin, type Opened, type RestingSkin } from "
 import { mm } from "../figures.js";
 import { ACCENT, hex, POINTED } from "../palette.js";
 import { address, note } from "../route.js";
-import { beyondBounds, readBounds, readTargets, writeBounds, writeTargets, type Bounds, type Target } from "../targets.js";
+import { beyondBounds, readBounds, readTargets, USUAL_SIGMA_MM, writeBounds, writeTargets, type Bounds, type Target } from "../targets.js";
 import type { Hit } from "../scene.js";
 import { Workbench } from "../workbench.js";
+import { readTissue, regionsOf, writeTissue, type TissueBounds } from "../tissue.js";
 import { crumbs } from "./crumbs.js";
 import { targetTags } from "./found.js";
 import { wordFor } from "./movements.js";
+import { tissueFields } from "./tissue.js";
 
 const COLOUR = hex(POINTED);
 const STARTING_BOUND_MM = 10;
@@ -48,6 +50,8 @@ class Inverse {
   private readonly bounds: Bounds;
   /** Those to begin with. */
   private readonly usual: Bounds;
+  /** Growth and constants that are looked for too. */
+  private readonly tissue: TissueBounds;
   private readonly boundFields = make("div", {});
   private readonly list = make("div", {});
   private readonly said = make("div", { role: "status" });
@@ -62,6 +66,7 @@ class Inverse {
     this.usual = Object.fromEntries(loaded.description.segments.map(({ name }) => [name, { ...held }]));
     const { state } = app.route;
     this.bounds = readBounds(state.get("bounds") ?? "", this.usual);
+    this.tissue = readTissue(state.get("tissue") ?? "", regionsOf(opened.document));
     this.targets = readTargets(state.get("targets") ?? "", (opened.document.landmarks ?? {}) as Record<string, Triple>, (number) => `${app.words.point} ${number}`);
     this.landmarks = (Object.entries(opened.document.landmarks ?? {}) as [string, Triple][]).filter(([, at_mm]) => this.isOnSkin(at_mm));
     this.points = this.targets.filter(({ landmark }) => landmark === undefined).length;
@@ -78,6 +83,7 @@ class Inverse {
     bench.section(words.targets, make("p", {}, words.inverseWhy), pulling, make("p", { className: "fine" }, words.dragHint),
       make("div", { className: "row" }, add, button(words.addPoint, () => this.addMiddle())), this.list);
     bench.section(words.bounds, this.boundFields);
+    bench.section(words.tissueSection, make("p", { className: "fine" }, words.tissueWhy), tissueFields(words, opened.document, this.tissue, () => this.warn()));
     bench.section(words.find, this.forbidden, button(words.find, () => void this.find(), { className: "primary" }), this.said);
     this.drawBounds();
     this.draw();
@@ -125,7 +131,7 @@ class Inverse {
     const mark = near(this.landmarks, ([, place]) => place);
     if (known !== undefined && (mark === undefined || away(known.at_mm) <= away(mark[1]))) return known;
     if (mark === undefined) this.points += 1;
-    const target: Target = mark === undefined ? { label: `${this.app.words.point} ${this.points}`, at_mm: this.restAt(node), by: [0, 0, null], sigma_mm: 1 } : ofLandmark(...mark);
+    const target: Target = mark === undefined ? { label: `${this.app.words.point} ${this.points}`, at_mm: this.restAt(node), by: [0, 0, null], sigma_mm: USUAL_SIGMA_MM } : ofLandmark(...mark);
     this.targets.push(target);
     return target;
   }
@@ -157,7 +163,10 @@ class Inverse {
         input.addEventListener("input", () => { target.by[word] = input.value === "" ? null : input.valueAsNumber; this.marks(); });
         return make("label", { className: "field" }, make("span", {}, label), input);
       };
+      const sigma = make("input", { type: "number", min: "0.01", step: "0.1", value: String(target.sigma_mm), aria: { label: `${target.label} ${words.measuredTo} mm` } });
+      sigma.addEventListener("input", () => { if (sigma.valueAsNumber > 0) { target.sigma_mm = sigma.valueAsNumber; this.warn(); } });
       return make("fieldset", { className: "target" }, make("legend", {}, target.label), number(0), number(1), number(2),
+        make("label", { className: "field" }, make("span", {}, "± mm"), sigma),
         button(words.remove, () => { this.targets.splice(at, 1); this.draw(); }));
     };
     this.said.replaceChildren();
@@ -168,7 +177,7 @@ class Inverse {
   /** Says before solving which way no segment may go as far as a target asks, and offers to allow it or to leave that way free. */
   private warn(): void {
     const { words } = this.app;
-    note({ targets: writeTargets(this.targets), bounds: writeBounds(this.bounds, this.usual) });
+    note({ targets: writeTargets(this.targets), bounds: writeBounds(this.bounds, this.usual), tissue: writeTissue(this.tissue) });
     this.forbidden.replaceChildren(...beyondBounds(this.targets, this.bounds).map(({ target, at, wanted, allowed }) => {
       const word = TRANSLATIONS[at]!;
       const called = wordFor(words, word, this.opened.frame);
@@ -228,13 +237,14 @@ class Inverse {
   private spec(frame: FrameName): object {
     const targets = this.targets.map(({ landmark, at_mm, by, sigma_mm }) => ({ ...(landmark === undefined ? { point_mm: at_mm } : { landmark }), displacement_mm: inAxes(by, frame), sigma_mm }));
     const bounds = Object.fromEntries(this.loaded.description.segments.map(({ name, centre_mm }) => [name, interval(this.bounds[name]!, centre_mm as Triple, frame)]));
-    return { kind: "optimise", case: this.opened.id, targets, bounds, outputs: ["skin.vtp", "skin.glb"], tags: targetTags(this.targets) };
+    const tissue_bounds = Object.keys(this.tissue).length === 0 ? {} : { tissue_bounds: this.tissue };
+    return { kind: "optimise", case: this.opened.id, targets, bounds, ...tissue_bounds, outputs: ["skin.vtp", "skin.glb"], tags: targetTags(this.targets) };
   }
 }
 
 const apart = (one: Triple, other: Triple): number => Math.hypot(one[0] - other[0], one[1] - other[1], one[2] - other[2]);
 
-const ofLandmark = (landmark: string, at_mm: Triple): Target => ({ label: landmark, landmark, at_mm, by: [0, 0, null], sigma_mm: 1 });
+const ofLandmark = (landmark: string, at_mm: Triple): Target => ({ label: landmark, landmark, at_mm, by: [0, 0, null], sigma_mm: USUAL_SIGMA_MM });
 
 /** How far a segment may go, as the service takes it. */
 function interval(bound: Record<MotionName, number>, centre_mm: Triple, frame: FrameName): object {

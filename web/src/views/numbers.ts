@@ -1,7 +1,7 @@
 // The numbers of a result: parts of the skin and landmarks with what is estimated of their errors, measures of the head, provenance.
 import type { Documents, Triple, Warning } from "../api.js";
 import { button, make, table, type Cell } from "../dom.js";
-import { fixed, mm, signed } from "../figures.js";
+import { count, figure, fixed, mm, signed } from "../figures.js";
 import { inWords, type FrameName } from "../frame.js";
 import type { Words } from "../words/en.js";
 import { names } from "./places.js";
@@ -52,13 +52,24 @@ export function cephalometry(words: Words, measures: Documents["MeasureDocument"
   // A reproduction has what was performed, a prediction what is predicted.
   const columns = ([["planned", words.planned], ["performed", words.performed], ["predicted", words.predicted]] as const)
     .filter(([member]) => member !== "performed" || measures.some((one) => typeof one.performed === "number"));
-  return table(words.cephalometry, [words.measure, words.before, ...columns.map(([, label]) => label)], measures.map((one) =>
-    [make("span", { title: one.source }, `${one.name.replaceAll("_", " ")}${unit(one.unit) === "" ? "" : `, ${unit(one.unit)}`}`), number(one.before), ...columns.map(([member]) => number(one[member]))]));
+  const hasNorms = measures.some(({ norm }) => (norm ?? undefined) !== undefined);
+  const norm = (of: Documents["MeasureDocument"]["norm"]) => (of === undefined || of === null ? "–" : make("span", { title: of.source }, `${fixed(of.mean, 1)} ± ${fixed(of.sd, 1)}`));
+  return table(words.cephalometry, [words.measure, words.before, ...columns.map(([, label]) => label), ...(hasNorms ? [words.norm] : [])], measures.map((one) =>
+    [make("span", { title: one.source }, `${one.name.replaceAll("_", " ")}${unit(one.unit) === "" ? "" : `, ${unit(one.unit)}`}`), number(one.before), ...columns.map(([member]) => number(one[member])), ...(hasNorms ? [norm(one.norm)] : [])]));
+}
+
+/** How tissue at finite strain came to rest, where it had to be led there. */
+function restFacts(words: Words, newton: Documents["NewtonDocument"] | null | undefined): [string, string][] {
+  if (newton === undefined || newton === null) return [];
+  const parts = (newton.parts ?? []).map(({ share, steps }) => words.partOf(figure(100 * share, 1), steps)).join(", ");
+  const keeping = newton.cells_with_bulk ?? 0;
+  return [[words.inParts, parts], [words.keepBulk, keeping === 0 ? "" : words.cellsWithBulk(count(keeping), figure(newton.bulk_in_cells, 1))],
+    [words.isAtRest, newton.is_stable === undefined || newton.is_stable === null ? words.notKnown : newton.is_stable ? words.yes : words.no]];
 }
 
 export function provenance(words: Words, stated: Documents["ProvenanceDocument"] | undefined): HTMLElement {
   const facts: [string, string][] = stated === undefined ? [] : [
-    [words.solvedBy, stated.method ?? ""], ["", stated.why ?? ""],
+    [words.solvedBy, stated.method ?? ""], ["", stated.why ?? ""], ...restFacts(words, stated.solver?.newton),
     [words.took, `${stated.timing?.total_s === undefined ? "–" : fixed(stated.timing.total_s, 1)} ${words.seconds}`],
     [words.nodes, String(stated.mesh?.nodes ?? "")], ["facies", stated.engine.version], [words.hash, stated.spec_hash.slice(0, 16)],
     ["", stated.statement ?? words.notice],

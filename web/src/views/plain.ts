@@ -3,11 +3,13 @@ import type { CaseDocument, Documents, Job } from "../api.js";
 import { refusal, warnings, type App } from "../app.js";
 import { button, card, make } from "../dom.js";
 import { when } from "../figures.js";
+import { openCase } from "../loading.js";
 import { address } from "../route.js";
 import { anything } from "./anything.js";
 import { conformedFacts } from "./conformed.js";
 import { comparisonFacts } from "./distances.js";
 import { fileList } from "./files.js";
+import { foundFacts } from "./found.js";
 import { groupFacts } from "./groups.js";
 import { kindOf, statusOf } from "./kinds.js";
 import { learnedFacts, learnedInShort } from "./learned.js";
@@ -17,14 +19,17 @@ import { reportLinks } from "./reports.js";
 import type { Words } from "../words/en.js";
 
 /** Members of a result that are told elsewhere, or are not for reading. */
-const ELSEWHERE = ["files", "pictures", "warnings", "job", "kept", "case", "comparison", "provenance", "optimisation", "numerical_error_mm", "nonlinearity_mm"];
+const ELSEWHERE = ["files", "pictures", "warnings", "job", "kept", "case", "comparison", "provenance", "numerical_error_mm", "nonlinearity_mm"];
 
 /** Charts and tables of what a kind finds, by the members of its result. */
 async function told(app: App, job: Job): Promise<Record<string, HTMLElement[]>> {
   const { words } = app;
-  const { learning, cohort, conformation, reproduction, study, provenance: stated } = job.results ?? {};
+  const { learning, cohort, conformation, reproduction, study, optimisation, provenance: stated } = job.results ?? {};
+  // The case may have gone since.
+  const opened = optimisation && job.case ? await openCase(app.service, job.case).catch(() => undefined) : undefined;
   return {
     ...(learning ? { learning: [learnedInShort(words, learning), ...learnedFacts(words, learning)] } : {}),
+    ...(optimisation && opened ? { optimisation: [card(words.found, foundFacts(app, job, opened, optimisation))] } : {}),
     ...(study ? { study: [verdictFacts(words, study)] } : {}),
     ...(cohort ? { cohort: groupFacts(words, cohort) } : {}),
     ...(conformation ? { conformation: conformedFacts(words, conformation) } : {}),

@@ -9,6 +9,7 @@ import { INNER_KINDS, innerFactors, type InnerKind } from "../columns.js";
 import { atRest, document as planDocument, fromDocument, History, PLAN_STATE, planState, read, readPivots, turningPivots, withInner, written, type Pivots, type Plan } from "../plan.js";
 import { coefficients, lengths, SkinSum } from "../response.js";
 import { address, note } from "../route.js";
+import { regionsOf } from "../tissue.js";
 import { mm } from "../figures.js";
 import { Workbench } from "../workbench.js";
 import { crumbs } from "./crumbs.js";
@@ -18,7 +19,7 @@ import { movements, told, type Movements } from "./movements.js";
 import { SavedPlans, type Readable } from "./plans.js";
 import { placesOf } from "./places.js";
 import { SecondOrder } from "./second.js";
-import { drawTrust } from "./trust.js";
+import { drawTrust, reserveTrust } from "./trust.js";
 import { appliedLines } from "./trusted.js";
 
 /** The choice of a point of rotation that is neither the centre nor a landmark. */
@@ -28,6 +29,8 @@ const IDLE = 350;
 const MOST_MEASURES = 512;
 /** A slider may differ from the service by so much, in mm: f32 columns, and their sum in another order. */
 const AGREED_MM = 1e-4;
+/** An answer as most are, for the room that it takes. */
+const NOTHING_YET = { order: 1, within_linear_range: true, nonlinearity_estimate_mm: 0, warnings: [] } as unknown as Documents["AppliedDocument"];
 
 export async function planPage(app: App): Promise<Leave> {
   const opened = await openCase(app.service, app.route.path[1]!);
@@ -79,6 +82,7 @@ class Planning {
     const { app, opened, bench } = this;
     const { words } = app;
     const bones = addBones(app.service, opened, bench.scene);
+    reserveTrust(bench.strip, words, appliedLines(words, NOTHING_YET, { apart: 0, most: AGREED_MM }));
     await this.load();
     this.plan = this.known(read(planState(app.route.state), this.names));
     this.history = new History(this.plan);
@@ -87,7 +91,9 @@ class Planning {
     bench.section(words.plan,
       opened.frame === "unspecified" && make("p", { className: "warned" }, words.unspecifiedFrame),
       make("div", { className: "row" }, this.undoButton, this.redoButton, button(words.reset, () => this.set(atRest(this.names)))),
-      this.told, this.warned, this.segments, this.order.element);
+      this.told, this.segments, this.order.element);
+    // Under the sliders: what comes and goes there moves none of them.
+    bench.section(words.warnings, this.warned);
     this.drawSegments();
     bench.section(words.predict, this.prediction());
     const saved = new SavedPlans(app, opened, {
@@ -149,16 +155,10 @@ class Planning {
     this.moveAll();
   }
 
-  /** All tissue, and each region that the case tells apart by name. */
-  private regions(): string[] {
-    const { regions, materials } = this.opened.document;
-    return [...new Set(["*", ...Object.values(regions?.names ?? {}), ...Object.keys(materials ?? {})])];
-  }
-
   /** The response anew with columns of growth. */
   private async grow(into: HTMLElement): Promise<void> {
     try {
-      await buildResponse(this.app, this.opened.id, { growth: this.regions() }, into);
+      await buildResponse(this.app, this.opened.id, { growth: regionsOf(this.opened.document) }, into);
       const pivots = this.pivots;
       await this.load();
       this.pivots = pivots;
@@ -322,7 +322,7 @@ class Planning {
       const ofCase = (this.opened.view.check?.warnings ?? []).filter((one) => !own.some(({ code, detail }) => code === one.code && detail === one.detail));
       const told = [...ofCase, ...own];
       drawTrust(bench.strip, words, appliedLines(words, { ...answer, warnings: told }, { apart, most: AGREED_MM }));
-      this.warned.replaceChildren(told.length === 0 ? "" : warnings(told, words, placesOf(words, this.opened, this.bench.scene, () => ({}))));
+      this.warned.replaceChildren(warnings(told, words, placesOf(words, this.opened, this.bench.scene, () => ({}))));
       bench.strip.dataset.apart = String(apart);
     } catch (error) {
       if (turn === this.asked) { bench.strip.replaceChildren(); this.warned.replaceChildren(refusal(error, words)); };

@@ -6,7 +6,7 @@ import { button, choice, make } from "../dom.js";
 import { inWords, still } from "../frame.js";
 import { addBones, openCase, type Opened } from "../loading.js";
 import { matrix } from "../matrix.js";
-import { fromDocument, PLAN_STATE, pivotsOf, planState, read, readPivots, written, type Plan, type Pivots } from "../plan.js";
+import { PLAN_STATE, planState, read, readPivots, written, type Plan, type Pivots } from "../plan.js";
 import { ACCENT, hex } from "../palette.js";
 import { address, note } from "../route.js";
 import type { Hit, Shape } from "../scene.js";
@@ -16,7 +16,7 @@ import { Workbench, type SkinMap } from "../workbench.js";
 import { resultBeside } from "./above.js";
 import { correctionFacts } from "./corrected.js";
 import { crumbs } from "./crumbs.js";
-import { foundFacts, foundLine, targetsOf } from "./found.js";
+import { foundFacts, foundLine, planOf, targetsOf } from "./found.js";
 import { comparisonFacts } from "./distances.js";
 import { fileList } from "./files.js";
 import { told } from "./movements.js";
@@ -100,6 +100,7 @@ class Result {
     this.displacement_mm = skin.values._DISPLACEMENT_MM ?? new Float32Array(skin.points_mm.length);
     this.before = { triangles: skin.triangles, points_mm: skin.points_mm.map((value, at) => value - this.displacement_mm[at]!) };
     this.bench = new Workbench(app, crumbs(app.words, this.opened.id, this.opened.name, "result"));
+    this.trust();
     this.bench.scene.orient(this.opened.frame);
     this.bench.scene.showSkin(this.before);
     this.bench.scene.moveSkin(this.displacement_mm);
@@ -164,14 +165,19 @@ class Result {
     return maps;
   }
 
+  /** Over the head from the beginning: nothing is to be waited for. */
+  private trust(): void {
+    const { app: { words }, bench, results, opened, job } = this;
+    const { optimisation } = results;
+    const aims = optimisation === undefined ? [] : [foundLine(words, optimisation, targetsOf(words, job.tags, optimisation.targets.length), results.provenance?.frame ?? opened.frame, job.warnings)];
+    drawTrust(bench.strip, words, [...aims, ...resultLines(words, results, job.warnings)]);
+  }
+
   private draw(): void {
     const { app: { words }, bench, results, opened } = this;
     const probe = make("p", { className: "told", role: "status" }, words.probe);
     const list = this.job.warnings;
     const places = placesOf(words, opened, bench.scene, () => this.parts);
-    const { optimisation } = results;
-    const aims = optimisation === undefined ? [] : [foundLine(words, optimisation, targetsOf(words, this.job.tags, optimisation.targets.length), results.provenance?.frame ?? opened.frame)];
-    drawTrust(bench.strip, words, [...aims, ...resultLines(words, results, list)]);
     bench.section(words.beforeAfter, this.slider(), probe);
     bench.section(words.warnings, warnings(list, words, places));
     const report = reportLinks(this.app, this.job);
@@ -252,11 +258,8 @@ class Result {
     const state = planState(this.app.route.state);
     const found = this.results.optimisation?.plan ?? this.results.provenance?.plan ?? undefined;
     const names = (this.opened.document.segments ?? []).map(({ name }) => name);
-    const origins = Object.fromEntries(names.map((name) => [name, [0, 0, 0] as Triple]));
-    this.pivots = found === undefined ? readPivots(state)
-      : { ...origins, ...pivotsOf(found, this.opened.frame) };
-    this.plan = found === undefined ? (PLAN_STATE.some((name) => state[name] !== undefined) ? read(state, names) : undefined)
-      : fromDocument(found, this.pivots, this.opened.frame);
+    const inAddressOnly = { plan: PLAN_STATE.some((name) => state[name] !== undefined) ? read(state, names) : undefined, pivots: readPivots(state) };
+    ({ plan: this.plan, pivots: this.pivots } = found === undefined ? inAddressOnly : planOf(this.opened, found));
     if (this.plan === undefined) return;
     const inAddress = written(this.plan, this.pivots);
     for (const name of PLAN_STATE) if (inAddress[name] !== undefined) this.app.route.state.set(name, inAddress[name]);

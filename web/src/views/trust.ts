@@ -21,8 +21,15 @@ export function drawTrust(into: HTMLElement, words: Words, lines: TrustLine[]): 
     make("span", { className: "name" }, `${name} `), make("strong", {}, value)));
   const open = into.querySelector("details")?.open ?? false;
   const reasons = lines.filter(({ why }) => why !== undefined).map(({ name, why }) => make("p", {}, make("strong", {}, `${name}: `), why));
+  into.classList.remove("waiting");
   into.setAttribute("role", "group");
   into.setAttribute("aria-label", words.trust);
   into.replaceChildren(make("ul", {}, ...chips),
     reasons.length > 0 && make("details", { open }, make("summary", {}, words.why), ...reasons) || "");
+}
+
+/** Keeps the room of lines that come later, so that nothing jumps then. */
+export function reserveTrust(into: HTMLElement, words: Words, lines: TrustLine[]): void {
+  drawTrust(into, words, lines);
+  into.classList.add("waiting");
 }

@@ -9,7 +9,7 @@ const AIM_MM = 0.1;
 
 /** Warnings of what the lines of the strip say: where one stands, its line is not as it should be. */
 const TOPICS = {
-  model: ["another-equilibrium", "built-in-poisson-ratio", "conditions-ignored", "exponent-bounded", "fibres-ignored", "law-at-rest", "materials-ignored", "volume-not-kept"],
+  model: ["another-equilibrium", "bulk-in-all-cells", "built-in-poisson-ratio", "conditions-ignored", "exponent-bounded", "fibres-ignored", "law-at-rest", "materials-ignored", "volume-not-kept"],
   leftOut: ["cells-inverted", "large-rotation", "large-strain", "outside-linear-range", "outside-second-order-range", "sliding-normal-turned", "verification-differs"],
   mesh: ["locking", "not-corrected", "numerical-error-large", "thin-stiff-layer"],
   accepted: ["tolerance-not-met"],
@@ -59,7 +59,9 @@ function measured(words: Words, name: string, lengths: Lengths | null | undefine
 export function resultLines(words: Words, results: Documents["ResultDocument"], warnings: Warning[]): TrustLine[] {
   const { provenance, nonlinearity_mm, nonlinearity_unknown, numerical_error_mm, numerical_error_unknown, adequacy } = results;
   const model = [provenance?.method, provenance?.model].filter((part) => part !== undefined && part !== null);
-  const solved: TrustLine = { name: words.solvedBy, value: [...new Set(model)].join(" · ") || words.notKnown, trusted: "good", ...(provenance?.why ? { why: provenance.why } : {}) };
+  const parts = provenance?.solver?.newton?.parts ?? [];
+  const why = [provenance?.why ?? "", parts.length > 0 ? words.madeInParts(parts.length) : ""].filter((part) => part !== "").join(" ");
+  const solved: TrustLine = { name: words.solvedBy, value: [...new Set(model)].join(" · ") || words.notKnown, trusted: "good", ...(why === "" ? {} : { why }) };
   const lines: TrustLine[] = [heeded(words, solved, "model", warnings)];
   const finite = /nonlinear|finite/.test(model.join(" "));
   if (finite && (nonlinearity_mm ?? undefined) === undefined) lines.push(heeded(words, { name: words.leftOutName, value: words.nothingOfThat, trusted: "good", why: words.finiteStrain }, "leftOut", warnings));

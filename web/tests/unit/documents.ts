@@ -1,14 +1,16 @@
 // What the page makes of documents: roles of sets, places that warnings name, results of any kind, words in both languages.
 import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
 import { test } from "node:test";
 import type { Documents } from "../../../clients/typescript/src/facies.js";
 import { documentOf, guess, heldBy, isHeldBySets, rolesOf, segmentOf, withRoles, type SetRoles } from "../../src/roles.js";
 import { shareOf } from "../../src/app.js";
 import { wordOf } from "../../src/frame.js";
 import { beyondBounds, readBounds, readTargets, writeBounds, writeTargets, type Bounds, type Target } from "../../src/targets.js";
+import { closest, readTissue, regionsOf, usualEnds, writeTissue, type TissueBounds } from "../../src/tissue.js";
 import { called } from "../../src/views/anything.js";
 import { jobInWords, planInWords } from "../../src/views/called.js";
-import { foundLine, targetsOf, targetTags } from "../../src/views/found.js";
+import { foundLine, targetsOf, targetTags, withFound } from "../../src/views/found.js";
 import { surfaceRole, surfacesDocument } from "../../src/views/meshed.js";
 import { names } from "../../src/views/places.js";
 import { appliedLines, resultLines } from "../../src/views/trusted.js";
@@ -119,6 +121,46 @@ test("targets keep their names, and a missed one or a stopped movement is to be 
   assert.match(stopped.why!, /maxilla forward, mm is stopped by its bound at 10\.00\./);
 });
 
+test("growth and constants have their units, and are heeded where they are warned of", () => {
+  const found = (at_bound: object[]) => ({ targets: [{ residual_mm: 0.1, largest_mm: 0.1, points: 1 }], at_bound }) as unknown as Documents["OptimisationDocument"];
+  const line = (at_bound: object[], codes: string[]) => foundLine(en, found(at_bound), [{ label: "chin", sigma_mm: 1 }], "LPS", codes.map((code) => ({ code, detail: `${code} it is.` })));
+  assert.equal(line([], ["large-rotation"]).trusted, "good");
+  for (const code of ["constant-at-end", "constant-not-determined", "growth-left-out"]) {
+    const told = line([], [code]);
+    assert.deepEqual([told.trusted, told.why!.endsWith(`${code} it is.`)], ["heed", true], code);
+  }
+  assert.match(line([{ region: "fat", name: "volume_change", value: -0.3, bound: "lower" }], []).why!, /fat: growth, % is stopped by its bound at -30\.00\./);
+  assert.match(line([{ region: "*", name: "poisson_ratio", value: 0.4875, bound: "upper" }], []).why!, /all tissue: Poisson's ratio is stopped by its bound at 0\.4875\./);
+});
+
+test("constants that were found stand over those of the case, field by field", () => {
+  const document = { materials: { "*": { young_modulus_kpa: 15, poisson_ratio: 0.4 }, fat: { young_modulus_kpa: 5, poisson_ratio: 0.45, density_g_per_cm3: 0.9 } } } as unknown as Documents["CaseDocument"];
+  assert.deepEqual(withFound(document, { fat: { poisson_ratio: 0.48 }, skin: { young_modulus_kpa: 60 } }).materials,
+    { "*": { young_modulus_kpa: 15, poisson_ratio: 0.4 }, fat: { young_modulus_kpa: 5, poisson_ratio: 0.48, density_g_per_cm3: 0.9 }, skin: { young_modulus_kpa: 60, poisson_ratio: 0.4 } });
+});
+
+test("what is looked for of tissue is in the address and comes back, and what is none is left out", () => {
+  const bounds: TissueBounds = { "*": { volume_change: [-0.3, 0.3] }, "fat, deep": { poisson_ratio: [0.3, 0.49], young_modulus_kpa: [5, 50] } };
+  const regions = ["*", "fat, deep", "skin"];
+  assert.deepEqual(readTissue(`${writeTissue(bounds)};bone,volume_change,0,1;skin,stiffness,0,1;skin,volume_change,0;skin,volume_change,,1;junk`, regions), bounds);
+  assert.equal(writeTissue({}), "");
+  const document = { regions: { array: "layer", names: { 0: "fat" } }, materials: { "*": { young_modulus_kpa: 30 }, fat: { young_modulus_kpa: 6 } } } as unknown as Documents["CaseDocument"];
+  assert.deepEqual(regionsOf(document), ["*", "fat"]);
+  assert.deepEqual([usualEnds("young_modulus_kpa", document, "fat"), usualEnds("young_modulus_kpa", document, "skin")], [[2, 18], [10, 90]]);
+  // The largest in absolute value, but not its own.
+  assert.deepEqual(closest([[1, 0.2, -0.9], [0.2, 1, 0], [-0.9, 0, 1]], 0), { at: 2, correlation: -0.9 });
+  assert.equal(closest([[1]], 0), undefined);
+});
+
+test("names of warnings are of codes that the service has", () => {
+  const [, table] = readFileSync("../docs/errors.md", "utf8").split("## Warnings\n");
+  const codes = [...table!.matchAll(/^\| `([^`]+)` \|/gm)].map(([, code]) => code!);
+  assert(codes.length > 100);
+  assert.deepEqual(Object.keys(en.warningNames).filter((code) => !codes.includes(code)), []);
+  // Those that a plan and its search are warned of have one.
+  for (const code of ["bulk-in-all-cells", "constant-at-end", "constant-not-determined", "growth-left-out", "large-rotation", "numerical-error-large"]) assert(code in en.warningNames, code);
+});
+
 test("targets that the bounds forbid are known before anything is solved", () => {
   const held = { forward: 10, up: 10, left: 0, pitch: 0, roll: 0, yaw: 0 };
   const target = { label: "Point 1", at_mm: [0, 0, 0], by: [2, null, 8.7], sigma_mm: 1 } as Parameters<typeof beyondBounds>[0][number];
@@ -146,7 +188,7 @@ test("both languages have the same words, and none is empty", () => {
 test("targets and bounds are in the address and come back, and what is none is left out", () => {
   const targets: Target[] = [
     { label: "nose, tip", landmark: "nose, tip", at_mm: [1, 2, 3], by: [3, null, -0.5], sigma_mm: 1 },
-    { label: "Point 1", at_mm: [-1.5, 2.25, 30], by: [null, 0, null], sigma_mm: 1 },
+    { label: "Point 1", at_mm: [-1.5, 2.25, 30], by: [null, 0, null], sigma_mm: 0.3 },
   ];
   const written = writeTargets(targets);
   assert.deepEqual(readTargets(`${written};chin,1,2,3;@1@2,1,1,1;junk`, { "nose, tip": [1, 2, 3] }, (number) => `Point ${number}`), targets);
