@@ -134,7 +134,8 @@ export function scanEditor(app: App, name: string, mesh: Documents["MeshDocument
     const document = JSON.parse(text.value) as { meshing?: Record<string, unknown> };
     const { osteotomy: _, frame: __, thresholds_hu, ...meshing } = document.meshing ?? {};
     const bone = threshold.valueAsNumber;
-    const thresholds = bone === USUAL_BONE_HU ? thresholds_hu : { ...(thresholds_hu as object | undefined), bone };
+    const stated = typeof thresholds_hu === "string" ? {} : (thresholds_hu as object | undefined);
+    const thresholds = bone === USUAL_BONE_HU ? thresholds_hu : { ...stated, bone };
     document.meshing = { ...meshing, ...(thresholds === undefined ? {} : { thresholds_hu: thresholds }),
       ...(osteotomy === undefined ? {} : { ...(frame === "unspecified" ? {} : { frame }), osteotomy }) };
     text.value = JSON.stringify(document, null, 2);
