@@ -16,11 +16,14 @@ use crate::muscle::lines::FEW_CELLS;
 /// A muscle that pulls by more than this share otherwise than its lines say is told.
 const PULL_OFF: f64 = 0.1;
 
+/// A muscle of more cells is resolved by its own, so that halving their edges once is as good as twice.
+const MANY_CELLS: usize = 200;
+
 /// As many points of lines are looked for in the tissue.
 const POINTS: f64 = 200.0;
 
 /// How much of the pull of lines the cells of a mesh carry: int w dV by their quadrature points over what it is in the same tissue
-/// with every edge halved twice.
+/// with every edge halved twice, or once where the muscle has many cells.
 pub(super) struct PullShare {
     cells: usize,
     share: f64,
@@ -31,8 +34,11 @@ pub(super) struct PullShare {
 impl PullShare {
     pub(super) fn new(lines: &Lines, mesh: &VolumeMesh, cells: &[CellStress]) -> Self {
         let halved = refine(&lines.tissue_near(mesh));
-        let finer = refine(&halved);
-        let exact = pull_of(&finer, &lines.cells(&finer));
+        let pull_in = |mesh: &VolumeMesh| pull_of(mesh, &lines.cells(mesh));
+        let exact = match cells.len() > MANY_CELLS {
+            true => pull_in(&halved),
+            false => pull_in(&refine(&halved)),
+        };
         let (share, inside) = (pull_of(mesh, cells) / exact, lines.share_inside(&halved));
         PullShare { cells: cells.len(), share, inside }
     }
@@ -70,10 +76,22 @@ fn pull_of(mesh: &VolumeMesh, cells: &[CellStress]) -> f64 {
 /// Squared distances that differ by less than this share of the squared reach are equal.
 const EQUAL: f64 = 1e-9;
 
-/// A straight piece of a line: its start, and the way to its end.
+/// A straight piece of a line: its start, the way to its end, and the box around all that is within its reach.
 struct Piece {
     from: Vector,
     along: Vector,
+    reach: [Vector; 2],
+}
+
+impl Piece {
+    fn new(from: Vector, to: Vector, within: f64) -> Self {
+        let margin = Vector::repeat(within);
+        Piece { from, along: to - from, reach: [from.inf(&to) - margin, from.sup(&to) + margin] }
+    }
+}
+
+fn overlap([low, high]: &[Vector; 2], [other_low, other_high]: &[Vector; 2]) -> bool {
+    (0..3).all(|axis| high[axis] >= other_low[axis] && low[axis] <= other_high[axis])
 }
 
 /// The lines of a muscle.
@@ -81,21 +99,19 @@ pub(super) struct Lines {
     pieces: Vec<Piece>,
     within: f64,
     /// The box around all that is within reach.
-    low: Vector,
-    high: Vector,
+    reach: [Vector; 2],
 }
 
 impl Lines {
     /// None where no line has a length.
     pub(super) fn new(lines: &[Vec<Vector>], within: f64) -> Option<Self> {
         let pairs = lines.iter().flat_map(|line| line.windows(2));
-        let pieces = pairs.map(|pair| Piece { from: pair[0], along: pair[1] - pair[0] });
+        let pieces = pairs.map(|pair| Piece::new(pair[0], pair[1], within));
         let pieces: Vec<Piece> = pieces.filter(|piece| unit(&piece.along).is_some()).collect();
-        let first = pieces.first()?.from;
-        let ends = pieces.iter().flat_map(|piece| [piece.from, piece.from + piece.along]);
-        let (low, high) = ends.fold((first, first), |(l, h), x| (l.inf(&x), h.sup(&x)));
-        let reach = Vector::repeat(within);
-        Some(Lines { pieces, within, low: low - reach, high: high + reach })
+        let first = pieces.first()?.reach;
+        let boxes = pieces.iter().map(|piece| piece.reach);
+        let reach = boxes.fold(first, |[l, h], [low, high]| [l.inf(&low), h.sup(&high)]);
+        Some(Lines { pieces, within, reach })
     }
 
     /// w f (x) f of all cells where it is not zero.
@@ -134,7 +150,9 @@ impl Lines {
     fn may_reach(&self, corners: &[Vector]) -> bool {
         let Some(&first) = corners.first() else { return false };
         let (low, high) = corners.iter().fold((first, first), |(l, h), x| (l.inf(x), h.sup(x)));
-        (0..3).all(|axis| high[axis] >= self.low[axis] && low[axis] <= self.high[axis])
+        let around = [low, high];
+        overlap(&around, &self.reach)
+            && self.pieces.iter().any(|piece| overlap(&around, &piece.reach))
     }
 
     /// The cells that may have tissue within reach.
