@@ -14,6 +14,7 @@ use crate::schema::case::membrane::MembraneDocument;
 use crate::schema::code::ErrorCode;
 use crate::schema::compare::document::CompareToDocument;
 use crate::schema::methods::dvs::DvsDocument;
+use crate::schema::methods::fem_nonlinear::FemNonlinearDocument;
 use crate::schema::methods::msm::MassSpringDocument;
 use crate::schema::methods::mtm::MassTensorDocument;
 use crate::schema::methods::thickness_warp::ThicknessWarpDocument;
@@ -65,6 +66,10 @@ pub struct PredictDocument {
     pub plan_id: Option<String>,
     #[serde(default)]
     pub method: MethodName,
+    /// Only with the method `fem_nonlinear`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub fem_nonlinear: Option<FemNonlinearDocument>,
     /// Only with the method `msm`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
@@ -194,7 +199,7 @@ impl PredictDocument {
             estimate: self.estimate == EstimateName::Auto,
             corrected: self.corrected,
             states: self.stress,
-            in_parts: true,
+            advance: self.fem_nonlinear.unwrap_or_default().advance(),
         }
     }
 
@@ -307,6 +312,7 @@ impl PredictDocument {
 
     fn own_settings(&self) -> OwnSettings {
         OwnSettings {
+            fem_nonlinear: self.fem_nonlinear,
             msm: self.msm,
             mtm: self.mtm,
             mtm_ti: self.mtm_ti,
