@@ -134,7 +134,7 @@ pub struct PredictedStep {
     pub rest: RestOnTheWay,
     pub relative_residual: f64,
     pub is_stable: Option<bool>,
-    /// As those of a prediction, without what the surfaces of bones press with.
+    /// As those of a prediction.
     pub reactions: BTreeMap<String, Vector>,
 }
 

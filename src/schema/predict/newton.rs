@@ -56,6 +56,6 @@ pub struct LoadStepDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub is_stable: Option<bool>,
-    /// As that of the result, without what the surfaces of bones press with.
+    /// As that of the result.
     pub reaction_millinewton: BTreeMap<String, Triple>,
 }

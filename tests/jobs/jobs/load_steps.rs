@@ -92,6 +92,11 @@ fn load_steps_that_are_too_many_or_of_another_method_are_refused_with_their_plac
             "out-of-range",
         ),
         (
+            json!({"method": "fem_nonlinear", "contact": "unilateral", "fem_nonlinear": {"load_steps": 4}}),
+            "/spec/fem_nonlinear/load_steps",
+            "one-of",
+        ),
+        (
             json!({"method": "fem_linear", "fem_nonlinear": {"load_steps": 4}}),
             "/spec/fem_nonlinear",
             "method-mismatch",

@@ -41,12 +41,11 @@ pub(super) fn rest_of(
     holds: &[Hold],
     progress: &dyn Progress,
 ) -> Result<Equilibrium, ModelError> {
-    rest_by(Advance::default(), elements, mesh, law, holds, progress)
+    rest_by((Advance::default(), elements), mesh, law, holds, progress)
 }
 
 pub(super) fn rest_by(
-    advance: Advance,
-    elements: Elements,
+    (advance, elements): (Advance, Elements),
     mesh: &VolumeMesh,
     law: Law,
     holds: &[Hold],

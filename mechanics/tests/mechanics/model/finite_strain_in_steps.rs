@@ -21,7 +21,7 @@ fn in_steps(count: u32) -> Advance {
 }
 
 fn rest(advance: Advance, elements: Elements, mesh: &VolumeMesh, held: &[Hold]) -> Equilibrium {
-    rest_by(advance, elements, mesh, neo_hookean(0.46), held, &Unobserved).unwrap()
+    rest_by((advance, elements), mesh, neo_hookean(0.46), held, &Unobserved).unwrap()
 }
 
 fn farthest(a: &[Vector], b: &[Vector]) -> f64 {

@@ -43,11 +43,7 @@ impl<'a> FiniteStrain<'a> {
 /// What is told of rest at the end of a load step that began after so many residuals.
 fn load_step(question: Question, rest: &Rest, begun: usize) -> Option<LoadStep> {
     let loads = question.case.forces.iter().map(|force| force * question.share);
-    let mut acting: Vec<Vector> = loads.collect();
-    if let Some(touching) = &rest.touching {
-        let pressing = touching.forces(acting.len());
-        acting.iter_mut().zip(&pressing).for_each(|(force, pressing)| *force += pressing);
-    }
+    let acting: Vec<Vector> = loads.collect();
     let newton = rest.report.newton.as_ref()?;
     Some(LoadStep {
         rest: rest.on_the_way(begun)?,

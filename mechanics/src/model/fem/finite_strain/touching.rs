@@ -23,7 +23,7 @@ const LOOSELY: f64 = 1e-3;
 /// Closest points that still move by more than this in the end, in mm, are no answer.
 const UNSETTLED_MM: f64 = 0.1;
 
-/// How often closest points are looked for again once the bones rest.
+/// How often closest points are looked for again once the movement is made.
 const MOST_ROUNDS: usize = 15;
 
 /// What touches, at one state of tissue and bones.
@@ -36,7 +36,7 @@ pub(super) struct Touching<'a> {
     multipliers: Vec<f64>,
     /// The part of the movement that one step may make.
     pub most_ahead: f64,
-    /// Rounds since the bones rest.
+    /// Rounds after the movement is made.
     late_rounds: usize,
     /// Rows that said something new in the last round.
     new: usize,
@@ -85,9 +85,9 @@ impl<'a> Touching<'a> {
         }
     }
 
-    /// Looks for what faces what after a displacement and a share of the movement of bones; once the bones rest, only so often.
-    pub fn look(&mut self, displacement: &[Vector], share: f64, bones_rest: bool) {
-        self.late_rounds = if bones_rest { self.late_rounds + 1 } else { 0 };
+    /// Looks for what faces what after a displacement and a share of the movement of bones; once that is made, only so often.
+    pub fn look(&mut self, displacement: &[Vector], share: f64) {
+        self.late_rounds += usize::from(share >= 1.0);
         self.new = 0;
         if self.late_rounds > MOST_ROUNDS {
             return;
@@ -195,7 +195,7 @@ impl<'a> Touching<'a> {
         let found = self.kept_rows.contact(self.pressing(), displacement);
         // Where points were not looked for any more, what a last look finds is what they still move by.
         self.late_rounds = 0;
-        self.look(displacement, 1.0, true);
+        self.look(displacement, 1.0);
         let last_moved_mm = self.deepest(displacement, 1.0);
         if last_moved_mm > UNSETTLED_MM {
             return Err(self.unsettled(last_moved_mm));
