@@ -20,7 +20,7 @@ use mechanics::format::{ArrayValues, NamedValues, VolumeOutput};
 use mechanics::material::hyperelastic::{Law, NeoHookean};
 use mechanics::mesh::sample::block;
 use mechanics::mesh::{CellShape, Frame, Vector, VolumeMesh};
-use mechanics::model::fem::finite_strain::{Elements, FibreField, FiniteStrain};
+use mechanics::model::fem::finite_strain::{Advance, Elements, FibreField, FiniteStrain};
 use mechanics::model::problem::{Equilibrium, LoadCase, ModelError};
 use mechanics::progress::Unobserved;
 use mechanics::solver::Tolerance;
@@ -120,7 +120,7 @@ fn solve(mesh: &VolumeMesh, plan: &Plan) -> (Result<Equilibrium, ModelError>, f6
         holds: &holds,
         tolerance: Tolerance { relative_residual: 1e-6, memory_mb: 16e3 },
         with_states: false,
-        in_parts: true,
+        advance: Advance::default(),
     };
     let held = holds.iter().map(|hold| *hold.values()).collect();
     let case =

@@ -13,8 +13,10 @@ use super::watch::Watch;
 use crate::jobs::{JobContext, JobInput, check};
 use crate::schema::Limits;
 use crate::schema::methods::MethodName;
+use crate::schema::methods::fem_nonlinear::FemNonlinearDocument;
 use crate::schema::predict::check::CheckDocument;
 use crate::schema::predict::document::{ContactName, EstimateName, OutputName};
+use crate::schema::predict::newton::LoadStepDocument;
 use crate::schema::predict::result::ResultDocument;
 
 /// What is kept goes to the meshes of a tenant.
@@ -48,6 +50,9 @@ pub struct Arguments {
     /// What keeps tissue from passing through itself and bone: none, sliding, unilateral or auto
     #[arg(long, value_name = "KIND", value_parser = word::<ContactName>, help_heading = "Result")]
     contact: Option<ContactName>,
+    /// Bring tissue to rest in so many equal load steps, told one by one; with the method fem_nonlinear
+    #[arg(long, value_name = "NUMBER", help_heading = "Tissue")]
+    load_steps: Option<u32>,
     /// Write stress and strain of the tissue to volume.vtu
     #[arg(long, conflicts_with = "refine", help_heading = "Result")]
     stress: bool,
@@ -68,6 +73,10 @@ pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
     };
     asked.file.spec.outputs.get_or_insert_with(usual_outputs);
     asked.file.spec.method = arguments.method.unwrap_or(asked.file.spec.method);
+    if arguments.load_steps.is_some() {
+        let load_steps = arguments.load_steps;
+        asked.file.spec.fem_nonlinear = Some(FemNonlinearDocument { load_steps });
+    }
     asked.file.spec.corrected |= arguments.corrected;
     if arguments.stress {
         asked.file.spec.ask_for_stress();
@@ -168,6 +177,7 @@ fn print_result(result: &ResultDocument, before: &CheckDocument) {
             solver.name, solver.iterations, solver.relative_residual, solver.wanted_residual
         );
     }
+    print_load_steps(&result.load_steps);
     let timing = &provenance.timing;
     println!(
         "time         {:.2} s: assemble {:.2}, solve {:.2}, estimate {:.2}, write {:.2}; peak memory {:.0} MB",
@@ -195,6 +205,38 @@ fn print_inside(result: &ResultDocument) {
         println!(
             "stress       {region}: Mises {:.3} kPa in the mean, p95 {:.3}, max {:.3}; pressure {:.3} to {:.3} kPa",
             mises.mean, mises.p95, mises.max, pressure.min, pressure.max
+        );
+    }
+}
+
+fn print_load_steps(steps: &[LoadStepDocument]) {
+    let Some(first) = steps.first() else { return };
+    let held: Vec<String> =
+        first.reaction_millinewton.keys().map(|name| format!("{name} mN")).collect();
+    println!(
+        "load steps   {:>6} {:>5} {:>12} {:>10} {:>9} {:>7}   {}",
+        "share",
+        "steps",
+        "energy mN mm",
+        "det F",
+        "residual",
+        "stable",
+        held.join("   ")
+    );
+    for LoadStepDocument { rest, relative_residual, is_stable, reaction_millinewton } in steps {
+        let stable = is_stable.map_or("?", |is_stable| if is_stable { "yes" } else { "no" });
+        let norms = reaction_millinewton.values().zip(&held).map(|(force, title)| {
+            let [x, y, z] = force.0;
+            format!("{:>width$.1}", x.hypot(y).hypot(z), width = title.chars().count())
+        });
+        println!(
+            "             {:>6.3} {:>5} {:>12.2} {:>10.4} {:>9.1e} {stable:>7}   {}",
+            rest.share,
+            rest.steps,
+            rest.energy_mn_mm,
+            rest.least_det_f,
+            relative_residual,
+            norms.collect::<Vec<_>>().join("   ")
         );
     }
 }

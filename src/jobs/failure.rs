@@ -176,6 +176,12 @@ fn no_equilibrium(error: &ModelError) -> Value {
             json!({ "passes": passes, "moved_mm": moved_mm })
         }
         ModelError::Folded { cell, det_f } => json!({ "element": cell, "det_f": det_f }),
+        ModelError::BonesPass { cause, edges, cells, .. } => {
+            let mut members = no_equilibrium(cause);
+            members["turned_edges"] = json!(edges);
+            members["turned_cells"] = json!(cells);
+            members
+        }
         ModelError::Solver(error) => no_solution(error),
     }
 }

@@ -50,6 +50,7 @@ impl From<&ModelError> for ErrorCode {
             ModelError::Standstill { .. } => ErrorCode::NoEquilibrium,
             ModelError::ContactUnsettled { .. } => ErrorCode::ContactUnsettled,
             ModelError::Folded { .. } => ErrorCode::TissueFolded,
+            ModelError::BonesPass { cause, .. } => (&**cause).into(),
         }
     }
 }
@@ -199,6 +200,12 @@ mod tests {
             ModelError::Standstill { made: 0.5, steps: 9, least_det_f: 0.1 },
             ModelError::ContactUnsettled { passes: 30, moved_mm: 1.0 },
             ModelError::Folded { cell: 1, det_f: -1.0 },
+            ModelError::BonesPass {
+                cause: Box::new(ModelError::NoBone),
+                edges: 1,
+                cells: 1,
+                told: String::new(),
+            },
         ] {
             assert_eq!(ErrorCode::from(&error).name(), error.code(), "{error}");
         }

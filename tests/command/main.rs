@@ -78,6 +78,27 @@ fn the_example_runs_and_its_files_are_those_of_its_manifest() {
 }
 
 #[test]
+fn load_steps_are_asked_for_by_an_argument_and_printed_one_by_one() {
+    let out = tempfile::tempdir().unwrap();
+    let case = block().join("case.json");
+    let asked = ["predict", "--case", path(&case), "--load-steps", "4", "--out", path(out.path())];
+    let done = facies(&[&asked[..], &["--method", "fem_nonlinear"]].concat());
+    assert_eq!(done.status.code(), Some(0), "{}", text(&done.stderr));
+    let shown = text(&done.stdout);
+    for printed in [
+        "load steps    share steps",
+        "              0.250 ",
+        "              0.750 ",
+        "              1.000 ",
+    ] {
+        assert!(shown.contains(printed), "{printed:?} is not in {shown}");
+    }
+    assert_eq!(result(out.path()).load_steps.len(), 4);
+    let other = facies(&[&asked[..], &["--method", "fem_linear"]].concat());
+    assert!(text(&other.stderr).contains("method-mismatch"), "{}", text(&other.stderr));
+}
+
+#[test]
 fn stress_and_a_material_of_the_literature_are_asked_for_by_arguments() {
     let listed = facies(&["materials"]);
     assert_eq!(listed.status.code(), Some(0), "{}", text(&listed.stderr));

@@ -27,6 +27,14 @@ impl Parts {
         (self.made + self.part).min(1.0)
     }
 
+    /// The same between two shares of something larger.
+    pub fn target_between(&self, from: f64, to: f64) -> f64 {
+        match self.target() {
+            1.0 => to,
+            part => from + (to - from) * part,
+        }
+    }
+
     /// The target is at rest. True where that is the whole movement.
     pub fn rested(&mut self) -> bool {
         self.made = self.target();
@@ -64,6 +72,16 @@ mod tests {
         assert_eq!(parts.target(), 0.875);
         assert!(!parts.rested() && parts.rested());
         assert_eq!(parts.made(), 1.0);
+    }
+
+    #[test]
+    fn the_last_part_of_a_step_ends_where_the_step_does() {
+        let mut parts = Parts::beginning_with(0.5);
+        let (from, to) = (0.3, 0.9);
+        assert!(from + (to - from) != to);
+        assert_eq!(parts.target_between(from, to), from + (to - from) * 0.5);
+        assert!(!parts.rested());
+        assert_eq!(parts.target_between(from, to), to);
     }
 
     #[test]

@@ -55,6 +55,9 @@ pub enum ModelError {
         "cell {cell} is turned inside out by its held nodes alone, det F {det_f:.3}: these movements fold the tissue between bones"
     )]
     Folded { cell: usize, det_f: f64 },
+    /// Of tissue at finite strain whose bones pass through each other (`boundary::tearing::turned_edges`), which is told.
+    #[error("{cause}; {told}")]
+    BonesPass { cause: Box<ModelError>, edges: usize, cells: usize, told: String },
 }
 
 impl ModelError {
@@ -68,6 +71,7 @@ impl ModelError {
             ModelError::Standstill { .. } => "no-equilibrium",
             ModelError::ContactUnsettled { .. } => "contact-unsettled",
             ModelError::Folded { .. } => "tissue-folded",
+            ModelError::BonesPass { cause, .. } => cause.code(),
         }
     }
 }

@@ -124,7 +124,8 @@ impl Scene {
     /// What in a scene without mistakes is rarely meant.
     fn doubts(&self, case: &Case, plan: &Plan) -> Vec<Warning> {
         let mut warnings: Vec<Warning> = Vec::new();
-        warnings.extend(tearing::tearing(&self.mesh, &self.conditions.holds));
+        let name = |class| self.class_name(class);
+        warnings.extend(tearing::tearing(&self.mesh, &self.conditions, name));
         warnings.extend(walls::turned_normals(self));
         warnings.extend(states_rest(plan, self));
         warnings.extend(suspect_constants(self, plan));

@@ -7,6 +7,7 @@ use crate::image::ImageVolume;
 use crate::material::mixture::MixingRule;
 use crate::material::{Fibre, LinearElastic, MaterialError, PlaneStress};
 use crate::mesh::{Frame, TriangleSurface, Vector, VolumeMesh};
+use crate::model::fem::finite_strain::Advance;
 use crate::plan::PlannedSegment;
 use std::collections::BTreeMap;
 
@@ -279,8 +280,8 @@ pub struct Settings {
     pub corrected: bool,
     /// Whether stress and strain of the cells are wanted, of methods that have them.
     pub states: bool,
-    /// Whether a movement at finite strain that finds no rest at once is made in parts, which may take five times as many steps.
-    pub in_parts: bool,
+    /// At finite strain.
+    pub advance: Advance,
 }
 
 impl Default for Settings {
@@ -295,7 +296,7 @@ impl Default for Settings {
             estimate: true,
             corrected: false,
             states: false,
-            in_parts: true,
+            advance: Advance::default(),
         }
     }
 }

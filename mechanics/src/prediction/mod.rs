@@ -24,6 +24,7 @@ mod muscle;
 mod muscle_field;
 mod muscle_lines;
 mod muscle_tissue;
+mod no_rest;
 mod nonlinearity;
 mod numerical_error;
 mod numerics_revision;
@@ -84,10 +85,12 @@ pub use answer::{equilibrium, estimates};
 pub use crate::boundary::NodeClass;
 use crate::mesh::{Vector, Warning};
 pub use crate::model::cell_state::{CellState, CellStates};
+pub use crate::model::fem::finite_strain::Advance;
 pub use crate::model::fem::linear_states::node_states;
 use crate::model::fem::strain::{CellDeformation, deformations};
 pub use crate::model::problem::{InvertedCell, ModelError};
 use crate::progress::{Phase, Progress};
+use crate::solver::LoadStep;
 pub use crate::solver::{NewtonReport, RestOnTheWay, SolveReport, SolverError};
 
 /// A landmark farther than this from the tissue, in mm, is told to move as something it is not part of.
@@ -117,10 +120,30 @@ pub struct Prediction {
     /// How tissue presses on what it touches, where anything does.
     pub contact: Option<Touch>,
     pub solver: SolveReport,
+    /// Rest at the end of each load step that was asked for.
+    pub load_steps: Vec<PredictedStep>,
     /// The elements used, e.g. `hex8 mean dilatation`.
     pub elements: Vec<String>,
     /// Those of the scene and those of the solution.
     pub warnings: Vec<Warning>,
+}
+
+/// Tissue at rest at the end of a load step.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PredictedStep {
+    pub rest: RestOnTheWay,
+    pub relative_residual: f64,
+    pub is_stable: Option<bool>,
+    /// As those of a prediction.
+    pub reactions: BTreeMap<String, Vector>,
+}
+
+impl PredictedStep {
+    fn new(scene: &Scene, step: LoadStep) -> Self {
+        let LoadStep { rest, relative_residual, is_stable, reactions } = step;
+        let reactions = reaction::by_class(scene, &reactions, None);
+        PredictedStep { rest, relative_residual, is_stable, reactions }
+    }
 }
 
 /// Solves a scene by the method it asks for. The same scene gives the same bits on any number of threads.
@@ -131,7 +154,7 @@ pub fn predict(scene: &Scene, progress: &dyn Progress) -> Result<Prediction, Mod
 
 /// What an answer says of the tissue and to a reader.
 fn described(scene: &Scene, answer: Answer, progress: &dyn Progress) -> Prediction {
-    let Answer { equilibrium, numerical_error, nonlinearity, contact } = answer;
+    let Answer { mut equilibrium, numerical_error, nonlinearity, contact } = answer;
 
     // 1. What it does to the tissue and to the landmarks.
     progress.phase(Phase::Surface);
@@ -155,8 +178,11 @@ fn described(scene: &Scene, answer: Answer, progress: &dyn Progress) -> Predicti
     let at_landmarks =
         |missing| skin::landmark_displacement(&scene.mesh, &scene.landmarks, missing);
     let missing = numerical_error.as_ref().map(|error| at_landmarks(&error.missing));
+    let newton = equilibrium.solver.newton.iter_mut();
+    let load_steps = newton.flat_map(|newton| newton.load_steps.drain(..));
     Prediction {
-        reactions: reaction::by_class(scene, &equilibrium, contact.as_ref()),
+        load_steps: load_steps.map(|step| PredictedStep::new(scene, step)).collect(),
+        reactions: reaction::by_class(scene, &equilibrium.reactions, contact.as_ref()),
         condition_reactions: reaction::by_condition(scene, &equilibrium, contact.as_ref()),
         nonlinearity,
         landmarks: landmarks.into_iter().map(|(name, (moved, _))| (name, moved)).collect(),

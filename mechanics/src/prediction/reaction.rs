@@ -34,12 +34,12 @@ pub struct ConditionReaction {
 /// segments with the nodes of these, the others with what is fixed.
 pub(super) fn by_class(
     scene: &Scene,
-    equilibrium: &Equilibrium,
+    reactions: &[Vector],
     contact: Option<&Touch>,
 ) -> BTreeMap<String, Vector> {
     let mut sums: BTreeMap<String, Vector> =
         scene.segments.iter().map(|segment| (segment.name.clone(), Vector::zeros())).collect();
-    for (hold, reaction) in scene.conditions.holds.iter().zip(&equilibrium.reactions) {
+    for (hold, reaction) in scene.conditions.holds.iter().zip(reactions) {
         let holder = match scene.conditions.classes[hold.node as usize] {
             NodeClass::Joined(segment) => scene.segments[segment as usize].name.clone(),
             other => other.name().to_owned(),

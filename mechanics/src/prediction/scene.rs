@@ -8,6 +8,7 @@ use super::element_choice::ElementChoice;
 use super::imaged_tissue::ImagedTissue;
 use super::method::Method;
 use super::muscle_field::{MuscleField, MuscleTissue};
+use super::no_rest::no_rest;
 use super::skin::Skin;
 use super::stated::StatedCondition;
 use crate::boundary::contact::BoneSurface;
@@ -183,7 +184,10 @@ impl Scene {
                 let own = self.problem();
                 self.with_states(mass_tensor::solve(&own, settings, &self.load_case(), progress)?)
             }
-            Method::MassTensorNonlinear => self.mass_tensors().solve(&self.load_case(), progress),
+            Method::MassTensorNonlinear => {
+                let found = self.mass_tensors().solve(&self.load_case(), progress);
+                found.map_err(|error| no_rest(self, error))
+            }
             Method::VolumeSpline(spline) => spline::solve(&self.problem(), spline, progress),
             Method::ThicknessWarp(warp) => {
                 let movement = |segment: u32, x: &Vector| {
@@ -203,9 +207,10 @@ impl Scene {
         with_error: bool,
         progress: &dyn Progress,
     ) -> Result<(Equilibrium, Option<MeshError>), ModelError> {
-        self.at_finite_strain(|problem, finer| {
+        let found = self.at_finite_strain(|problem, finer| {
             problem.solve_and(&self.load_case(), with_error.then_some(finer), progress)
-        })
+        });
+        found.map_err(|error| no_rest(self, error))
     }
 
     /// The problem of finite strain, and what a finer mesh would see of it, for what is done with them.
@@ -241,7 +246,7 @@ impl Scene {
             holds: &self.conditions.holds,
             tolerance: Tolerance { relative_residual, memory_mb },
             with_states: self.settings.states,
-            in_parts: self.settings.in_parts,
+            advance: self.settings.advance,
         };
         let (tissue, boundary) = (self.tissue(), &self.boundary);
         // What grows and pulls is in the cells already.

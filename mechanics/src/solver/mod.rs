@@ -28,6 +28,6 @@ mod vector;
 mod vectorised;
 pub use choice::{Solver, solve};
 pub use half_matrix::HalfMatrix;
-pub use report::{NewtonReport, RestOnTheWay, SolveReport};
+pub use report::{LoadStep, NewtonReport, RestOnTheWay, SolveReport};
 pub use system::{Block, PartlyHeld, Solution, SolverError, System, Tolerance, Unknowns, tell};
 pub use vectorised::vectorised;

@@ -1,6 +1,8 @@
 //! Report of a solution: the method, why it was chosen, and what it took. Made where equations are solved, and
 //! carried as it is to whoever tells of it.
 
+use nalgebra::Vector3;
+
 /// How equations were solved.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SolveReport {
@@ -46,6 +48,19 @@ pub struct NewtonReport {
     pub cells_with_bulk: usize,
     /// Rest at the end of each part of a movement that found none at once; empty where it did.
     pub parts: Vec<RestOnTheWay>,
+    /// Rest at the end of each load step; empty where none were asked for.
+    pub load_steps: Vec<LoadStep>,
+}
+
+/// Tissue at rest at the end of a load step.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LoadStep {
+    pub rest: RestOnTheWay,
+    pub relative_residual: f64,
+    /// As that of a [`NewtonReport`].
+    pub is_stable: Option<bool>,
+    /// What each hold exerts on the tissue, in mN.
+    pub reactions: Vec<Vector3<f64>>,
 }
 
 /// Tissue at rest with a share of its movement and loads.

@@ -18,7 +18,8 @@ use crate::jobs::result::folder::ResultFolder;
 use crate::jobs::result::muscles::muscles_picture;
 use crate::jobs::result::pictures::displacement_picture;
 use crate::jobs::result::provenance::{
-    Origin, add_method, encode_result, laws, mesh_summary, presets, solver_document,
+    Origin, add_method, encode_result, laws, mesh_summary, presets, rest_on_the_way,
+    solver_document,
 };
 use crate::jobs::result::skin::PredictedSkin;
 use crate::jobs::result::stress::stress_by_region;
@@ -32,6 +33,7 @@ use crate::schema::optimise::result::OptimisationDocument;
 use crate::schema::predict::adequacy::AdequacyDocument;
 use crate::schema::predict::document::OutputName;
 use crate::schema::predict::keep::KeptName;
+use crate::schema::predict::newton::LoadStepDocument;
 use crate::schema::predict::nonlinearity::{NonlinearityDocument, skin_lengths};
 use crate::schema::predict::refine::RefinementDocument;
 use crate::schema::predict::result::{
@@ -40,7 +42,7 @@ use crate::schema::predict::result::{
 };
 use crate::schema::predict::stress::StressDocument;
 use mechanics::mesh::{Vector, VolumeMesh, Warning};
-use mechanics::prediction::{Prediction, Skin};
+use mechanics::prediction::{PredictedStep, Prediction, Skin};
 use mechanics::progress::{Phase, Progress};
 use mechanics::validation::{Statistics, StatisticsError};
 
@@ -305,6 +307,7 @@ impl Finished<'_> {
             symmetry: head.symmetry,
             reaction_millinewton: triples(&self.prediction.reactions),
             reaction_mn: triples(&self.prediction.reactions),
+            load_steps: self.prediction.load_steps.iter().map(load_step).collect(),
             reactions: self.prediction.condition_reactions.iter().map(Into::into).collect(),
             ..ResultDocument::new(input.job.clone(), files, provenance, warnings)
         }
@@ -356,6 +359,15 @@ fn numerical_error(
     let landmarks = at_landmarks.map(|(name, missing)| (name.clone(), missing.norm())).collect();
     let corrected = error.is_added;
     Ok(Some(NumericalErrorDocument { mean, p95, max, regions, landmarks, corrected }))
+}
+
+fn load_step(step: &PredictedStep) -> LoadStepDocument {
+    LoadStepDocument {
+        rest: rest_on_the_way(&step.rest),
+        relative_residual: step.relative_residual,
+        is_stable: step.is_stable,
+        reaction_millinewton: triples(&step.reactions),
+    }
 }
 
 fn triples(vectors: &BTreeMap<String, Vector>) -> BTreeMap<String, Triple> {

@@ -168,7 +168,8 @@ fn newton_document(newton: &NewtonReport) -> NewtonDocument {
     }
 }
 
-fn rest_on_the_way(rest: &RestOnTheWay) -> RestOnTheWayDocument {
+/// Rest before the end.
+pub fn rest_on_the_way(rest: &RestOnTheWay) -> RestOnTheWayDocument {
     let RestOnTheWay { share, energy, least_det_f, steps } = *rest;
     RestOnTheWayDocument { share, energy_mn_mm: energy, least_det_f, steps: steps as u64 }
 }

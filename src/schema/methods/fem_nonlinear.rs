@@ -1,6 +1,42 @@
-//! Nonlinear finite elements: what is told of them.
+//! Nonlinear finite elements: what a spec tells them, and what is told of them.
 
-use super::document::Description;
+use std::num::NonZeroU32;
+
+use serde::{Deserialize, Serialize};
+use serde_json::json;
+use utoipa::ToSchema;
+
+use super::document::{Description, ParameterDocument};
+use crate::schema::wire::fault::{Faults, Pointer};
+use mechanics::prediction::Advance;
+
+/// Load steps at most.
+const MOST_LOAD_STEPS: u32 = 100;
+
+/// How a movement at finite strain is made.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct FemNonlinearDocument {
+    /// Movement, loads, growth and activations are advanced in so many equal steps, each at rest before the next one, with a row
+    /// each in `load_steps` of the result. Default: all of it at once.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false, minimum = 1, maximum = 100)]
+    pub load_steps: Option<u32>,
+}
+
+impl FemNonlinearDocument {
+    pub fn check(&self, at: &Pointer, faults: &mut Faults) {
+        if let Some(steps) = self.load_steps {
+            let range = 1.0..=f64::from(MOST_LOAD_STEPS);
+            faults.check_range(&at.key("load_steps"), f64::from(steps), range, "");
+        }
+    }
+
+    pub fn advance(&self) -> Advance {
+        let steps = self.load_steps.and_then(NonZeroU32::new);
+        steps.map_or(Advance::AtOnceOrInParts, Advance::InSteps)
+    }
+}
 
 /// Its words in `GET /v1/methods`.
 pub(super) fn description() -> Description {
@@ -33,11 +69,18 @@ pub(super) fn description() -> Description {
             "plan.activations",
             "spec.contact",
             "spec.element",
+            "spec.fem_nonlinear",
             "spec.materials",
             "spec.membrane",
             "spec.tolerance.relative_residual",
             "spec.budget",
         ],
-        parameters: Vec::new(),
+        parameters: vec![ParameterDocument {
+            name: "load_steps".to_owned(),
+            meaning: "equal steps in which movement, loads, growth and activations are advanced, each at rest before the next one"
+                .to_owned(),
+            default: json!(null),
+            range: format!("[1, {MOST_LOAD_STEPS}]"),
+        }],
     }
 }

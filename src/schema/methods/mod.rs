@@ -3,7 +3,7 @@
 mod document;
 pub mod dvs;
 mod fem_linear;
-mod fem_nonlinear;
+pub mod fem_nonlinear;
 mod list;
 mod measured;
 pub mod msm;
@@ -16,6 +16,7 @@ pub mod thickness_warp;
 use document::Description;
 pub use document::{MethodDocument, ParameterDocument};
 use dvs::DvsDocument;
+use fem_nonlinear::FemNonlinearDocument;
 pub use list::{
     MeasuredMethod, MethodList, OptimiseMethod, ResponseMethod, available_methods, check_linear,
 };
@@ -32,6 +33,7 @@ use mechanics::prediction::{Method, MethodKind};
 /// What a spec tells single methods, each in the field that has the name of the method.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct OwnSettings {
+    pub fem_nonlinear: Option<FemNonlinearDocument>,
     pub msm: Option<MassSpringDocument>,
     pub mtm: Option<MassTensorDocument>,
     pub mtm_ti: Option<MassTensorDocument>,
@@ -57,8 +59,11 @@ fn row(method: MethodKind) -> MethodRow {
         },
         MethodKind::FemNonlinear => MethodRow {
             description: fem_nonlinear::description,
-            is_told: |_| false,
-            to_method: |_, _, _| Method::FemNonlinear,
+            is_told: |own| own.fem_nonlinear.is_some(),
+            to_method: |own, at, faults| {
+                own.fem_nonlinear.unwrap_or_default().check(at, faults);
+                Method::FemNonlinear
+            },
         },
         MethodKind::MassTensor => MethodRow {
             description: mtm::description,

@@ -14,6 +14,7 @@ use crate::schema::case::membrane::MembraneDocument;
 use crate::schema::code::ErrorCode;
 use crate::schema::compare::document::CompareToDocument;
 use crate::schema::methods::dvs::DvsDocument;
+use crate::schema::methods::fem_nonlinear::FemNonlinearDocument;
 use crate::schema::methods::msm::MassSpringDocument;
 use crate::schema::methods::mtm::MassTensorDocument;
 use crate::schema::methods::thickness_warp::ThicknessWarpDocument;
@@ -65,6 +66,10 @@ pub struct PredictDocument {
     pub plan_id: Option<String>,
     #[serde(default)]
     pub method: MethodName,
+    /// Only with the method `fem_nonlinear`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub fem_nonlinear: Option<FemNonlinearDocument>,
     /// Only with the method `msm`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
@@ -182,6 +187,7 @@ impl PredictDocument {
             let what = "an answer cannot be corrected by an error that is not estimated: `estimate` is \"none\"";
             faults.add(&at.key("corrected"), ErrorCode::OneOf, what);
         }
+        self.check_load_steps(&at.key("fem_nonlinear").key("load_steps"), faults);
         let membrane = self.membrane.as_ref();
         let membrane = membrane.and_then(|sheet| sheet.to_membrane(&at.key("membrane"), faults));
         Settings {
@@ -194,7 +200,7 @@ impl PredictDocument {
             estimate: self.estimate == EstimateName::Auto,
             corrected: self.corrected,
             states: self.stress,
-            in_parts: true,
+            advance: self.fem_nonlinear.unwrap_or_default().advance(),
         }
     }
 
@@ -265,6 +271,15 @@ impl PredictDocument {
         }
     }
 
+    fn check_load_steps(&self, at: &Pointer, faults: &mut Faults) {
+        let are_asked = self.fem_nonlinear.is_some_and(|own| own.load_steps.is_some());
+        if are_asked && self.contact.presses() {
+            let detail =
+                "load steps are not made where tissue presses: leave out `contact` or `load_steps`";
+            faults.add(at, ErrorCode::OneOf, detail);
+        }
+    }
+
     fn check_refined(&self, at: &Pointer, faults: &mut Faults) {
         let is_linear = match self.method {
             MethodName::Auto => true,
@@ -307,6 +322,7 @@ impl PredictDocument {
 
     fn own_settings(&self) -> OwnSettings {
         OwnSettings {
+            fem_nonlinear: self.fem_nonlinear,
             msm: self.msm,
             mtm: self.mtm,
             mtm_ti: self.mtm_ti,

@@ -1,7 +1,11 @@
 //! Newton's method at finite strain: how tissue came to rest.
 
+use std::collections::BTreeMap;
+
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
+
+use crate::schema::Triple;
 
 /// How tissue at finite strain came to rest.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
@@ -40,4 +44,18 @@ pub struct RestOnTheWayDocument {
     pub least_det_f: f64,
     /// Steps since the rest before.
     pub steps: u64,
+}
+
+/// Tissue at rest at the end of a load step.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct LoadStepDocument {
+    #[serde(flatten)]
+    pub rest: RestOnTheWayDocument,
+    pub relative_residual: f64,
+    /// As that of `provenance.solver.newton`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub is_stable: Option<bool>,
+    /// As that of the result.
+    pub reaction_millinewton: BTreeMap<String, Triple>,
 }

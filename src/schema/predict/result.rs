@@ -8,7 +8,7 @@ use utoipa::ToSchema;
 use super::adequacy::AdequacyDocument;
 use super::correction::CorrectedDocument;
 use super::keep::KeptMeshDocument;
-use super::newton::NewtonDocument;
+use super::newton::{LoadStepDocument, NewtonDocument};
 use super::nonlinearity::NonlinearityDocument;
 use super::output::PictureName;
 use super::planned::{MeasureDocument, SymmetryDocument};
@@ -141,6 +141,9 @@ pub struct ResultDocument {
     /// add up to zero.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub reactions: Vec<ReactionDocument>,
+    /// Rest at the end of each load step, where `fem_nonlinear.load_steps` of the spec asks for them.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub load_steps: Vec<LoadStepDocument>,
     pub provenance: ProvenanceDocument,
     pub warnings: Vec<WarningDocument>,
 }
@@ -181,6 +184,7 @@ impl ResultDocument {
             reaction_millinewton: BTreeMap::new(),
             reaction_mn: BTreeMap::new(),
             reactions: Vec::new(),
+            load_steps: Vec::new(),
             provenance,
             warnings,
         }

@@ -7,6 +7,7 @@ mod cuts;
 mod failures;
 mod image;
 mod learn;
+mod load_steps;
 mod optimise;
 mod own_iterations;
 mod planning;

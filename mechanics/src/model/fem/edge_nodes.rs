@@ -133,9 +133,14 @@ impl<'a> WithEdges<'a> {
 
     /// Leaves the reactions of the holds that are given: what an edge node's hold exerts counts half at each of its ends.
     pub fn gather_reactions(&self, equilibrium: &mut Equilibrium) {
-        let of_edges = equilibrium.reactions.split_off(self.given.len());
-        for (force, ends) in of_edges.into_iter().zip(&self.parents) {
-            ends.iter().for_each(|&end| equilibrium.reactions[end] += force * 0.5);
+        let newton = equilibrium.solver.newton.iter_mut();
+        let steps = newton.flat_map(|newton| &mut newton.load_steps);
+        let on_the_way = steps.map(|step| &mut step.reactions);
+        for reactions in on_the_way.chain([&mut equilibrium.reactions]) {
+            let of_edges = reactions.split_off(self.given.len());
+            for (force, ends) in of_edges.into_iter().zip(&self.parents) {
+                ends.iter().for_each(|&end| reactions[end] += force * 0.5);
+            }
         }
     }
 }

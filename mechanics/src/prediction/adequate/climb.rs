@@ -5,6 +5,7 @@ use super::crossing::overlap;
 use super::duration::{SECOND_ORDER_TAKES, newton_takes};
 use super::rung::{Considered, Errors, Rung};
 use crate::mesh::{Vector, Warning};
+use crate::model::fem::finite_strain::Advance;
 use crate::model::fem::strain::deformations;
 use crate::model::problem::ModelError;
 use crate::prediction::answer::{self, Answer, Linear};
@@ -340,7 +341,7 @@ fn at_finite_strain(
 ) -> Result<(Scene, Answer), Failure> {
     // What is expected to take some steps is not to take hundreds: whoever wants that asks for the method by its name.
     let method = Method::FemNonlinear;
-    let settings = Settings { method, in_parts: false, ..settings.clone() };
+    let settings = Settings { method, advance: Advance::AtOnce, ..settings.clone() };
     let scene =
         Scene::new(case, plan, &settings).map_err(|errors| Failure::Refused(errors.to_string()))?;
     if scene.warnings.iter().any(|warning| warning.code == FIBRES_IGNORED) {

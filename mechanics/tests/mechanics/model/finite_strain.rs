@@ -4,7 +4,7 @@ use mechanics::boundary::Hold;
 use mechanics::material::hyperelastic::{Law, NeoHookean, SaintVenantKirchhoff};
 use mechanics::mesh::sample::block;
 use mechanics::mesh::{CellShape, Vector, VolumeMesh};
-use mechanics::model::fem::finite_strain::{Elements, FibreField, FiniteStrain};
+use mechanics::model::fem::finite_strain::{Advance, Elements, FibreField, FiniteStrain};
 use mechanics::model::problem::{Equilibrium, LoadCase, ModelError};
 use mechanics::prediction::{Case, ElementChoice, Load, Method, Plan, Prediction, Settings};
 use mechanics::progress::{Progress, Unobserved};
@@ -41,6 +41,16 @@ pub(super) fn rest_of(
     holds: &[Hold],
     progress: &dyn Progress,
 ) -> Result<Equilibrium, ModelError> {
+    rest_by((Advance::default(), elements), mesh, law, holds, progress)
+}
+
+pub(super) fn rest_by(
+    (advance, elements): (Advance, Elements),
+    mesh: &VolumeMesh,
+    law: Law,
+    holds: &[Hold],
+    progress: &dyn Progress,
+) -> Result<Equilibrium, ModelError> {
     let one = vec![0; mesh.cells.len()];
     let problem = FiniteStrain {
         mesh,
@@ -55,7 +65,7 @@ pub(super) fn rest_of(
         holds,
         tolerance: Tolerance { relative_residual: 1e-7, memory_mb: 1000.0 },
         with_states: false,
-        in_parts: true,
+        advance,
     };
     let held = holds.iter().map(|hold| *hold.values()).collect();
     let forces = vec![Vector::zeros(); mesh.nodes.len()];

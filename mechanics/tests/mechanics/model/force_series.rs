@@ -8,7 +8,7 @@ use mechanics::mesh::{CellShape, Vector, VolumeMesh};
 use mechanics::model::fem::assembly::Tissue;
 use mechanics::model::fem::cell_stiffness::Dilatation;
 use mechanics::model::fem::displacement::Problem;
-use mechanics::model::fem::finite_strain::{Elements, FibreField, FiniteStrain};
+use mechanics::model::fem::finite_strain::{Advance, Elements, FibreField, FiniteStrain};
 use mechanics::model::fem::force_series::{ForceSeries, Forces, LinearState};
 use mechanics::model::fem::inner_stress::InnerStress;
 use mechanics::model::fem::membrane::Membrane;
@@ -73,7 +73,7 @@ fn newton_forces(mesh: &VolumeMesh, law: &Law, displacement: &[Vector]) -> Vec<V
         holds: &holds,
         tolerance: TOLERANCE,
         with_states: false,
-        in_parts: true,
+        advance: Advance::default(),
     };
     let held = displacement.to_vec();
     let case =

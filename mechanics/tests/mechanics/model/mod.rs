@@ -3,6 +3,7 @@
 mod convergence;
 mod finite_strain;
 mod finite_strain_in_parts;
+mod finite_strain_in_steps;
 mod finite_strain_laws;
 mod force_series;
 mod linear_system;

@@ -7,8 +7,8 @@ use mechanics::mesh::sample::block;
 use mechanics::mesh::{CellShape, Vector};
 use mechanics::plan::{PlannedSegment, RigidMovement};
 use mechanics::prediction::{
-    Case, CaseSegment, ElementChoice, Method, NodeClass, Plan, Prescribed, Scene, Settings,
-    Sliding, SlidingNormal, predict,
+    Advance, Case, CaseSegment, ElementChoice, Method, ModelError, NodeClass, Plan, Prescribed,
+    Scene, Settings, Sliding, SlidingNormal, predict,
 };
 use mechanics::progress::Unobserved;
 
@@ -155,6 +155,48 @@ fn neighbours_that_part_by_more_than_their_distance_are_called_torn() {
     // The jaw at x_min and the fixed bottom meet along edges of 5 mm.
     assert!(warned(5.01));
     assert!(!warned(4.99));
+}
+
+#[test]
+fn edges_that_bones_turn_round_are_told_with_their_place_and_with_what_passes_through_what() {
+    let mut case = jaw_and_skull(CellShape::Hex8);
+    case.fixed = vec![set("z_min")];
+    let torn = |x: f64| {
+        let shift = RigidMovement::about_pivot(Vector::zeros(), Vector::zeros(), Vector::x() * x);
+        let scene = Scene::new(&case, &moved("jaw", shift), &Settings::default()).unwrap();
+        scene.warnings.into_iter().find(|warning| warning.code == "tearing").unwrap()
+    };
+    // Towards what is fixed beside it the jaw passes through it, away from it it does not.
+    let away = torn(-5.5);
+    assert!(away.numbers.iter().all(|(name, _)| *name != "turned_edges"), "{away:?}");
+    let through = torn(5.5);
+    let number = |wanted: &str| through.numbers.iter().find(|(name, _)| *name == wanted).unwrap().1;
+    assert_eq!([number("turned_edges"), number("turned_cells")], [5.0, 4.0], "{through:?}");
+    assert_eq!([number("x_mm"), number("z_mm")], [2.5, 0.0], "{through:?}");
+    assert!(through.detail.contains("joined:jaw and fixed"), "{}", through.detail);
+}
+
+#[test]
+fn tissue_that_finds_no_rest_between_bones_that_pass_through_each_other_is_told_where() {
+    let law = Law::SaintVenantKirchhoff(SaintVenantKirchhoff { lambda: 59.0, mu: 5.1 });
+    let mut case = jaw_and_skull(CellShape::Hex8);
+    case.fixed = vec![set("z_min")];
+    case.materials.insert("*".to_owned(), LinearElastic::of_law(law, 1.0).unwrap());
+    let settings =
+        Settings { method: Method::FemNonlinear, advance: Advance::AtOnce, ..Settings::default() };
+    let ended = |x: f64| {
+        let shift = RigidMovement::about_pivot(Vector::zeros(), Vector::zeros(), Vector::x() * x);
+        predict(&Scene::new(&case, &moved("jaw", shift), &settings).unwrap(), &Unobserved).err()
+    };
+    let Some(error @ ModelError::BonesPass { edges: 5, cells: 4, .. }) = ended(14.0) else {
+        panic!("it does not say what passes")
+    };
+    let ModelError::BonesPass { cause, .. } = &error else { unreachable!() };
+    assert!(
+        matches!(**cause, ModelError::Standstill { .. }) && error.code() == cause.code(),
+        "{error}"
+    );
+    assert!(error.to_string().contains("joined:jaw and fixed"), "{error}");
 }
 
 #[test]

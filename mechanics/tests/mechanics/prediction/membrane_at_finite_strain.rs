@@ -5,7 +5,7 @@ use mechanics::material::hyperelastic::{Law, NeoHookean};
 use mechanics::material::{PlaneStress, Sheet};
 use mechanics::mesh::sample::block;
 use mechanics::mesh::{CellShape, Vector, VolumeMesh};
-use mechanics::model::fem::finite_strain::{Elements, FibreField, FiniteStrain};
+use mechanics::model::fem::finite_strain::{Advance, Elements, FibreField, FiniteStrain};
 use mechanics::model::fem::membrane::Membrane;
 use mechanics::model::problem::LoadCase;
 use mechanics::prediction::{ElementChoice, Method, Scene, Settings, SkinMembrane, predict};
@@ -45,7 +45,7 @@ fn forces(mesh: &VolumeMesh, sheet: PlaneStress, moved: impl Fn(&Vector) -> Vect
             holds: &holds,
             tolerance: Tolerance { relative_residual: 1e-10, memory_mb: 1000.0 },
             with_states: false,
-            in_parts: true,
+            advance: Advance::default(),
         };
         let held = holds.iter().map(|hold| *hold.values()).collect();
         let forces = vec![Vector::zeros(); mesh.nodes.len()];

@@ -10,7 +10,7 @@
 //!
 //! All of it acts from the first step on, while bones move. Where Newton's method stands still on that way, bones are moved
 //! first, and what grows and pulls comes by and by, in shares that are halved where one is too much again and doubled where it
-//! is not.
+//! is not. Of a load step that is what it adds to the one before.
 
 use std::sync::Arc;
 
@@ -38,8 +38,25 @@ impl<'a> FiniteStrain<'a> {
         FiniteStrain { inner: Arc::new(self.inner.share(share)), ..self.clone() }
     }
 
-    /// Brings bones to where they go, and then growth and muscles to what they are.
-    pub(super) fn rest_by_and_by(
+    /// Brings the tissue to rest at a share of what moves, acts, grows and pulls: with all of that at once, or, where what grows and
+    /// pulls is too much for one path, by and by.
+    pub(super) fn rest_at_share(
+        &self,
+        question: Question<'a>,
+        start: Start<'a>,
+    ) -> Result<(Tissue<'a>, Rest<'a>), ModelError> {
+        let there = self.with_share(question.share);
+        if self.inner.is_zero() {
+            return there.rest_at_once_or_in_parts(question, start);
+        }
+        match there.rest_from(question, start.clone()) {
+            Err(error) if is_too_much(&error) => self.rest_by_and_by(question, start),
+            ended => ended,
+        }
+    }
+
+    /// Brings bones to where they go, and then growth and muscles to what they are there.
+    fn rest_by_and_by(
         &self,
         question: Question<'a>,
         start: Start<'a>,
@@ -48,15 +65,13 @@ impl<'a> FiniteStrain<'a> {
         let relative_residual = asked.relative_residual.max(ON_THE_WAY);
         let on_the_way =
             Question { tolerance: Tolerance { relative_residual, ..asked }, ..question };
-        let (_, rest) = self.with_share(0.0).rest_at_once_or_in_parts(on_the_way, start)?;
+        let (from, to) = (start.made, question.share);
+        let (_, rest) = self.with_share(from).rest_at_once_or_in_parts(on_the_way, start)?;
         let (mut reached, mut parts) = (rest.into_start(), Parts::beginning_with(0.5));
         loop {
-            let share = parts.target();
-            let found = match share < 1.0 {
-                true => self.with_share(share).rest_from(on_the_way, reached.clone()),
-                false => self.rest_from(question, reached.clone()),
-            };
-            match found {
+            let share = parts.target_between(from, to);
+            let next = if share < to { on_the_way } else { question };
+            match self.with_share(share).rest_from(next, reached.clone()) {
                 Ok((tissue, rest)) => {
                     if parts.rested() {
                         return Ok((tissue, rest));

@@ -15,6 +15,7 @@ mod enriched_brick;
 mod enriched_simplex;
 mod fibres;
 mod inner;
+mod load_steps;
 mod mesh_error;
 mod newton;
 mod newton_state;
@@ -53,7 +54,7 @@ pub use fibres::FibreField;
 pub use mesh_error::{FinerProblem, MeshError, NoMeshError};
 use newton::Newton;
 use newton_state::{Ending, NewtonExits, Question, Rest, Start};
-pub use problem::FiniteStrain;
+pub use problem::{Advance, FiniteStrain};
 use states::cell_states;
 use tissue::Tissue;
 use touching::Touching;
@@ -187,10 +188,6 @@ impl<'a> FiniteStrain<'a> {
         let numbering = question.constrained.numbering;
         let Rest { positions, pressures, forces, report, directions, .. } = rest;
         let places = numbering.layout.place.iter().zip(self.nodes);
-        let reaction = |hold: &Hold| {
-            let internal = forces[numbering.row(hold.node)];
-            hold.part_along(&(internal - acting[hold.node as usize]))
-        };
         let displacement: Vec<Vector> =
             places.map(|(&row, rest)| positions[row as usize] - rest).collect();
         let doubt = report.newton.as_ref().and_then(|way| another_rest(self, &displacement, way));
@@ -203,7 +200,7 @@ impl<'a> FiniteStrain<'a> {
         };
         let equilibrium = Equilibrium {
             displacement,
-            reactions: self.holds.iter().map(reaction).collect(),
+            reactions: reactions(question.constrained, &forces, acting),
             warnings: doubt.into_iter().chain(tissue.bulk_warning()).collect(),
             solver: report,
             states,
@@ -231,7 +228,7 @@ impl<'a> FiniteStrain<'a> {
         }
     }
 
-    /// Brings the tissue to rest: with all that grows and pulls at once, or, where that is too much for one path, by and by.
+    /// Brings the tissue to rest, on the way that is asked for.
     fn rest(
         &self,
         question: Question<'a>,
@@ -246,12 +243,9 @@ impl<'a> FiniteStrain<'a> {
             tally: Tally::default(),
             touching,
         };
-        if self.inner.is_zero() {
-            return self.rest_at_once_or_in_parts(question, start);
-        }
-        match self.rest_from(question, start.clone()) {
-            Err(error) if inner::is_too_much(&error) => self.rest_by_and_by(question, start),
-            ended => ended,
+        match self.advance {
+            Advance::AtOnce | Advance::AtOnceOrInParts => self.rest_at_share(question, start),
+            Advance::InSteps(steps) => self.rest_in_steps(steps.get(), question, start),
         }
     }
 
@@ -348,6 +342,15 @@ impl<'a> FiniteStrain<'a> {
         }
         Ok(())
     }
+}
+
+/// What each hold exerts on tissue with internal forces by row, under forces by node, in mN.
+fn reactions(constrained: &Constrained, internal: &[Vector], acting: &[Vector]) -> Vec<Vector> {
+    let reaction = |hold: &Hold| {
+        let internal = internal[constrained.numbering.row(hold.node)];
+        hold.part_along(&(internal - acting[hold.node as usize]))
+    };
+    constrained.holds.iter().map(reaction).collect()
 }
 
 /// Whether a gap closes along a displacement, in so many steps.

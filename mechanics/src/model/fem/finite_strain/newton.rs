@@ -353,6 +353,7 @@ impl<'a, 'b> Newton<'a, 'b> {
                 bulk_in_cells: self.tissue.bulk_in_cells,
                 cells_with_bulk: self.tissue.cells_with_bulk,
                 parts: Vec::new(),
+                load_steps: Vec::new(),
             }),
         })
     }

@@ -7,7 +7,7 @@
 use super::elements::CellBulkModulus;
 use super::inner::is_too_much;
 use super::newton_state::{Ending, Question, Rest, Start};
-use super::problem::FiniteStrain;
+use super::problem::{Advance, FiniteStrain};
 use super::tissue::Tissue;
 use crate::model::parts::Parts;
 use crate::model::problem::ModelError;
@@ -34,7 +34,7 @@ impl<'a> FiniteStrain<'a> {
         start: Start<'a>,
     ) -> Result<(Tissue<'a>, Rest<'a>), ModelError> {
         match self.rest_from(question, start.clone()) {
-            Err(error) if self.in_parts && is_too_much(&error) => {
+            Err(error) if self.advance != Advance::AtOnce && is_too_much(&error) => {
                 let (tissue, mut rest, parts) = self.rest_in_parts(question, start)?;
                 if let Some(newton) = &mut rest.report.newton {
                     newton.parts = parts;
@@ -50,12 +50,18 @@ impl<'a> FiniteStrain<'a> {
         question: Question<'a>,
         start: Start<'a>,
     ) -> Result<(Tissue<'a>, Rest<'a>, Vec<RestOnTheWay>), ModelError> {
+        let (from, to) = (start.made, question.share);
         let (mut reached, mut parts) = (start, Parts::beginning_with(FIRST));
         let (mut rests, mut spent) = (Vec::new(), 0);
         loop {
             let begun = reached.history.len();
-            let question = in_part(question, parts.target(), begun);
-            match self.rest_of_part(question, reached.clone()) {
+            let share = parts.target_between(from, to);
+            let part = in_part(question, share, begun);
+            let found = match share < to {
+                true => self.rest_of_part(part, reached.clone()),
+                false => self.rest_from(part, reached.clone()),
+            };
+            match found {
                 Ok((tissue, rest)) => {
                     rests.extend(rest.on_the_way(begun));
                     if parts.rested() {
@@ -75,15 +81,12 @@ impl<'a> FiniteStrain<'a> {
         }
     }
 
-    /// Rest at a share of the movement. Before the whole of it all cells keep bulk modulus.
+    /// Rest on the way: all cells keep bulk modulus.
     fn rest_of_part(
         &self,
         question: Question<'a>,
         start: Start<'a>,
     ) -> Result<(Tissue<'a>, Rest<'a>), ModelError> {
-        if question.share >= 1.0 {
-            return self.rest_from(question, start);
-        }
         match self.with_bulk_in_cells(question.kept, question, start, false)? {
             (tissue, Ending::Rest(rest)) => Ok((tissue, *rest)),
             (_, Ending::Jam(_) | Ending::Near(..)) => unreachable!("only rest ends it"),
@@ -94,7 +97,7 @@ impl<'a> FiniteStrain<'a> {
 /// A question of a share of the movement, from rest at another one after so many steps.
 fn in_part(question: Question, share: f64, begun: usize) -> Question {
     let asked = question.tolerance;
-    let relative_residual = match share < 1.0 {
+    let relative_residual = match share < question.share {
         true => asked.relative_residual.max(ON_THE_WAY),
         false => asked.relative_residual,
     };

@@ -1,5 +1,6 @@
 //! A problem of finite strain: tissue, its laws and elements, and what holds it.
 
+use std::num::NonZeroU32;
 use std::sync::Arc;
 
 use super::elements::Elements;
@@ -32,6 +33,18 @@ pub struct FiniteStrain<'a> {
     pub tolerance: Tolerance,
     /// Whether stress and strain of the cells are wanted.
     pub with_states: bool,
-    /// Whether a movement that finds no rest at once is made in parts.
-    pub in_parts: bool,
+    pub advance: Advance,
+}
+
+/// How what moves, acts, grows and pulls is advanced.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Advance {
+    /// At once.
+    AtOnce,
+    /// At once, and in parts where that finds no rest, which may take five times as many steps.
+    #[default]
+    AtOnceOrInParts,
+    /// In so many equal load steps, all of it in proportion. Each is at rest before the next one, and is made as the whole is
+    /// otherwise. Not in contact, where a step may lose what the one before pressed on.
+    InSteps(NonZeroU32),
 }
