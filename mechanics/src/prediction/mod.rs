@@ -12,6 +12,7 @@ mod element_choice;
 mod error_code;
 mod exponential_tissue;
 mod far_segment;
+mod far_skin;
 mod fibres;
 mod growth;
 mod held;
@@ -168,6 +169,7 @@ fn described(scene: &Scene, answer: Answer, progress: &dyn Progress) -> Predicti
     warnings.extend(equilibrium.warnings.iter().cloned());
     warnings.extend(contact.iter().flat_map(|touch| touch.warnings(scene)));
     warnings.extend(inverted_cells(&deformation));
+    warnings.extend(far_skin::outrun(scene, &equilibrium.displacement));
     warnings.extend(small_strain::left(scene, &deformation, &nonlinearity));
     warnings.extend(exponential_tissue::warnings(scene, &equilibrium.displacement));
     warnings.extend(off_wall::left_wall(scene, &equilibrium.displacement));

@@ -6,7 +6,7 @@ use crate::schema::WarningDocument;
 
 /// Codes that stand before all others, in this order: those that speak against what was asked or measured, those of an answer that
 /// is off by more than is told elsewhere, and those of one that is not possible.
-const GRAVE: [&str; 37] = [
+const GRAVE: [&str; 38] = [
     "nothing-moves",
     "nothing-performed",
     "units-suspect",
@@ -34,6 +34,7 @@ const GRAVE: [&str; 37] = [
     "nonlinearity-unknown",
     "another-equilibrium",
     "bulk-in-all-cells",
+    "skin-outruns-plan",
     "skin-overlaps",
     "bone-through-skin",
     "bones-overlap",

@@ -264,7 +264,7 @@ export const en = {
     "rotation-resisted": "the spline resists a rotation of all tissue", "scan-coarse": "the scan is coarse",
     "segment-far-from-bone": "a segment lies far from its bone", "segment-misfit": "a segment does not lie on the bone after the operation",
     "segment-without-nodes": "no tissue is joined to a segment", "several-components": "the mesh has parts that do not touch",
-    "skin-held": "skin is held", "skin-inwards": "the skin is an inner side", "skin-overlaps": "the skin passes through itself",
+    "skin-held": "skin is held", "skin-inwards": "the skin is an inner side", "skin-outruns-plan": "skin moves farther than bone", "skin-overlaps": "the skin passes through itself",
     "skin-scan-apart": "the surface scan lies apart from the skin of the CT", "skin-unnamed": "the skin is not named: every free face is taken",
     "slice-missing": "a slice is missing", "slices-doubled": "slices stand twice", "sliding-beside-segment": "a wall touches bone that moves",
     "sliding-normal-turned": "a wall turns more than small strain keeps", "sliding-off-wall": "sliding nodes leave their wall",

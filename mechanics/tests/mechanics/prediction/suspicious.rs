@@ -1,8 +1,12 @@
 //! Plans and constants that look like a mistake of the unit.
 
+use std::sync::Arc;
+
 use mechanics::material::{LinearElastic, MaterialError, PlaneStress, Sheet};
+use mechanics::mesh::half_head::half_head;
 use mechanics::mesh::{CellShape, Vector, Warning, sample::block};
 use mechanics::model::fem::mass_tensor::{Iterations, MassTensorSettings};
+use mechanics::model::mass_spring::MassSpringSettings;
 use mechanics::model::spline::VolumeSpline;
 use mechanics::plan::RigidMovement;
 use mechanics::prediction::{
@@ -47,6 +51,45 @@ fn a_plan_that_moves_nothing_says_so_and_a_case_without_one_does_not() {
     }
     let moved = plan_of(&case, &[shifted(0.5)]);
     assert_eq!(warnings(&case, &moved, &settings, "nothing-moves"), []);
+}
+
+#[test]
+fn tissue_at_rest_is_not_told_to_be_pressed() {
+    let mesh = block(Vector::new(40.0, 20.0, 10.0), [4, 2, 2], CellShape::Tet4);
+    let case = Case { volume: Arc::new(mesh), ..layer() };
+    let still = plan_of(&case, &[RigidMovement::default()]);
+    let settings = Settings { method: Method::FemNonlinear, ..Settings::default() };
+    let scene = Scene::new(&case, &still, &settings).unwrap();
+    let told = predict(&scene, &Unobserved).unwrap().warnings;
+    let codes: Vec<&str> = told.iter().map(|warning| warning.code).collect();
+    assert!(codes.contains(&"nothing-moves"), "{codes:?}");
+    assert!(!codes.contains(&"bulk-in-all-cells"), "{codes:?}");
+}
+
+#[test]
+fn skin_that_moves_farther_than_bone_is_told_with_its_place() {
+    let segment = |name: &str| CaseSegment { name: name.to_owned(), nodes: set(name) };
+    let case = Case {
+        skin: Some(set("skin")),
+        segments: vec![segment("maxilla"), segment("mandible")],
+        fixed: vec![set("skull"), set("rim")],
+        ..case_of(half_head(2).mesh, material(15.0, 0.45))
+    };
+    let back = RigidMovement::about_pivot(Vector::zeros(), Vector::zeros(), Vector::y() * 4.0);
+    let plan = plan_of(&case, &[RigidMovement::default(), back]);
+    let told = |method| {
+        let settings = Settings { method, ..Settings::default() };
+        let scene = Scene::new(&case, &plan, &settings).unwrap();
+        let mut found = predict(&scene, &Unobserved).unwrap().warnings;
+        found.retain(|warning| warning.code == "skin-outruns-plan");
+        found
+    };
+    assert_eq!(told(Method::FemLinear), []);
+    let springs = told(Method::MassSpring(MassSpringSettings::default()));
+    let [warning] = &springs[..] else { panic!("{springs:?}") };
+    assert_eq!(warning.numbers["moving_mm"], 4.0);
+    assert!(warning.numbers["skin_mm"] > 5.0, "{warning:?}");
+    assert!(warning.detail.contains("nothing that moves it by more than 4.0 mm"), "{warning:?}");
 }
 
 #[test]

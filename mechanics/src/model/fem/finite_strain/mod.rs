@@ -81,6 +81,9 @@ const OUT_OF_BALANCE: f64 = 0.3;
 /// What moves goes by at most this part of its longest edges in a step where things touch.
 const STEP: f64 = 0.5;
 
+/// Cells whose det F is as near to 1 as this are not strained.
+const ROUNDING: f64 = 1e-9;
+
 impl<'a> FiniteStrain<'a> {
     /// Solves a load case for rest.
     pub fn solve(
@@ -191,6 +194,9 @@ impl<'a> FiniteStrain<'a> {
         let displacement: Vec<Vector> =
             places.map(|(&row, rest)| positions[row as usize] - rest).collect();
         let doubt = report.newton.as_ref().and_then(|way| another_rest(self, &displacement, way));
+        let is_strained =
+            report.newton.as_ref().is_some_and(|way| way.least_det_f < 1.0 - ROUNDING);
+        let pressed = tissue.bulk_warning().filter(|_| is_strained);
         let states = match self.with_states {
             true => {
                 let by = directions.pressures.as_ref();
@@ -201,7 +207,7 @@ impl<'a> FiniteStrain<'a> {
         let equilibrium = Equilibrium {
             displacement,
             reactions: reactions(question.constrained, &forces, acting),
-            warnings: doubt.into_iter().chain(tissue.bulk_warning()).collect(),
+            warnings: doubt.into_iter().chain(pressed).collect(),
             solver: report,
             states,
         };
