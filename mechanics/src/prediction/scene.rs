@@ -186,7 +186,7 @@ impl Scene {
             }
             Method::MassTensorNonlinear => {
                 let found = self.mass_tensors().solve(&self.load_case(), progress);
-                found.map_err(|error| no_rest(self, error))
+                found.map_err(|error| self.no_rest(error))
             }
             Method::VolumeSpline(spline) => spline::solve(&self.problem(), spline, progress),
             Method::ThicknessWarp(warp) => {
@@ -210,7 +210,12 @@ impl Scene {
         let found = self.at_finite_strain(|problem, finer| {
             problem.solve_and(&self.load_case(), with_error.then_some(finer), progress)
         });
-        found.map_err(|error| no_rest(self, error))
+        found.map_err(|error| self.no_rest(error))
+    }
+
+    /// Why no rest was found, with what passes through what.
+    fn no_rest(&self, error: ModelError) -> ModelError {
+        no_rest(error, &self.mesh, &self.conditions, |class| self.class_name(class))
     }
 
     /// The problem of finite strain, and what a finer mesh would see of it, for what is done with them.
