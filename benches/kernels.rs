@@ -10,7 +10,7 @@ mod measure;
 use measure::yardstick::{PlainBlocks, triad_gb_per_s};
 use measure::{on_threads, process, seconds, shell};
 use mechanics::boundary::NodeClass;
-use mechanics::model::dofs::{DofMap, partly_held};
+use mechanics::model::dofs::{DofMap, partly_constrained};
 use mechanics::model::fem::displacement::Problem;
 use mechanics::prediction::{ElementChoice, Scene, Settings};
 use mechanics::progress::Unobserved;
@@ -52,8 +52,8 @@ fn system(scene: &Scene) -> System {
     for (node, &row) in numbering.layout.place.iter().enumerate() {
         positions[row as usize] = scene.mesh.nodes[node];
     }
-    let partly_held = partly_held(&scene.conditions.holds, &numbering);
-    System { layout: numbering.layout, matrix, partly_held, positions }
+    let partly_constrained = partly_constrained(&scene.conditions.holds, &numbering);
+    System { layout: numbering.layout, matrix, partly_constrained, positions }
 }
 
 struct Table<'a> {

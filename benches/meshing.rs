@@ -20,7 +20,7 @@ use mechanics::format::{Mesh, ReadLimits, VolumeOutput, read};
 use mechanics::mesh::{Frame, TriangleSurface};
 use mechanics::meshing::{Angles, MeshingSettings, SizeField, TissueMesh, mesh};
 use mechanics::progress::{Phase, Progress};
-use process::{cpu_seconds, forget_peak, peak_mb};
+use process::{cpu_seconds, peak_mb, reset_peak};
 
 const NAMES: [&str; 6] =
     ["uniform-4", "uniform-2.8", "graded-8", "graded-16", "target", "graded-target"];
@@ -127,7 +127,7 @@ fn surface(file: &Path) -> TriangleSurface {
 /// Prints the row of a mesh; returns the processor seconds of its stages.
 fn row(name: &str, domain: &dyn Domain, arguments: &Arguments) -> Vec<f64> {
     let settings = MeshingSettings { part_copies: arguments.parted, ..settings(name) };
-    forget_peak();
+    reset_peak();
     let stages = Stages::default();
     let (begin, wall) = (cpu_seconds(), Instant::now());
     let tissue = mesh(domain, &settings, &stages).expect("a mesh");

@@ -112,7 +112,7 @@ fn run(options: &Options, size: &str) {
     let Some(mesh) = shell::load(size) else { return };
     let (case, plan) = shell::standard_load(&mesh, shell::materials(material));
     let settings = Settings { element: element(&options.element), ..Settings::default() };
-    process::forget_peak();
+    process::reset_peak();
     let base_mb = process::resident_mb();
     let solve = if options.columns { columns } else { standard };
     let mut runs = Vec::new();

@@ -18,7 +18,7 @@ pub struct Config {
     pub places: StorageLocations,
     pub api_key: Option<Secret>,
     /// Whether a request without a key is refused.
-    pub asks_for_keys: bool,
+    pub requires_keys: bool,
     pub admin_key: Option<Secret>,
     pub admin_listen: Option<SocketAddr>,
     pub allowed_origins: Vec<String>,
@@ -62,7 +62,7 @@ impl Config {
     /// Takes each setting from `given` (its value by its name) or from its default, and checks it.
     pub fn new(given: impl Fn(&str) -> Option<String>) -> Result<Config, ConfigError> {
         let config = Config::without_listener(given)?;
-        if !config.listen.ip().is_loopback() && !config.asks_for_keys {
+        if !config.listen.ip().is_loopback() && !config.requires_keys {
             return Err(ConfigError::OpenWithoutKey(config.listen));
         }
         Ok(config)
@@ -76,7 +76,7 @@ impl Config {
         let config = Config {
             listen: read.parsed("bind", "an address with a port, e.g. 127.0.0.1:8080")?,
             places: read.places()?,
-            asks_for_keys: read.asks_for_keys()?,
+            requires_keys: read.requires_keys()?,
             api_key: read.key("api-key")?,
             admin_key: read.key("admin-key")?,
             admin_listen: read.admin_listen()?,
@@ -168,7 +168,7 @@ impl<Text: Fn(&str) -> String> Reader<Text> {
         })
     }
 
-    fn asks_for_keys(&self) -> Result<bool, ConfigError> {
+    fn requires_keys(&self) -> Result<bool, ConfigError> {
         const NAME: &str = "ask-for-keys";
         match (self.text)(NAME).as_str() {
             "true" => Ok(true),

@@ -79,7 +79,7 @@ pub fn render() -> String {
 }
 
 /// Gives up memory of samples that were rendered; to be called now and then.
-pub fn tidy() {
+pub fn release_memory() {
     if let Some(exporter) = EXPORTER.get() {
         exporter.run_upkeep();
     }
@@ -90,7 +90,7 @@ pub fn queue(waiting: i64, running: i64, oldest_ms: i64) {
     gauge!(QUEUE_JOBS, "state" => "waiting").set(waiting as f64);
     gauge!(QUEUE_JOBS, "state" => "running").set(running as f64);
     gauge!(QUEUE_AGE).set(oldest_ms as f64 / 1e3);
-    tidy();
+    release_memory();
 }
 
 /// An attempt ended as successful, failed, stopped, fenced or lost.

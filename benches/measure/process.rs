@@ -11,7 +11,7 @@ pub fn resident_mb() -> f64 {
 }
 
 /// Lets the largest resident size begin again at the present one (proc(5), clear_refs).
-pub fn forget_peak() {
+pub fn reset_peak() {
     // Where that is not allowed the peak includes what came before, which only looks worse.
     let _ = std::fs::write("/proc/self/clear_refs", "5");
 }

@@ -11,7 +11,7 @@ use utoipa::ToSchema;
 use utoipa_axum::routes;
 
 use super::error::ApiResult;
-use super::guard::preferred;
+use super::middleware::preferred;
 use super::resources::Resources;
 use super::{Service, json, with_header};
 use crate::schema::Limits;
@@ -24,9 +24,9 @@ use crate::schema::methods::{MethodList, available_methods};
 pub struct Description(pub Arc<serde_json::Value>);
 
 pub fn router() -> Resources {
-    let router = Resources::new().looks(Scope::Read, routes!(limits));
-    let router = router.looks(Scope::Read, routes!(materials));
-    let router = router.looks(Scope::Read, routes!(methods)).open(routes!(description));
+    let router = Resources::new().reads(Scope::Read, routes!(limits));
+    let router = router.reads(Scope::Read, routes!(materials));
+    let router = router.reads(Scope::Read, routes!(methods)).open(routes!(description));
     router.open(routes!(versions)).json_only().open(routes!(entrance))
 }
 

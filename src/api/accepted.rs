@@ -125,9 +125,7 @@ pub fn refusal(error: JobError) -> ApiError {
         JobError::Source(source @ SourceError::Unreadable { may_pass: false, .. }) => {
             ApiError::internal(source)
         }
-        JobError::Source(SourceError::Unreadable { may_pass: true, .. }) => {
-            ApiError::out_of_reach()
-        }
+        JobError::Source(SourceError::Unreadable { may_pass: true, .. }) => ApiError::unavailable(),
         other => {
             let document = other.to_document();
             let mut problem = Problem::new(other.kind(), document.detail);

@@ -26,7 +26,7 @@ pub enum Access {
 
 impl Access {
     /// For what changes nothing.
-    pub const fn looks(scope: Scope) -> Access {
+    pub const fn reads(scope: Scope) -> Access {
         Access::Key { scope, audit: Audit::Unnoted }
     }
 
@@ -68,7 +68,7 @@ impl Declared {
     /// closed to all.
     pub fn find(&self, route: Option<&str>, method: &Method) -> ApiResult<RouteAccess> {
         let Some(route) = route else {
-            return Ok(RouteAccess { access: unanswered(method), is_answered: false });
+            return Ok(RouteAccess { access: for_unknown_route(method), is_answered: false });
         };
         if let Some(access) = self.access(route, method) {
             return Ok(RouteAccess { access, is_answered: true });
@@ -77,15 +77,15 @@ impl Declared {
             ApiError::internal(format!("nobody declared what {method} {route} takes"))
         })?;
         let is_open = methods.values().all(|access| *access == Access::Open);
-        let access = if is_open { Access::Open } else { unanswered(method) };
+        let access = if is_open { Access::Open } else { for_unknown_route(method) };
         Ok(RouteAccess { access, is_answered: false })
     }
 }
 
 /// What a request takes that no handler answers: nothing comes of it, and who tries to change something is noted.
-fn unanswered(method: &Method) -> Access {
+fn for_unknown_route(method: &Method) -> Access {
     match *method {
-        Method::GET | Method::HEAD | Method::OPTIONS => Access::looks(Scope::Read),
+        Method::GET | Method::HEAD | Method::OPTIONS => Access::reads(Scope::Read),
         _ => Access::changes(Scope::Write),
     }
 }

@@ -9,7 +9,7 @@ use axum::routing::get;
 use tower::ServiceExt as _;
 
 use super::*;
-use crate::api::guard::{self, GuardState};
+use crate::api::middleware::{self, MiddlewareState};
 use crate::api::{Service, admin, document};
 use crate::config::Config;
 use crate::library::meshes::Library;
@@ -116,7 +116,7 @@ fn assert_same(there: &BTreeSet<String>, table: &BTreeSet<String>) {
 #[test]
 fn every_route_takes_the_scope_and_is_noted_as_the_table_says() {
     assert_same(&told(&crate::api::routes::resources().declared), &lines(SERVICE));
-    assert_same(&told(&admin::desks().declared), &lines(ADMINISTRATION));
+    assert_same(&told(&admin::admin_routes().declared), &lines(ADMINISTRATION));
 }
 
 #[test]
@@ -137,17 +137,17 @@ fn every_operation_of_the_description_is_in_the_table() {
 #[test]
 fn a_request_that_no_handler_answers_looks_or_changes_by_its_method() {
     let mut declared = Declared::default();
-    declared.add("/v1/keys", Method::GET, Access::looks(Scope::Admin));
+    declared.add("/v1/keys", Method::GET, Access::reads(Scope::Admin));
     declared.add("/healthz", Method::GET, Access::Open);
     let find = |route, method| {
         let found = declared.find(route, &method).unwrap();
         (found.access, found.is_answered)
     };
-    assert_eq!(find(Some("/v1/keys"), Method::HEAD), (Access::looks(Scope::Admin), true));
+    assert_eq!(find(Some("/v1/keys"), Method::HEAD), (Access::reads(Scope::Admin), true));
     assert_eq!(find(Some("/v1/keys"), Method::PUT), (Access::changes(Scope::Write), false));
-    assert_eq!(find(Some("/v1/keys"), Method::OPTIONS), (Access::looks(Scope::Read), false));
+    assert_eq!(find(Some("/v1/keys"), Method::OPTIONS), (Access::reads(Scope::Read), false));
     assert_eq!(find(Some("/healthz"), Method::POST), (Access::Open, false));
-    assert_eq!(find(None, Method::GET), (Access::looks(Scope::Read), false));
+    assert_eq!(find(None, Method::GET), (Access::reads(Scope::Read), false));
     assert_eq!(find(None, Method::DELETE), (Access::changes(Scope::Write), false));
 }
 
@@ -157,11 +157,11 @@ async fn answer(declared: Declared, method: Method, path: &str) -> (StatusCode, 
     let store = Store::open(folder.path()).await.unwrap();
     let config = Config::new(|_| None).unwrap();
     let service = Service::new(config, store.clone(), Library::new(store, 0));
-    let door = GuardState { service: service.clone(), declared: declared.into() };
+    let door = MiddlewareState { service: service.clone(), declared: declared.into() };
     let router = Router::new()
         .route("/v1/new", get(async |_: Service| "looked").put(async |_: Service| "changed"))
         .route("/v1/newer", get(async || "looked"))
-        .layer(from_fn_with_state(door, guard::surround))
+        .layer(from_fn_with_state(door, middleware::surround))
         .with_state(service);
     let request = Request::builder().method(method).uri(path).header("host", "localhost");
     let request = request.body(Body::empty()).unwrap();
@@ -174,7 +174,7 @@ async fn answer(declared: Declared, method: Method, path: &str) -> (StatusCode, 
 #[tokio::test]
 async fn a_route_of_which_nothing_was_declared_is_closed() {
     let mut declared = Declared::default();
-    declared.add("/v1/new", Method::GET, Access::looks(Scope::Read));
+    declared.add("/v1/new", Method::GET, Access::reads(Scope::Read));
     let (status, body) = answer(declared.clone(), Method::GET, "/v1/new").await;
     assert_eq!((status, body.as_str()), (StatusCode::OK, "looked"));
     for (method, path) in [(Method::PUT, "/v1/new"), (Method::GET, "/v1/newer")] {

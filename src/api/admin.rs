@@ -23,11 +23,11 @@ use super::audited::{audited_admin_action, carry_out, erased};
 use super::body::BodyState;
 use super::caller::{bearer, unauthorized};
 use super::error::{ApiError, ApiResult};
-use super::guard::named;
 use super::hosts::{Hosts, check_named_once};
+use super::middleware::named;
 use super::paging::PageParameters;
 use super::parameters::Parameters;
-use super::{body, connections, json, keys, time};
+use super::{body, json, keys, server_loop, time};
 use crate::config::{Config, Secret};
 use crate::metrics;
 use crate::schema::Limits;
@@ -66,35 +66,35 @@ pub async fn listen(
     let hosts =
         (key.is_none() && is_loopback).then(|| Arc::new(Hosts::new(&config.allowed_hosts, &[])));
     let patience = config.body_idle;
-    let office = AdminListener { store, key, is_loopback, hosts, patience };
+    let admin = AdminListener { store, key, is_loopback, hosts, patience };
     // It answers for as long as the process lives.
     let never = std::future::pending();
-    tokio::spawn(connections::serve(listener, router(office), patience, never));
+    tokio::spawn(server_loop::serve(listener, router(admin), patience, never));
     tracing::info!(%address, "the admin listener answers");
     Ok(address)
 }
 
-fn router(office: AdminListener) -> Router {
-    let AdminRoutes { router, declared } = desks();
-    let door = AdminGuardState { office: office.clone(), declared: declared.into() };
-    router.route_layer(from_fn_with_state(door, guard)).with_state(office)
+fn router(admin: AdminListener) -> Router {
+    let AdminRoutes { router, declared } = admin_routes();
+    let door = AdminGuardState { admin: admin.clone(), declared: declared.into() };
+    router.route_layer(from_fn_with_state(door, middleware)).with_state(admin)
 }
 
 /// Everything that is answered here.
-pub(super) fn desks() -> AdminRoutes {
+pub(super) fn admin_routes() -> AdminRoutes {
     AdminRoutes::default()
         .open("/metrics", counted)
         .open("/healthz", async || "ok\n")
         .open("/errors", async || super::error_page::page())
-        .looks("/tenants", tenants)
+        .reads("/tenants", tenants)
         .changes(Method::PUT, "/tenants/{tenant}", set_tenant)
-        .looks("/tenants/{tenant}/keys", list_keys)
+        .reads("/tenants/{tenant}/keys", list_keys)
         .changes(Method::POST, "/tenants/{tenant}/keys", create_key)
         .changes(Method::DELETE, "/tenants/{tenant}/keys/{id}", revoke_key)
         .changes(Method::POST, "/tenants/{tenant}/keys/{id}/rotation", rotate_key)
-        .looks("/audit", list_audit)
-        .looks("/audit/check", check_audit)
-        .looks("/lost-jobs", lost_jobs)
+        .reads("/audit", list_audit)
+        .reads("/audit/check", check_audit)
+        .reads("/lost-jobs", lost_jobs)
         .changes(Method::POST, "/lost-jobs/{id}/requeue", requeue)
 }
 
@@ -112,8 +112,8 @@ impl AdminRoutes {
     }
 
     /// Answers GET and changes nothing.
-    fn looks<T: 'static>(self, path: &str, handler: impl Handler<T, AdminListener>) -> AdminRoutes {
-        self.with(Method::GET, path, Access::looks(Scope::Admin), handler)
+    fn reads<T: 'static>(self, path: &str, handler: impl Handler<T, AdminListener>) -> AdminRoutes {
+        self.with(Method::GET, path, Access::reads(Scope::Admin), handler)
     }
 
     fn changes<T: 'static>(
@@ -144,14 +144,14 @@ impl AdminRoutes {
 /// What the layer around the routes needs to know.
 #[derive(Clone)]
 struct AdminGuardState {
-    office: AdminListener,
+    admin: AdminListener,
     declared: Arc<Declared>,
 }
 
 /// Lets in who has the key, or who is on this machine where there is none; notes what was changed.
-async fn guard(State(door): State<AdminGuardState>, request: Request, next: Next) -> Response {
+async fn middleware(State(door): State<AdminGuardState>, request: Request, next: Next) -> Response {
     let id = uuid::Uuid::now_v7().to_string();
-    if let Err(error) = door.office.is_meant(&request) {
+    if let Err(error) = door.admin.is_meant(&request) {
         return named(error.into_response(), &id);
     }
     let route = request.extensions().get::<MatchedPath>().map(MatchedPath::as_str);
@@ -160,16 +160,16 @@ async fn guard(State(door): State<AdminGuardState>, request: Request, next: Next
         Ok(RouteAccess { access: Access::Key { audit, .. }, .. }) => audit,
         Err(error) => return named(error.into_response(), &id),
     };
-    let office = door.office;
-    if !office.lets_in(&request) {
+    let admin = door.admin;
+    if !admin.is_authorised(&request) {
         let error =
             unauthorized("administration needs the admin-key, as `Authorization: Bearer KEY`");
         return named(error.into_response(), &id);
     }
-    let request = request.map(|body| body::moving(body, office.patience));
+    let request = request.map(|body| body::moving(body, admin.patience));
     let audited = (audit == Audit::Noted).then(|| audited_admin_action(&request, &id)).flatten();
     let response = match audited {
-        Some(audited) => noted(&office.store, audited, request, next).await,
+        Some(audited) => noted(&admin.store, audited, request, next).await,
         None => next.run(request).await,
     };
     named(response, &id)
@@ -199,10 +199,10 @@ fn document<T: DeserializeOwned>(headers: &HeaderMap, body: &Bytes) -> ApiResult
 }
 
 /// What was counted, with the queue as it is at this moment.
-async fn counted(State(office): State<AdminListener>) -> Response {
-    match office.store.queue().await {
+async fn counted(State(admin): State<AdminListener>) -> Response {
+    match admin.store.queue().await {
         Ok(queue) => metrics::queue(queue.waiting, queue.running, queue.oldest_ms),
-        Err(error) if !office.store.is_closing() => {
+        Err(error) if !admin.store.is_closing() => {
             tracing::warn!(%error, "the queue was not counted");
         }
         Err(_) => {}
@@ -220,7 +220,7 @@ impl AdminListener {
         self.hosts.as_ref().map_or(Ok(()), |hosts| hosts.check(request))
     }
 
-    fn lets_in(&self, request: &Request) -> bool {
+    fn is_authorised(&self, request: &Request) -> bool {
         match &self.key {
             Some(key) => bearer(request.headers()).is_some_and(|given| key.matches(given)),
             None => self.is_loopback,
@@ -247,11 +247,11 @@ struct TenantDocument {
 }
 
 async fn tenants(
-    State(office): State<AdminListener>,
+    State(admin): State<AdminListener>,
     Parameters(parameters): Parameters<PageParameters>,
 ) -> ApiResult {
     let page = parameters.page_by(is_tenant)?;
-    let mut rows = office.store.tenants(page.after.as_deref(), page.rows()).await?;
+    let mut rows = admin.store.tenants(page.after.as_deref(), page.rows()).await?;
     let next = page.cut(&mut rows, |row| &row.name);
     let view =
         |row: TenantRow| TenantDocument { name: row.name, retention_days: row.retention_days };
@@ -260,7 +260,7 @@ async fn tenants(
 }
 
 async fn set_tenant(
-    State(office): State<AdminListener>,
+    State(admin): State<AdminListener>,
     Path(tenant): Path<String>,
     headers: HeaderMap,
     body: Bytes,
@@ -270,44 +270,44 @@ async fn set_tenant(
         let detail = "retention_days has to be 1 to 36500";
         return Err(ApiError::invalid_parameter("retention_days", detail));
     }
-    office.of(&tenant)?.retain(wanted.retention_days).await?;
+    admin.of(&tenant)?.retain(wanted.retention_days).await?;
     Ok(json(StatusCode::OK, &TenantDocument { name: tenant, ..wanted }))
 }
 
 async fn list_keys(
-    State(office): State<AdminListener>,
+    State(admin): State<AdminListener>,
     Path(tenant): Path<String>,
     Parameters(parameters): Parameters<PageParameters>,
 ) -> ApiResult {
-    keys::listed(&office.of(&tenant)?, &parameters).await
+    keys::listed(&admin.of(&tenant)?, &parameters).await
 }
 
 async fn create_key(
-    State(office): State<AdminListener>,
+    State(admin): State<AdminListener>,
     Path(tenant): Path<String>,
     headers: HeaderMap,
     body: Bytes,
 ) -> ApiResult {
     let wanted: KeyDocument = document(&headers, &body)?;
     wanted.check()?;
-    Ok(keys::shown(office.of(&tenant)?.make_key(&wanted).await?))
+    Ok(keys::shown(admin.of(&tenant)?.make_key(&wanted).await?))
 }
 
 async fn revoke_key(
-    State(office): State<AdminListener>,
+    State(admin): State<AdminListener>,
     Path((tenant, id)): Path<(String, String)>,
 ) -> ApiResult {
-    keys::revoked(&office.of(&tenant)?, key_id(&id)?).await
+    keys::revoked(&admin.of(&tenant)?, key_id(&id)?).await
 }
 
 async fn rotate_key(
-    State(office): State<AdminListener>,
+    State(admin): State<AdminListener>,
     Path((tenant, id)): Path<(String, String)>,
     headers: HeaderMap,
     body: Bytes,
 ) -> ApiResult {
     let rotation: RotationDocument = document(&headers, &body)?;
-    keys::rotated(&office.of(&tenant)?, key_id(&id)?, rotation).await
+    keys::rotated(&admin.of(&tenant)?, key_id(&id)?, rotation).await
 }
 
 fn key_id(text: &str) -> ApiResult<&str> {
@@ -315,15 +315,15 @@ fn key_id(text: &str) -> ApiResult<&str> {
 }
 
 async fn list_audit(
-    State(office): State<AdminListener>,
+    State(admin): State<AdminListener>,
     Parameters(parameters): Parameters<AuditParameters>,
 ) -> ApiResult {
-    audit::page(&office.store, "", &parameters).await
+    audit::page(&admin.store, "", &parameters).await
 }
 
 /// Whether the log is whole, and the hash of its last row.
-async fn check_audit(State(office): State<AdminListener>) -> ApiResult {
-    let found = match office.store.check_audit().await? {
+async fn check_audit(State(admin): State<AdminListener>) -> ApiResult {
+    let found = match admin.store.check_audit().await? {
         Chain::Whole { rows, hash } => {
             serde_json::json!({"status": "whole", "rows": rows, "hash": hash})
         }
@@ -344,11 +344,11 @@ struct LostJob {
 
 /// Jobs that failed through no fault of their own, oldest first.
 async fn lost_jobs(
-    State(office): State<AdminListener>,
+    State(admin): State<AdminListener>,
     Parameters(parameters): Parameters<PageParameters>,
 ) -> ApiResult {
     let page = parameters.page()?;
-    let mut rows = office.store.lost_jobs(page.after.as_deref(), page.rows()).await?;
+    let mut rows = admin.store.lost_jobs(page.after.as_deref(), page.rows()).await?;
     let next = page.cut(&mut rows, |row| &row.id);
     let view = |row: LostRow| -> ApiResult<LostJob> {
         Ok(LostJob {
@@ -364,8 +364,8 @@ async fn lost_jobs(
     Ok(page.linked(json(StatusCode::OK, &items), "/lost-jobs", next))
 }
 
-async fn requeue(State(office): State<AdminListener>, Path(id): Path<String>) -> ApiResult {
-    match office.store.requeue(&id).await? {
+async fn requeue(State(admin): State<AdminListener>, Path(id): Path<String>) -> ApiResult {
+    match admin.store.requeue(&id).await? {
         true => Ok(StatusCode::NO_CONTENT.into_response()),
         false => Err(ApiError::not_found("job that was lost")),
     }

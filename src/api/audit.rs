@@ -14,7 +14,7 @@ use crate::schema::key::Scope;
 use crate::store::{AuditRow, Store};
 
 pub fn router() -> Resources {
-    Resources::new().looks(Scope::Admin, routes!(list)).json_only()
+    Resources::new().reads(Scope::Admin, routes!(list)).json_only()
 }
 
 /// What somebody did.

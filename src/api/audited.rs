@@ -63,9 +63,9 @@ pub async fn carry_out(
 
 /// The same for what erases something, which needs room on a disk that is full and leaves some.
 pub async fn erased(store: Store, run: impl Future<Output = Response>) -> Response {
-    store.make_room().await;
+    store.release_reserve().await;
     let response = run.await;
-    store.keep_room().await;
+    store.refill_reserve().await;
     response
 }
 

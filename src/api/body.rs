@@ -156,7 +156,7 @@ fn begun(service: &Service, headers: &HeaderMap, most: usize) -> ApiResult<Arc<B
         return Err(too_large(most));
     }
     let held = Arc::new(service.hold());
-    held.could_hold(announced)?;
+    held.check_available(announced)?;
     if announced > IN_MEMORY as u64 {
         service.ground().require(announced)?;
     }

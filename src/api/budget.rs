@@ -98,11 +98,11 @@ impl Budget {
         Err(Problem::new(ErrorCode::Busy, detail).with("limit", most).into())
     }
 
-    fn give_back(&self, owner: &Owner, bytes: u64) {
+    fn release(&self, owner: &Owner, bytes: u64) {
         let mut used = self.lock();
         used.total = used.total.saturating_sub(bytes);
-        lessen(&mut used.tenants, &owner.tenant, bytes);
-        lessen(&mut used.clients, &owner.client, bytes);
+        subtract(&mut used.tenants, &owner.tenant, bytes);
+        subtract(&mut used.clients, &owner.client, bytes);
         http::body_bytes(used.total);
     }
 
@@ -111,7 +111,7 @@ impl Budget {
     }
 }
 
-fn lessen<K: Hash + Eq + Clone>(used: &mut HashMap<K, u64>, whose: &K, bytes: u64) {
+fn subtract<K: Hash + Eq + Clone>(used: &mut HashMap<K, u64>, whose: &K, bytes: u64) {
     let left = used.remove(whose).unwrap_or(0).saturating_sub(bytes);
     if left > 0 {
         used.insert(whose.clone(), left);
@@ -130,7 +130,7 @@ impl ByteReservation {
     }
 
     /// Whether it could hold so many at this moment, so that nobody sends what is certain to be refused.
-    pub fn could_hold(&self, bytes: u64) -> ApiResult<()> {
+    pub fn check_available(&self, bytes: u64) -> ApiResult<()> {
         let held = *self.lock();
         let used = self.budget.lock();
         self.budget.check(&used, &self.owner, held, bytes.saturating_sub(held))
@@ -145,7 +145,7 @@ impl Drop for ByteReservation {
     fn drop(&mut self) {
         let bytes = *self.bytes.get_mut().unwrap_or_else(PoisonError::into_inner);
         if bytes > 0 {
-            self.budget.give_back(&self.owner, bytes);
+            self.budget.release(&self.owner, bytes);
         }
     }
 }
@@ -163,7 +163,7 @@ mod tests {
         let budget = Budget::new(ByteLimits { of_process: 100, of_client: 60 });
         let (one, two) = (budget.hold(owner("a", "a")), budget.hold(owner("a", "a")));
         assert!(one.at_least(40).is_ok() && one.at_least(20).is_ok() && two.at_least(20).is_ok());
-        assert!(two.could_hold(20).is_ok() && two.could_hold(21).is_err());
+        assert!(two.check_available(20).is_ok() && two.check_available(21).is_err());
         assert_eq!(two.at_least(21).unwrap_err().problem.code, ErrorCode::Busy);
         let other = budget.hold(owner("b", "b"));
         assert!(other.at_least(41).is_err(), "101 of 100");

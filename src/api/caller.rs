@@ -110,7 +110,7 @@ pub fn identify<'a>(
     let case = foreseen::case_of(request);
     async move {
         match given {
-            None if !service.config.asks_for_keys => Ok(Identified::of_default_tenant(NO_KEY)),
+            None if !service.config.requires_keys => Ok(Identified::of_default_tenant(NO_KEY)),
             None => Err(unauthorized("send a key as `Authorization: Bearer KEY`")),
             Some(given) => known(service, &given, case).await,
         }

@@ -14,9 +14,9 @@ use super::caller::Caller;
 use super::case_draft::{Draft, checked, split};
 use super::case_state::{CaseMeshingView, CaseState, meshing_view, tag_of};
 use super::error::{ApiError, ApiResult};
-use super::guard::check_accept;
 use super::idempotency::KeyedRequest;
 use super::meshes::document_of;
+use super::middleware::check_accept;
 use super::paging::Page;
 use super::parameters::{Id, Parameters};
 use super::prefer::{wait_for_end, wanted_wait, with_wait};
@@ -40,12 +40,12 @@ const READ_HERE: &str = "application/json, multipart/form-data";
 
 pub fn router() -> Resources {
     let json = Resources::new()
-        .looks(Scope::Read, routes!(list))
+        .reads(Scope::Read, routes!(list))
         .changes(Scope::Write, routes!(create))
-        .looks(Scope::Read, routes!(show))
+        .reads(Scope::Read, routes!(show))
         .changes(Scope::Write, routes!(remove))
         .json_only();
-    json.looks(Scope::Run, routes!(check))
+    json.reads(Scope::Run, routes!(check))
 }
 
 /// A case as it is kept.

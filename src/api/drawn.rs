@@ -10,7 +10,7 @@ use tokio::runtime::Handle;
 use super::error::{ApiError, ApiResult};
 use super::parameters::no_such_job;
 use super::report::stored_report;
-use super::{Service, accepted, conditional, guard};
+use super::{Service, accepted, conditional, middleware};
 use crate::jobs::{Finished, JobInput};
 use crate::schema::predict::output::PictureName;
 use crate::schema::wire::problem::Problem;
@@ -27,7 +27,7 @@ struct DrawingRequest {
 
 impl DrawingRequest {
     /// Under which name it is kept; pictures have one language.
-    fn kept_as(self) -> String {
+    fn cache_key(self) -> String {
         let name = self.picture.output().file_name();
         match PictureName::REPORTS.contains(&self.picture) {
             true => format!("{name} {}", self.language.tag()),
@@ -50,11 +50,11 @@ pub async fn picture(
         return Err(no_such_output(job, name));
     };
     let media_type = picture.output().media_type();
-    guard::check_accept(headers, media_type.split(';').next().unwrap_or_default())?;
+    middleware::check_accept(headers, media_type.split(';').next().unwrap_or_default())?;
     let liked = headers.get(header::ACCEPT_LANGUAGE).and_then(|value| value.to_str().ok());
     let language = language.unwrap_or_else(|| Language::accepted(liked.unwrap_or_default()));
     let wanted = DrawingRequest { picture, language };
-    let bytes = match service.pictures.get(&job.id, &wanted.kept_as()) {
+    let bytes = match service.pictures.get(&job.id, &wanted.cache_key()) {
         Some(bytes) => bytes,
         None => drawn(service, job, wanted).await?,
     };
@@ -89,8 +89,8 @@ async fn drawn(service: &Service, job: &JobRow, wanted: DrawingRequest) -> ApiRe
     let permit = service.check_permit().await?;
     let draw = move || finished.draw(picture, language, &sources, &limits);
     let bytes = Bytes::from(permit.compute(draw).await?.map_err(accepted::refusal)?);
-    let (case, kept_as) = (job.case_id.as_deref(), wanted.kept_as());
-    service.pictures.keep_of_job(&job.id, case, &kept_as, bytes.clone());
+    let (case, cache_key) = (job.case_id.as_deref(), wanted.cache_key());
+    service.pictures.keep_job_picture(&job.id, case, &cache_key, bytes.clone());
     // Whoever erased it meanwhile found nothing to give up.
     if service.store.job_status(&job.id).await?.is_none() {
         service.pictures.forget(&job.id);

@@ -43,7 +43,7 @@ impl ApiError {
     }
 
     /// The same request may succeed later.
-    pub fn out_of_reach() -> Self {
+    pub fn unavailable() -> Self {
         ApiError::new(ErrorCode::NotReady, "the database or the store of blobs is out of reach")
     }
 
@@ -76,7 +76,7 @@ impl From<StoreError> for ApiError {
         }
         if error.is_unavailable() {
             tracing::warn!(%error, "storage is busy");
-            return ApiError::out_of_reach();
+            return ApiError::unavailable();
         }
         if let StoreError::Integrity { .. } | StoreError::Missing { .. } = error {
             tracing::error!(%error, "a blob is damaged");

@@ -15,7 +15,7 @@ use utoipa_axum::routes;
 
 use super::client::Client;
 use super::error::{ApiError, ApiResult};
-use super::guard::check_accept;
+use super::middleware::check_accept;
 use super::parameters::{Id, no_such_job};
 use super::resources::Resources;
 use super::streams::StreamPlace;
@@ -36,7 +36,7 @@ const LOOK: Duration = Duration::from_secs(1);
 const PAUSE: Duration = Duration::from_millis(100);
 
 pub fn router() -> Resources {
-    Resources::new().looks(Scope::Read, routes!(follow))
+    Resources::new().reads(Scope::Read, routes!(follow))
 }
 
 /// The events of a job, from the first or from the one after `Last-Event-ID`, until the job has ended. `event` is

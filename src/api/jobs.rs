@@ -31,9 +31,9 @@ use crate::traces::TraceParent;
 
 pub fn router() -> Resources {
     Resources::new()
-        .looks(Scope::Read, routes!(list))
+        .reads(Scope::Read, routes!(list))
         .changes(Scope::Run, routes!(create))
-        .looks(Scope::Read, routes!(show))
+        .reads(Scope::Read, routes!(show))
         .changes(Scope::Run, routes!(change, dismiss))
         .json_only()
 }

@@ -18,7 +18,7 @@ use crate::store::{KeyRow, Store};
 
 pub fn router() -> Resources {
     Resources::new()
-        .looks(Scope::Admin, routes!(list))
+        .reads(Scope::Admin, routes!(list))
         .changes(Scope::Admin, routes!(create))
         .changes(Scope::Admin, routes!(revoke))
         .changes(Scope::Admin, routes!(rotate))

@@ -29,10 +29,10 @@ const MULTIPART: &str = "multipart/form-data";
 pub fn router() -> Resources {
     let json = Resources::new()
         .changes(Scope::Write, routes!(upload))
-        .looks(Scope::Read, routes!(show))
+        .reads(Scope::Read, routes!(show))
         .changes(Scope::Write, routes!(remove))
         .json_only();
-    json.looks(Scope::Read, routes!(content))
+    json.reads(Scope::Read, routes!(content))
 }
 
 /// What an upload says about its bytes.
@@ -268,7 +268,7 @@ async fn content(
         MeshKind::Image => ExportFormat::Nrrd,
     };
     let format = parameters.format.map_or(stored_as, ExportFormat::from);
-    super::guard::check_accept(&headers, format.media_type())?;
+    super::middleware::check_accept(&headers, format.media_type())?;
     let blob = row.blob.clone();
     let frame = document.report.space.or(document.frame);
     let is_turned = format == ExportFormat::Vtu && frame == Some(FrameName::Ras);

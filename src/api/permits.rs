@@ -6,7 +6,7 @@ use super::error::{ApiError, ApiResult};
 use crate::fair_semaphore;
 use crate::schema::ErrorCode;
 use crate::schema::wire::problem::Problem;
-use crate::worker::niceness::give_way;
+use crate::worker::niceness::lower_priority;
 
 /// A semaphore whose permits go round robin between tenants.
 #[derive(Clone)]
@@ -42,7 +42,7 @@ impl Permit {
         let permit = self.clone();
         let patient = move || {
             let _permit = permit.0;
-            give_way();
+            lower_priority();
             // Nobody waits any more where the client has gone.
             let _ = done.send(work());
         };

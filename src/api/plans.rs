@@ -21,9 +21,9 @@ use crate::store::{Change, PlanRow};
 
 pub fn router() -> Resources {
     Resources::new()
-        .looks(Scope::Read, routes!(list))
+        .reads(Scope::Read, routes!(list))
         .changes(Scope::Write, routes!(create))
-        .looks(Scope::Read, routes!(show))
+        .reads(Scope::Read, routes!(show))
         .changes(Scope::Write, routes!(replace, remove))
         .json_only()
 }

@@ -59,7 +59,7 @@ pub async fn wait_for_end(service: &Service, id: &str, seconds: u32) -> ApiResul
         tokio::select! {
             changed = tokio::time::timeout_at(next, changes.of(id)) => changed.unwrap_or(Ok(()))?,
             _ = stopping.wait_for(|stopping| *stopping) => {}
-            () = service.client_has_gone() => has_left = true,
+            () = service.client_disconnected() => has_left = true,
         }
     }
 }

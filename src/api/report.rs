@@ -8,7 +8,7 @@ use utoipa_axum::routes;
 
 use super::download::ServedFile;
 use super::error::{ApiError, ApiResult};
-use super::guard::preferred;
+use super::middleware::preferred;
 use super::parameters::{Id, Parameters, id as spelled};
 use super::prefer::successful;
 use super::resources::Resources;
@@ -28,7 +28,7 @@ use crate::schema::key::Scope;
 use crate::store::FileRow;
 
 pub fn router() -> Resources {
-    Resources::new().looks(Scope::Read, routes!(report))
+    Resources::new().reads(Scope::Read, routes!(report))
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, ToSchema)]

@@ -7,7 +7,7 @@ use utoipa_axum::router::{OpenApiRouter, UtoipaMethodRouter};
 
 use super::Service;
 use super::access::{Access, Declared};
-use super::guard;
+use super::middleware;
 use crate::schema::key::Scope;
 
 /// Routes with their descriptions and what each of them takes.
@@ -27,8 +27,8 @@ impl Resources {
     }
 
     /// Routes that change nothing.
-    pub fn looks(self, scope: Scope, routes: UtoipaMethodRouter<Service>) -> Resources {
-        self.with(Access::looks(scope), routes)
+    pub fn reads(self, scope: Scope, routes: UtoipaMethodRouter<Service>) -> Resources {
+        self.with(Access::reads(scope), routes)
     }
 
     /// Routes that change something.
@@ -55,7 +55,7 @@ impl Resources {
 
     /// The same routes for clients that take JSON only.
     pub fn json_only(self) -> Resources {
-        let router = self.router.route_layer(from_fn(guard::accepts_json));
+        let router = self.router.route_layer(from_fn(middleware::accepts_json));
         Resources { router, ..self }
     }
 

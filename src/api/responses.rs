@@ -13,7 +13,7 @@ use super::case_state::whole;
 use super::download::ServedFile;
 use super::error::{ApiError, ApiResult};
 use super::foreseen::ResponseLookup;
-use super::guard::preferred;
+use super::middleware::preferred;
 use super::parameters::{Id, Parameters, id as spelled};
 use super::resources::Resources;
 use super::{Service, body, conditional, with_header};
@@ -34,7 +34,7 @@ use mechanics::format::WriteError;
 const GLB_MEDIA_TYPE: &str = "model/gltf-binary";
 
 pub fn router() -> Resources {
-    Resources::new().looks(Scope::Read, routes!(show)).looks(Scope::Run, routes!(apply))
+    Resources::new().reads(Scope::Read, routes!(show)).reads(Scope::Run, routes!(apply))
 }
 
 #[derive(Deserialize, IntoParams)]

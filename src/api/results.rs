@@ -10,14 +10,14 @@ use super::error::{ApiError, ApiResult};
 use super::parameters::{FileName, Id, Parameters};
 use super::prefer::successful;
 use super::resources::Resources;
-use super::{Service, conditional, drawn, guard, json};
+use super::{Service, conditional, drawn, json, middleware};
 use crate::schema::Language;
 use crate::schema::key::Scope;
 use crate::schema::predict::result::ResultDocument;
 
 pub fn router() -> Resources {
-    let manifest = Resources::new().looks(Scope::Read, routes!(manifest)).json_only();
-    manifest.looks(Scope::Read, routes!(file))
+    let manifest = Resources::new().reads(Scope::Read, routes!(manifest)).json_only();
+    manifest.reads(Scope::Read, routes!(file))
 }
 
 /// The manifest: files with their hashes, statistics, provenance.
@@ -78,7 +78,7 @@ async fn file(
     let Some(row) = service.store.job_file(&job, &name).await? else {
         return drawn::picture(&service, &found, &name, lang, &headers).await;
     };
-    guard::check_accept(&headers, row.media_type.split(';').next().unwrap_or_default())?;
+    middleware::check_accept(&headers, row.media_type.split(';').next().unwrap_or_default())?;
     if conditional::is_known(&headers, &row.blob) {
         return Ok(conditional::not_modified(&row.blob));
     }

@@ -12,7 +12,8 @@ use tower_http::catch_panic::CatchPanicLayer;
 pub fn router(service: Service) -> Router {
     let Resources { router, declared } = resources();
     let resources: Router<Service> = router.into();
-    let door = super::guard::GuardState { service: service.clone(), declared: declared.into() };
+    let door =
+        super::middleware::MiddlewareState { service: service.clone(), declared: declared.into() };
     let pages = utoipa_swagger_ui::SwaggerUi::new("/docs")
         .config(utoipa_swagger_ui::Config::from("/openapi.json").validator_url("none"));
     let pages: Router<Service> = Router::from(pages).layer(from_fn(super::headers::of_pages));
@@ -22,8 +23,8 @@ pub fn router(service: Service) -> Router {
         .merge(pages)
         .fallback(|| async { super::error::ApiError::not_found("resource") })
         .layer(DefaultBodyLimit::disable())
-        .layer(CatchPanicLayer::custom(super::guard::after_panic))
-        .layer(from_fn_with_state(door, super::guard::surround))
+        .layer(CatchPanicLayer::custom(super::middleware::after_panic))
+        .layer(from_fn_with_state(door, super::middleware::surround))
         .layer(Extension(super::about::Description(super::openapi::document().into())))
         .with_state(service);
     match origins {

@@ -72,7 +72,7 @@ impl Service {
         let waiting = limits.waiting_requests as usize;
         let hosts = || Arc::new(Hosts::new(&config.allowed_hosts, &config.allowed_origins));
         Service {
-            hosts: (!config.asks_for_keys).then(hosts),
+            hosts: (!config.requires_keys).then(hosts),
             responses: Responses::new(store.clone(), config.response_cache_bytes),
             pictures: Pictures::default(),
             limits: Arc::new(limits.clone()),
@@ -127,11 +127,11 @@ impl Service {
         let permit = self.listing.acquire(self.store.tenant());
         tokio::time::timeout(LIST_PATIENCE, permit)
             .await
-            .unwrap_or_else(|_| Err(ApiError::out_of_reach()))
+            .unwrap_or_else(|_| Err(ApiError::unavailable()))
     }
 
     /// Until the client of a request has gone for which something was changed. Any other ends with its client.
-    pub(super) async fn client_has_gone(&self) {
+    pub(super) async fn client_disconnected(&self) {
         match &self.intent {
             Some(intent) => intent.left().await,
             None => std::future::pending().await,

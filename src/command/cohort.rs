@@ -8,7 +8,7 @@ use clap::Args;
 use super::documents::read;
 use super::failure::CommandError;
 use super::files::{FileSource, ScaleArguments};
-use super::screen::{print_files, print_warnings, work_in_sight};
+use super::screen::{print_files, print_warnings, run_with_progress};
 use crate::jobs::{CohortInput, JobContext, JobInput};
 use crate::schema::case::document::LengthUnit;
 use crate::schema::cohort::document::TwinsDocument;
@@ -78,7 +78,7 @@ pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
     let sources = FileSource::new(&PathBuf::new(), LengthUnit::Mm, ScaleArguments::default());
     let input = JobInput::Cohort(input);
     let place = JobContext { sources: &sources, limits: &limits, out: &arguments.out };
-    let done = work_in_sight(&input, &place)?;
+    let done = run_with_progress(&input, &place)?;
     if let Some(cohort) = &done.result.cohort {
         print_cohort(cohort);
     }

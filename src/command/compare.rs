@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 use super::documents::read;
 use super::failure::CommandError;
 use super::files::{FileSource, ScaleArguments, UnitArgument, relative};
-use super::screen::{print_files, print_warnings, work_in_sight};
+use super::screen::{print_files, print_warnings, run_with_progress};
 use crate::jobs::{CompareInput, JobContext, JobInput};
 use crate::schema::compare::document::{
     AlignDocument, AlignMethod, CompareDocument, CompareKind, MeshReference, NodeWise,
@@ -116,7 +116,7 @@ pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
     let spec = arguments.document()?;
     let input = JobInput::Compare(CompareInput { job: None, queue_s: None, spec });
     let place = JobContext { sources: &sources, limits: &limits, out: &arguments.out };
-    let done = work_in_sight(&input, &place)?;
+    let done = run_with_progress(&input, &place)?;
     print_result(&done.result);
     print_files(&done.files, &arguments.out);
     Ok(())

@@ -7,7 +7,7 @@ use clap::Args;
 use super::documents::{read, write};
 use super::failure::CommandError;
 use super::files::{FileSource, ScaleArguments, UnitArgument};
-use super::screen::{print_files, print_warnings, work_in_sight};
+use super::screen::{print_files, print_warnings, run_with_progress};
 use crate::jobs::{ConformInput, JobContext, JobInput};
 use crate::schema::conform::result::{ConformationDocument, LeftDocument, MappedMuscleDocument};
 use crate::schema::wire::canonical;
@@ -42,7 +42,7 @@ pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
     let sources = FileSource::new(&PathBuf::new(), arguments.units.unit(), arguments.scale);
     let input = JobInput::Conform(ConformInput { job: None, queue_s: None, spec });
     let place = JobContext { sources: &sources, limits: &limits, out: &arguments.out };
-    let done = work_in_sight(&input, &place)?;
+    let done = run_with_progress(&input, &place)?;
     if let Some(found) = &done.result.conformation {
         let case = canonical::to_value(&found.case);
         let file = serde_json::json!({ "case": case });

@@ -78,14 +78,14 @@ pub fn run(arguments: &Arguments) -> Result<(), DemoError> {
         .enable_all()
         .build()
         .map_err(ServeError::from)?;
-    let (workers, done) = runtime.block_on(beside_the_service(arguments))?;
+    let (workers, done) = runtime.block_on(with_own_service(arguments))?;
     workers.stop(Duration::ZERO);
     runtime.shutdown_background();
     done
 }
 
 /// Starts the service, on a free port of this machine where no address is given, runs the demo, and ends the service.
-async fn beside_the_service(
+async fn with_own_service(
     arguments: &Arguments,
 ) -> Result<(Workers, Result<(), DemoError>), DemoError> {
     let data = arguments.data.clone().unwrap_or_else(|| arguments.out.join("service"));

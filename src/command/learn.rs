@@ -8,7 +8,7 @@ use serde::Deserialize;
 use super::documents::read;
 use super::failure::CommandError;
 use super::files::{FileSource, ScaleArguments};
-use super::screen::{print_files, print_warnings, work_in_sight};
+use super::screen::{print_files, print_warnings, run_with_progress};
 use crate::jobs::{JobContext, JobInput, LearnInput, LearnedCase, PredictInput};
 use crate::schema::case::document::LengthUnit;
 use crate::schema::learn::document::VirtualCohortDocument;
@@ -92,7 +92,7 @@ pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
     let (job, queue_s, cohort) = (None, None, None);
     let input = JobInput::Learn(LearnInput { job, queue_s, spec, cohort, cases });
     let place = JobContext { sources: &sources, limits: &limits, out: &arguments.out };
-    let done = work_in_sight(&input, &place)?;
+    let done = run_with_progress(&input, &place)?;
     if let Some(found) = &done.result.learning {
         print_learning(found);
     }

@@ -4,7 +4,7 @@ use tokio::signal::unix::{SignalKind, signal};
 
 /// Makes such a write an error of that write, as one on a full disk is, and not the end of the process: whoever listens
 /// to the signal is not ended by it. What listens stays when the runtime that it needs is gone.
-pub fn outlive() -> std::io::Result<()> {
+pub fn ignore_file_size_signal() -> std::io::Result<()> {
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
     let _inside = runtime.enter();
     signal(SignalKind::from_raw(rustix::process::Signal::XFSZ.as_raw())).map(drop)

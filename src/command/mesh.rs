@@ -8,7 +8,7 @@ use clap::Args;
 use super::documents::{CaseFile, read, write};
 use super::failure::CommandError;
 use super::files::{FileSource, ScaleArguments, UnitArgument};
-use super::screen::{print_files, print_warnings, work_in_sight};
+use super::screen::{print_files, print_warnings, run_with_progress};
 use super::selection::{BoneArgument, bone};
 use super::watch::Watch;
 use crate::jobs::JobError;
@@ -145,7 +145,7 @@ impl ScanArguments {
         let place = JobContext { sources: &sources, limits: &limits, out };
         let input = MeshingInput { job: None, queue_s: None, spec, case: None };
         let _watch = Watch::start(&input.spec.budget);
-        let done = work_in_sight(&JobInput::Meshing(input), &place)?;
+        let done = run_with_progress(&JobInput::Meshing(input), &place)?;
         let Some(found) = done.result.meshing.clone() else {
             return Err(CommandError::Usage(NO_SCAN.to_owned()));
         };

@@ -154,7 +154,7 @@ fn help_template(command: &clap::Command) -> String {
 
 /// Runs the command and says what went wrong, one line for each mistake.
 pub fn run(facies: &Facies) -> ExitCode {
-    if let Err(error) = limits_of_files::outlive() {
+    if let Err(error) = limits_of_files::ignore_file_size_signal() {
         eprintln!("error: the signal of files that grow too large is not listened to: {error}");
         return ExitCode::from(failure::INFRASTRUCTURE);
     }

@@ -7,7 +7,7 @@ use clap::Args;
 use super::documents::{spec_beside, write};
 use super::failure::CommandError;
 use super::scene::SceneArguments;
-use super::screen::{print_files, print_warnings, work_in_sight};
+use super::screen::{print_files, print_warnings, run_with_progress};
 use crate::jobs::{JobContext, JobInput, OptimiseInput};
 use crate::schema::Limits;
 use crate::schema::optimise::result::{OptimisationDocument, ParameterName, PartDocument};
@@ -40,7 +40,7 @@ pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
     let input = JobInput::Optimise(OptimiseInput { job: None, queue_s: None, case, spec });
     let limits = Limits::default();
     let place = JobContext { sources: &asked.sources, limits: &limits, out: &arguments.out };
-    let done = work_in_sight(&input, &place)?;
+    let done = run_with_progress(&input, &place)?;
     if let Some(found) = &done.result.optimisation {
         let plan = canonical::to_value(&found.plan);
         write(&arguments.out.join(PLAN_FILE), format!("{plan:#}\n"))?;

@@ -8,7 +8,7 @@ use serde::de::DeserializeOwned;
 use super::failure::CommandError;
 use super::mesh::ScanArguments;
 use super::scene::{PlanArgument, SceneArguments};
-use super::screen::{print_check, print_files, print_warnings, work_in_sight};
+use super::screen::{print_check, print_files, print_warnings, run_with_progress};
 use super::watch::Watch;
 use crate::jobs::{JobContext, JobInput, check};
 use crate::schema::Limits;
@@ -79,7 +79,7 @@ pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
     }
     asked.file.spec.corrected |= arguments.corrected;
     if arguments.stress {
-        asked.file.spec.ask_for_stress();
+        asked.file.spec.request_stress();
     }
     asked.file.spec.accept_mm = arguments.accept.or(asked.file.spec.accept_mm);
     if let Some(accept_mm) = arguments.refine {
@@ -103,7 +103,7 @@ pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
     print_check(&before);
 
     let place = JobContext { sources: &asked.sources, limits: &limits, out: &arguments.out };
-    let done = work_in_sight(&JobInput::Predict(input), &place)?;
+    let done = run_with_progress(&JobInput::Predict(input), &place)?;
 
     let read_from = arguments.scene.case.as_deref();
     let documents = asked.file.write_beside(&asked.folder, &arguments.out, read_from)?;

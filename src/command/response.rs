@@ -7,7 +7,7 @@ use clap::Args;
 use super::documents::spec_beside;
 use super::failure::CommandError;
 use super::scene::SceneArguments;
-use super::screen::{print_files, print_warnings, work_in_sight};
+use super::screen::{print_files, print_warnings, run_with_progress};
 use crate::jobs::{JobContext, JobInput, ResponseInput};
 use crate::schema::{Limits, ResponseDocument};
 
@@ -42,7 +42,7 @@ pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
     let input = JobInput::Response(ResponseInput { job: None, queue_s: None, case, spec });
     let limits = Limits::default();
     let place = JobContext { sources: &asked.sources, limits: &limits, out: &arguments.out };
-    let done = work_in_sight(&input, &place)?;
+    let done = run_with_progress(&input, &place)?;
     let provenance = &done.result.provenance;
     println!("time       {:.2} s; key {}", provenance.timing.total_s, provenance.spec_hash);
     print_warnings(&done.result.warnings);

@@ -59,7 +59,7 @@ impl TerminalProgress {
 }
 
 /// Does a job, and shows where it is.
-pub fn work_in_sight(input: &JobInput, place: &JobContext) -> Result<JobOutput, JobError> {
+pub fn run_with_progress(input: &JobInput, place: &JobContext) -> Result<JobOutput, JobError> {
     let progress = TerminalProgress::start();
     let done = work(input, place, &progress);
     progress.finish();

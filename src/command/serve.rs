@@ -139,7 +139,7 @@ impl Server {
         let streams = self.service.streams.clone();
         let store = self.service.store.clone();
         let answers = api::router(self.service);
-        let served = api::connections::serve(self.listener, answers, patience, async move {
+        let served = api::server_loop::serve(self.listener, answers, patience, async move {
             stop.await;
             streams.stop();
             tracing::info!("stopping");
@@ -164,9 +164,9 @@ pub async fn open(config: &Config) -> Result<Store, ServeError> {
     metrics::start()?;
     traces::start(config.traces.as_deref())?;
     let store = Store::connect(&config.places).await?.with_most_keys(config.most_keys);
-    keep_swept(&store).await?;
-    keep_chained(&store);
-    keep_wiped(&store);
+    start_garbage_collection(&store).await?;
+    start_audit_chaining(&store);
+    start_wiping(&store);
     Ok(store)
 }
 
@@ -219,8 +219,8 @@ fn slot_settings(config: &Config, limits: &Limits) -> Settings {
 }
 
 /// Sweeps what dead processes left, at once and then every hour.
-async fn keep_swept(store: &Store) -> Result<(), StoreError> {
-    match sweep_at_start(store).await {
+async fn start_garbage_collection(store: &Store) -> Result<(), StoreError> {
+    match collect_garbage_at_start(store).await {
         // What is stored is served all the same, and can be erased.
         Err(error) if error.is_full() => tracing::error!(%error, "nothing was swept"),
         swept => swept?,
@@ -234,7 +234,7 @@ async fn keep_swept(store: &Store) -> Result<(), StoreError> {
     Ok(())
 }
 
-async fn sweep_at_start(store: &Store) -> Result<(), StoreError> {
+async fn collect_garbage_at_start(store: &Store) -> Result<(), StoreError> {
     let erased = store.erase_old().await?;
     let swept = store.sweep().await?;
     tracing::info!(erased, blobs = swept.blobs, temporary = swept.temporary, "swept");
@@ -242,7 +242,7 @@ async fn sweep_at_start(store: &Store) -> Result<(), StoreError> {
 }
 
 /// Brings what was erased out of the files of an embedded database, soon after.
-fn keep_wiped(store: &Store) {
+fn start_wiping(store: &Store) {
     let store = store.clone();
     tokio::spawn(async move {
         while store.is_open_after(WIPE_EVERY).await {
@@ -258,7 +258,7 @@ fn keep_wiped(store: &Store) {
 }
 
 /// Takes what was done into the chain of the audit log, soon after: what is in it cannot be changed unseen.
-fn keep_chained(store: &Store) {
+fn start_audit_chaining(store: &Store) {
     let store = store.clone();
     tokio::spawn(async move {
         while store.is_open_after(CHAIN_EVERY).await {

@@ -48,7 +48,7 @@ impl Stopwatch for Clock {
         self.0.elapsed().as_secs_f64()
     }
 
-    fn forget_peak(&self) {}
+    fn reset_peak(&self) {}
 
     fn peak_mb(&self) -> Option<f64> {
         None

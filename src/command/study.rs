@@ -8,7 +8,7 @@ use clap::Args;
 use super::documents::{CaseFile, read};
 use super::failure::CommandError;
 use super::files::{FileSource, ScaleArguments};
-use super::screen::{print_files, print_warnings, work_in_sight};
+use super::screen::{print_files, print_warnings, run_with_progress};
 use super::stability;
 use super::stability_random;
 use super::study_screen::print_report;
@@ -124,7 +124,7 @@ pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
             eprintln!("expected   {}", cost.sentence());
         }
     }
-    let done = work_in_sight(&JobInput::Study(input), &place)?;
+    let done = run_with_progress(&JobInput::Study(input), &place)?;
     let report = read_report(&arguments.out.join(REPORT_JSON))?;
     if let Some(file) = kept.filter(|_| report.rows_of.is_none() && report.is_complete()) {
         keep(&arguments.out.join(REPORT_JSON), &file)?;

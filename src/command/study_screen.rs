@@ -1,7 +1,7 @@
 //! The report of a study on the terminal.
 
 use crate::jobs::study::MARKED;
-use crate::jobs::study::cell_sizes::settled_words;
+use crate::jobs::study::cell_sizes::convergence_text;
 use crate::jobs::study::files::REPORT_JSON;
 use crate::schema::study::cell_sizes::CellSizesDocument;
 use crate::schema::study::constants::ConstantMapDocument;
@@ -66,7 +66,7 @@ fn print_cell_sizes(of: &CellSizesDocument) {
             mesh.scene, mesh.cell_mm, mesh.cells, mesh.unknowns, mesh.wall_s, mesh.skin_mean_mm
         );
     }
-    println!("  {}", settled_words(of));
+    println!("  {}", convergence_text(of));
 }
 
 /// The constants with which the skin is nearest to a scan.

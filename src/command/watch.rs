@@ -44,12 +44,12 @@ impl Watch {
             most_bytes: taken + memory::ROOM * budget.memory_mb * 1e6,
         };
         let (work_goes_on, heard) = channel();
-        std::thread::spawn(move || look_on(&bounds, &heard));
+        std::thread::spawn(move || watch_bounds(&bounds, &heard));
         Watch { _work_goes_on: work_goes_on }
     }
 }
 
-fn look_on(bounds: &Bounds, work: &Receiver<()>) {
+fn watch_bounds(bounds: &Bounds, work: &Receiver<()>) {
     while let Err(RecvTimeoutError::Timeout) = work.recv_timeout(LOOK) {
         let usage = memory::usage("self").map(|usage| usage.now_bytes as f64);
         if let Some(why) = bounds.broken(Instant::now(), usage) {

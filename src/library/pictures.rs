@@ -38,7 +38,7 @@ impl Pictures {
     }
 
     /// Keeps the picture of a job, which goes with the case of the job as well.
-    pub fn keep_of_job(&self, job: &str, case: Option<&str>, name: &str, svg: Bytes) {
+    pub fn keep_job_picture(&self, job: &str, case: Option<&str>, name: &str, svg: Bytes) {
         let case = case.unwrap_or_default().to_owned();
         self.put(Picture { of: job.to_owned(), question: name.to_owned(), case, svg });
     }
@@ -88,7 +88,7 @@ mod tests {
         let pictures = Pictures::default();
         let there = || ["1", "2"].map(|job| pictures.get(job, "classes.svg").is_some());
         for job in ["1", "2"] {
-            pictures.keep_of_job(job, Some("a"), "classes.svg", Bytes::from_static(b"x"));
+            pictures.keep_job_picture(job, Some("a"), "classes.svg", Bytes::from_static(b"x"));
         }
         assert_eq!(there(), [true, true]);
         pictures.forget("1");

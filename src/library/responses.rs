@@ -213,7 +213,7 @@ impl Responses {
             return Ok(verdict.description);
         }
         let Some(row) = self.store.case(case).await? else { return Ok(None) };
-        let is_current = self.key_now(&row.document, job).await?;
+        let is_current = self.is_key_current(&row.document, job).await?;
         let file = match is_current {
             true => self.store.job_file(job, DESCRIPTION_FILE).await?,
             false => None,
@@ -230,7 +230,7 @@ impl Responses {
 
     /// Whether a job would have the same key if it were posted now. A document of an earlier program that
     /// this one cannot read is stale as well.
-    async fn key_now(&self, case: &str, job: &str) -> Result<bool, StoreError> {
+    async fn is_key_current(&self, case: &str, job: &str) -> Result<bool, StoreError> {
         let Some(row) = self.store.response(job).await? else { return Ok(false) };
         let case: Result<CaseDocument, _> = serde_json::from_str(case);
         let (Ok(case), Ok(JobInput::Response(input))) = (case, serde_json::from_str(&row.document))

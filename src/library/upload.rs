@@ -67,7 +67,7 @@ pub fn read_upload(
 ) -> Result<Upload, Problem> {
     let read = format::read(bytes, &ReadLimits::default()).map_err(|error| problem_of(&error))?;
     let received = ReadBytes { read, bytes: bytes.len() as u64, sha256, told: Vec::new() };
-    understand(received, statement, standalone)
+    validate_upload(received, statement, standalone)
 }
 
 /// A mesh that a job made, as if somebody had uploaded the file that we write of it.
@@ -83,11 +83,11 @@ pub fn upload_made(mesh: &MadeMesh) -> Result<Upload, Problem> {
     };
     let (bytes, sha256) = (bytes.len() as u64, sha256_hex(&bytes));
     let told = mesh.told.clone();
-    understand(ReadBytes { read, bytes, sha256, told }, &statement, false)
+    validate_upload(ReadBytes { read, bytes, sha256, told }, &statement, false)
 }
 
 /// What was read as a mesh that can be stored.
-fn understand(
+fn validate_upload(
     received: ReadBytes,
     statement: &Statement,
     standalone: bool,

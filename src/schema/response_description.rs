@@ -21,7 +21,7 @@ use mechanics::mesh::ignored::listed;
 use mechanics::mesh::{Frame, Vector};
 use mechanics::plan::RigidMovement;
 use mechanics::plan::doubt::{MovedSegment, beyond_face, nothing_moves, suspect_units};
-use mechanics::prediction::{GoesAlong, goes_along, normal_turned};
+use mechanics::prediction::{RigidlyCarried, normal_turned, rigidly_carried};
 use mechanics::response::linearity::LINEAR_RANGE_MM;
 use mechanics::response::{Columns, InnerLoad, Linearity, ResponseSegment, SampledSecond};
 
@@ -225,21 +225,21 @@ impl ResponseDescription {
             let at = at.key("segments");
             return Err(Problem::at(&at, ErrorCode::PlanOutOfRange, beyond.to_string()));
         }
-        match self.goes_along(movements).refused.into_iter().next() {
+        match self.rigidly_carried(movements).refused.into_iter().next() {
             Some(detail) => Err(Problem::at(at, ErrorCode::NothingHeld, detail)),
             None => Ok(()),
         }
     }
 
     /// The parts that a plan would carry along as one, where that is not allowed.
-    fn goes_along(&self, movements: &[RigidMovement]) -> GoesAlong {
+    fn rigidly_carried(&self, movements: &[RigidMovement]) -> RigidlyCarried {
         if self.allow_unfixed {
-            return GoesAlong::default();
+            return RigidlyCarried::default();
         }
         let segments: Vec<String> = self.segments.iter().map(|of| of.name.clone()).collect();
         let parts: Vec<ConnectedPart> =
             self.parts.iter().map(|part| part.to_part(&segments)).collect();
-        goes_along(&parts, |segment| movements[segment as usize])
+        rigidly_carried(&parts, |segment| movements[segment as usize])
     }
 
     /// What a reader of the skin of a plan must know of the plan, and after that of the case.
@@ -252,7 +252,7 @@ impl ResponseDescription {
         let turned = carriers.filter_map(|(of, movement)| normal_turned(&of.name, movement, order));
         let warnings = still.then(nothing_moves).into_iter();
         let warnings = warnings.chain(suspect_units(&self.moved(movements))).chain(turned);
-        let warnings = warnings.chain(self.goes_along(movements).told);
+        let warnings = warnings.chain(self.rigidly_carried(movements).told);
         let of_plan = warnings.map(|warning| WarningDocument::from(&warning));
         of_plan.chain(self.warnings.iter().cloned()).collect()
     }

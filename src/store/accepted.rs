@@ -90,7 +90,7 @@ impl Store {
         if self.is_queue_full(&mut transaction, longest_queue).await? {
             return Ok(Enqueued::QueueFull);
         }
-        let Some(waits_for) = self.still_waits(&mut transaction, job).await? else {
+        let Some(waits_for) = self.pending_meshing(&mut transaction, job).await? else {
             return Ok(Enqueued::NotMeshed);
         };
         self.enter(&mut transaction).await?;
@@ -141,7 +141,7 @@ impl Store {
     }
 
     /// The meshing that a job has to wait for, empty where there is none or it is done; `None` where that made no mesh.
-    async fn still_waits(
+    async fn pending_meshing(
         &self,
         transaction: &mut Transaction,
         job: &NewJob,

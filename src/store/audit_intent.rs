@@ -49,7 +49,7 @@ impl Store {
     /// The same store scoped to a tenant that asks: it takes its turns with other tenants when it writes, after what
     /// it does was noted, where it is to be.
     pub fn asked_by(&self, tenant: &str, intent: Option<&AuditIntent>) -> Store {
-        let database = self.database.plainly(tenant);
+        let database = self.database.in_line(tenant);
         let database = match intent {
             Some(intent) => database.after(Arc::new(intent.clone())),
             None => database,
@@ -73,7 +73,7 @@ impl AuditIntent {
         }
         self.0.refuse_too_many()?;
         let own = self.0.clone();
-        let is_wanted = Box::new(move || own.is_noted_now());
+        let is_wanted = Box::new(move || own.claim_intent());
         let begun = self.0.store.begin_wanted(&self.0.audited, is_wanted).await;
         let mut stage = self.0.lock();
         match begun {
@@ -117,7 +117,7 @@ impl AuditIntent {
             }
             Stage::NothingDone if is_told => {
                 let audited = AuditedAction { object: object.to_owned(), ..self.0.audited.clone() };
-                self.0.store.action_without_effect(audited, outcome)
+                self.0.store.note_rejected(audited, outcome)
             }
             Stage::NothingDone | Stage::Noted | Stage::Ended | Stage::Left => Ok(()),
         }
@@ -132,7 +132,7 @@ impl AuditIntent {
 impl Inner {
     fn refuse_too_many(&self) -> Result<(), StoreError> {
         let (most, tenant) = (self.store.most_waiting, &self.audited.tenant);
-        let writing = self.store.database.plainly(tenant).waiting();
+        let writing = self.store.database.in_line(tenant).waiting();
         match self.store.notes.waiting(tenant) + writing >= most {
             true => Err(StoreError::Busy { most }),
             false => Ok(()),
@@ -140,7 +140,7 @@ impl Inner {
     }
 
     /// Whether somebody is there for whom it is begun. From now on it is.
-    fn is_noted_now(&self) -> bool {
+    fn claim_intent(&self) -> bool {
         let mut stage = self.lock();
         let is_wanted = matches!(*stage, Stage::NothingDone);
         if is_wanted {

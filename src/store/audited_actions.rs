@@ -69,11 +69,7 @@ impl Store {
 
     /// Keeps for `write_outcomes` what was asked for and changed nothing. Nobody waits for its row, and nobody else does who
     /// writes.
-    pub fn action_without_effect(
-        &self,
-        audited: AuditedAction,
-        outcome: &str,
-    ) -> Result<(), StoreError> {
+    pub fn note_rejected(&self, audited: AuditedAction, outcome: &str) -> Result<(), StoreError> {
         let end = End { object: audited.object.clone(), outcome: outcome.to_owned() };
         self.open_actions.over(audited, end)
     }
@@ -101,7 +97,7 @@ impl Store {
 
     /// Where the audit log is written: in a line of its own, and noted by nobody.
     fn of_audit(&self) -> Database {
-        self.database.plainly(LINE)
+        self.database.in_line(LINE)
     }
 
     /// Something that no request asks for.

@@ -209,13 +209,13 @@ impl Store {
         let jobs = column(&mut transaction, JOBS_OF_CASE, id).await?;
         let mut blobs = column(&mut transaction, FILES_OF_CASE, id).await?;
         let meshes = column(&mut transaction, MESHES_OF_CASE, id).await?;
-        self.bury_case(&mut transaction, id).await?;
+        self.insert_tombstones_of_case(&mut transaction, id).await?;
         leave(&mut transaction, Leaving::Case(id)).await?;
         query(DELETE_SHARED_JOBS).bind(id).execute(&mut transaction).await?;
         query("DELETE FROM cases WHERE id = $1").bind(id).execute(&mut transaction).await?;
         blobs.extend(self.remove_unused(&mut transaction, meshes).await?);
         transaction.commit().await?;
-        self.was_erased();
+        self.mark_erased();
         jobs.iter().for_each(|job| self.job_changed(job));
         self.discard(blobs).await;
         Ok(Change::Done)

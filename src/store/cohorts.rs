@@ -234,11 +234,11 @@ impl Store {
             return Ok(Change::OtherVersion(found));
         }
         let meshes = column(&mut transaction, MESHES, id).await?;
-        self.bury(&mut transaction, id).await?;
+        self.insert_tombstone(&mut transaction, id).await?;
         query(DELETE).bind(id).execute(&mut transaction).await?;
         let blobs = self.remove_unused(&mut transaction, meshes).await?;
         transaction.commit().await?;
-        self.was_erased();
+        self.mark_erased();
         self.discard(blobs).await;
         Ok(Change::Done)
     }

@@ -124,7 +124,8 @@ impl Store {
             repaired.removed += 1;
         }
         for Unreached { mesh, tenant } in &findings.unreached {
-            repaired.erased += usize::from(self.of_tenant(tenant).erase_unreached(mesh).await?);
+            repaired.erased +=
+                usize::from(self.of_tenant(tenant).erase_if_unreferenced(mesh).await?);
         }
         self.sweep_blobs(PATIENCE).await?;
         Ok(repaired)
@@ -138,11 +139,11 @@ impl Store {
     }
 
     /// Erases a mesh unless something refers to it by now.
-    async fn erase_unreached(&self, mesh: &str) -> Result<bool, StoreError> {
+    async fn erase_if_unreferenced(&self, mesh: &str) -> Result<bool, StoreError> {
         let mut transaction = self.database.begin().await?;
         let blobs = self.remove_unused(&mut transaction, vec![mesh.to_owned()]).await?;
         transaction.commit().await?;
-        self.was_erased();
+        self.mark_erased();
         let is_erased = !blobs.is_empty();
         self.discard(blobs).await;
         Ok(is_erased)

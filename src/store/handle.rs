@@ -149,22 +149,22 @@ impl Store {
 
     /// Gives up the room in reserve where the disk is full, for what is about to be erased; where there is none left, brings
     /// the log of the database into its file.
-    pub async fn make_room(&self) {
+    pub async fn release_reserve(&self) {
         let Some(spare) = &self.spare else { return };
-        if !spare.make_room() {
+        if !spare.release_reserve() {
             self.shorten_log().await;
         }
     }
 
     /// Takes room in reserve again after something was erased, as much as there is, so that nobody else takes it who writes
     /// to the same disk.
-    pub async fn keep_room(&self) {
+    pub async fn refill_reserve(&self) {
         let Some(spare) = &self.spare else { return };
         if spare.is_whole() {
             return;
         }
         self.shorten_log().await;
-        spare.hold_some();
+        spare.fill_reserve();
     }
 
     /// Whether bytes can be stored, as far as the room in reserve is concerned.
@@ -179,7 +179,7 @@ impl Store {
     }
 
     /// Remembers that something was erased.
-    pub(super) fn was_erased(&self) {
+    pub(super) fn mark_erased(&self) {
         self.holds_erased.store(true, Ordering::Relaxed);
     }
 
@@ -191,7 +191,7 @@ impl Store {
         }
         let wiped = self.database.empty_log().await;
         if !matches!(wiped, Ok(true)) {
-            self.was_erased();
+            self.mark_erased();
         }
         wiped
     }

@@ -4,7 +4,7 @@ use super::cases::AFTER_ALL;
 use super::database::{Row, query};
 use super::events::record;
 use super::made::meshes_of_job;
-use super::membership::{Leaving, leave, unlearn};
+use super::membership::{Leaving, forget_model, leave};
 use super::waiting::fail_waiting;
 use super::{Store, StoreError, tenants};
 use crate::schema::job::JobStatus;
@@ -227,15 +227,15 @@ impl Store {
         let ended = query(ENDED).bind(id).bind(self.tenant());
         if ended.fetch_optional(&mut transaction).await?.is_some() {
             leave(&mut transaction, Leaving::Prediction(id)).await?;
-            unlearn(&mut transaction, id).await?;
+            forget_model(&mut transaction, id).await?;
         }
         let removed = query(REMOVE).bind(id).bind(self.tenant()).execute(&mut transaction).await?;
         if removed == 1 {
-            self.bury(&mut transaction, id).await?;
+            self.insert_tombstone(&mut transaction, id).await?;
             blobs.extend(self.remove_unused(&mut transaction, meshes).await?);
         }
         transaction.commit().await?;
-        self.was_erased();
+        self.mark_erased();
         self.job_changed(id);
         self.discard(blobs).await;
         Ok(match removed {

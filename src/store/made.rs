@@ -53,7 +53,7 @@ impl Store {
         made.sort_by_key(|made| made.id());
         for made in made {
             match &made.known {
-                Some(row) => self.still_there(transaction, row).await?,
+                Some(row) => self.require_stored(transaction, row).await?,
                 None => self.insert_mesh(transaction, &made.mesh).await.map_err(contended)?,
             }
             query(REFER).bind(job).bind(made.id()).execute(&mut *transaction).await?;
@@ -61,7 +61,7 @@ impl Store {
         Ok(())
     }
 
-    async fn still_there(
+    async fn require_stored(
         &self,
         transaction: &mut Transaction,
         row: &MeshRow,
@@ -84,7 +84,7 @@ impl Store {
         for mesh in meshes {
             let unused = column(transaction, DELETE_UNUSED, &mesh).await?;
             if !unused.is_empty() {
-                self.bury(transaction, &mesh).await?;
+                self.insert_tombstone(transaction, &mesh).await?;
             }
             blobs.extend(unused);
         }

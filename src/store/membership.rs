@@ -92,7 +92,10 @@ pub(super) async fn learn(
 }
 
 /// Forgets a model that was removed for its own sake.
-pub(super) async fn unlearn(transaction: &mut Transaction, job: &str) -> Result<(), sqlx::Error> {
+pub(super) async fn forget_model(
+    transaction: &mut Transaction,
+    job: &str,
+) -> Result<(), sqlx::Error> {
     query("DELETE FROM cohort_models WHERE job_id = $1").bind(job).execute(transaction).await?;
     Ok(())
 }

@@ -117,9 +117,9 @@ impl Store {
         match deleted {
             Ok(None) => Ok(MeshDeletion::NotFound),
             Ok(Some(row)) => {
-                self.bury(&mut transaction, id).await?;
+                self.insert_tombstone(&mut transaction, id).await?;
                 transaction.commit().await?;
-                self.was_erased();
+                self.mark_erased();
                 self.discard(vec![row.try_get("blob")?]).await;
                 Ok(MeshDeletion::Deleted)
             }

@@ -125,10 +125,10 @@ impl Store {
             .execute(&mut transaction)
             .await?;
         if changed == 1 {
-            self.bury(&mut transaction, id).await?;
+            self.insert_tombstone(&mut transaction, id).await?;
         }
         transaction.commit().await?;
-        self.was_erased();
+        self.mark_erased();
         self.plan_change(case_id, id, changed).await
     }
 

@@ -74,13 +74,13 @@ impl Store {
                 return Ok(transaction);
             }
             transaction.rollback().await;
-            self.withdraw(&stored).await?;
+            self.remove_orphans(&stored).await?;
         }
         Err(StoreError::Contended)
     }
 
     /// Removes what was stored in places that were discarded meanwhile: a place without a row gets none again.
-    async fn withdraw(&self, stored: &[Stored]) -> Result<(), StoreError> {
+    async fn remove_orphans(&self, stored: &[Stored]) -> Result<(), StoreError> {
         for Stored { id, place, .. } in stored {
             self.finish(id, place).await?;
         }

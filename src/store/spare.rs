@@ -27,7 +27,7 @@ impl Spare {
         let file = folder.join("spare");
         let held = std::fs::metadata(&file).map_or(0, |found| found.len());
         let spare = Spare { file, held: AtomicU64::new(held) };
-        spare.make_room();
+        spare.release_reserve();
         spare
     }
 
@@ -41,7 +41,7 @@ impl Spare {
     }
 
     /// Takes as much of it as there is, for the next erasure.
-    pub fn hold_some(&self) {
+    pub fn fill_reserve(&self) {
         let held = self.held.load(Ordering::Relaxed);
         let there = (self.free() + held).saturating_sub(LEAST).min(BYTES);
         if there >= LEAST.max(held)
@@ -53,7 +53,7 @@ impl Spare {
 
     /// Gives the room up where there is no other. It is taken again once there is some. False where the disk is full all
     /// the same.
-    pub fn make_room(&self) -> bool {
+    pub fn release_reserve(&self) -> bool {
         if self.free() >= BYTES {
             return true;
         }
@@ -117,7 +117,7 @@ mod tests {
         let spare = Spare::new(folder.path());
         assert!(!spare.is_whole());
         spare.hold().unwrap();
-        spare.make_room();
+        spare.release_reserve();
         let found = std::fs::metadata(folder.path().join("spare")).unwrap();
         assert_eq!(found.len(), BYTES, "there is room without it");
         assert!(Spare::new(folder.path()).is_whole());

@@ -84,7 +84,7 @@ impl Store {
     /// jobs that have ended, meshes that nothing refers to. Returns how many.
     pub async fn erase_old(&self) -> Result<usize, StoreError> {
         let mut erased = 0;
-        self.make_room().await;
+        self.release_reserve().await;
         for row in query(FORGETFUL).fetch_all(self.database.reader()).await? {
             let TenantRow { name, retention_days } = tenant_row(&row)?;
             let Some(days) = retention_days else { continue };
@@ -112,7 +112,7 @@ impl Store {
                 erased += 1;
             }
         }
-        self.keep_room().await;
+        self.refill_reserve().await;
         Ok(erased)
     }
 

@@ -15,7 +15,7 @@ const BURY_CASE: &str = "INSERT INTO tombstones (id, tenant, erased) \
 
 impl Store {
     /// Remembers one id.
-    pub(super) async fn bury(
+    pub(super) async fn insert_tombstone(
         &self,
         transaction: &mut Transaction,
         id: &str,
@@ -25,7 +25,7 @@ impl Store {
     }
 
     /// Remembers the ids of a case, its plans and its jobs, which are about to go.
-    pub(super) async fn bury_case(
+    pub(super) async fn insert_tombstones_of_case(
         &self,
         transaction: &mut Transaction,
         id: &str,

@@ -88,7 +88,7 @@ impl Store {
             let rows = export_table(&mut snapshot, table, &file).await?;
             manifest.rows.insert(table.to_owned(), rows);
         }
-        for row in query(REFERENCED).patiently().fetch_all(&mut snapshot).await? {
+        for row in query(REFERENCED).without_timeout().fetch_all(&mut snapshot).await? {
             manifest.blobs.insert(row.try_get(0)?);
         }
         snapshot.rollback().await;
@@ -162,7 +162,7 @@ async fn export_table(
         let values: Vec<Json> = row.values()?.into_iter().map(json).collect();
         write_line(&mut out, &values)
     };
-    let all = query_of(format!("SELECT * FROM {table}")).patiently();
+    let all = query_of(format!("SELECT * FROM {table}")).without_timeout();
     all.run(Executor::Transaction(snapshot), &mut take).await?;
     out.into_inner().map_err(std::io::IntoInnerError::into_error)?.sync_all()?;
     Ok(rows)

@@ -45,7 +45,7 @@ impl Wake {
             // What this process signs its words with, so that it does not wake itself.
             name: uuid::Uuid::now_v7().to_string(),
         };
-        tokio::spawn(others.talk(changed, here.clone()));
+        tokio::spawn(others.exchange(changed, here.clone()));
         Wake { here, there: Some(there) }
     }
 
@@ -98,7 +98,11 @@ struct PeerProcesses {
 }
 
 impl PeerProcesses {
-    async fn talk(self, changed: UnboundedReceiver<Arc<str>>, here: broadcast::Sender<Arc<str>>) {
+    async fn exchange(
+        self,
+        changed: UnboundedReceiver<Arc<str>>,
+        here: broadcast::Sender<Arc<str>>,
+    ) {
         tokio::select! {
             () = self.tell(changed) => {}
             () = self.listen(&here) => {}
@@ -120,7 +124,7 @@ impl PeerProcesses {
 
     async fn listen(&self, here: &broadcast::Sender<Arc<str>>) {
         while !self.pool.is_closed() {
-            if let Err(error) = self.hear(here).await {
+            if let Err(error) = self.receive(here).await {
                 tracing::debug!(%error, "the others are not heard");
             }
             tokio::time::sleep(RECOVERY).await;
@@ -128,7 +132,7 @@ impl PeerProcesses {
     }
 
     /// Wakes those who wait here whenever another process says so, until the connection breaks.
-    async fn hear(&self, here: &broadcast::Sender<Arc<str>>) -> Result<(), sqlx::Error> {
+    async fn receive(&self, here: &broadcast::Sender<Arc<str>>) -> Result<(), sqlx::Error> {
         let mut listener = PgListener::connect_with(&self.pool).await?;
         listener.listen(CHANNEL).await?;
         loop {

@@ -142,7 +142,7 @@ impl Heartbeat {
             let look = LOOK.min(pulse.interval);
             let mut reaped = None;
             while stopped.recv_timeout(look) == Err(RecvTimeoutError::Timeout) {
-                runtime.block_on(pulse.beat(&store, &mut reaped));
+                runtime.block_on(pulse.renew_all(&store, &mut reaped));
             }
             runtime.block_on(store.close());
         })?;
@@ -150,14 +150,14 @@ impl Heartbeat {
         Ok(Heartbeat { held, stop: Some(stop), thread: Some(thread) })
     }
 
-    /// Keeps a lease alive until `let_go`.
+    /// Keeps a lease alive until `unregister`.
     pub fn hold(&self, lease: Lease, trace: traces::Attempt) -> Arc<RunningJob> {
         let job = Arc::new(RunningJob::new(lease.clone(), trace));
         lock(&self.held).insert(lease, job.clone());
         job
     }
 
-    pub fn let_go(&self, lease: &Lease) {
+    pub fn unregister(&self, lease: &Lease) {
         lock(&self.held).remove(lease);
     }
 
@@ -197,10 +197,10 @@ struct Pulse {
 }
 
 impl Pulse {
-    async fn beat(&self, store: &Store, reaped: &mut Option<Instant>) {
+    async fn renew_all(&self, store: &Store, reaped: &mut Option<Instant>) {
         let jobs: Vec<_> = lock(&self.held).values().cloned().collect();
         for job in jobs {
-            match self.look_after(store, &job).await {
+            match self.renew_or_report(store, &job).await {
                 Ok(true) => {}
                 Ok(false) => job.stop(),
                 Err(error) => {
@@ -224,7 +224,7 @@ impl Pulse {
     }
 
     /// Renews the lease when it is time or when there is something to tell; false when the job is not ours.
-    async fn look_after(&self, store: &Store, job: &RunningJob) -> Result<bool, StoreError> {
+    async fn renew_or_report(&self, store: &Store, job: &RunningJob) -> Result<bool, StoreError> {
         let point = lock(&job.point).clone();
         let (last, told) = lock(&job.renewed).clone();
         let moved = point.phase != told.phase || point.progress != told.progress;

@@ -4,6 +4,6 @@
 const NICENESS: i32 = 10;
 
 /// Lets this thread, and those that it starts, give way (Linux). Whether the system agrees changes no result.
-pub fn give_way() {
+pub fn lower_priority() {
     let _ = rustix::process::nice(NICENESS);
 }

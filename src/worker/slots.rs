@@ -152,7 +152,7 @@ impl Shared {
             published
         });
         let status = self.conclude(lease, &job, ended);
-        self.heartbeat.let_go(lease);
+        self.heartbeat.unregister(lease);
         job.trace.ended(status);
         let took = started.elapsed();
         metrics::attempt_ended(&claim.kind, status, took);

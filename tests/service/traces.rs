@@ -119,7 +119,7 @@ async fn what_has_ended_is_told_before_the_process_ends() {
 }
 
 /// A collector that does something to everyone who connects, for as long as the test lives.
-async fn collector_that<Done: Future<Output = ()> + Send>(
+async fn collector_with<Done: Future<Output = ()> + Send>(
     does: impl Fn(TcpStream) -> Done + Copy + Send + 'static,
 ) -> String {
     let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
@@ -142,12 +142,12 @@ async fn answer(mut stream: TcpStream, text: &str) {
 async fn a_collector_that_is_dead_slow_or_talks_nonsense_changes_nothing() {
     let dead = TcpListener::bind("127.0.0.1:0").await.unwrap();
     let dead = format!("http://{}", dead.local_addr().unwrap());
-    let silent = collector_that(async |stream| {
+    let silent = collector_with(async |stream| {
         let _kept = stream;
         std::future::pending().await
     });
-    let nonsense = collector_that(async |stream| answer(stream, "what?\r\n\r\n").await);
-    let refusing = collector_that(async |stream| {
+    let nonsense = collector_with(async |stream| answer(stream, "what?\r\n\r\n").await);
+    let refusing = collector_with(async |stream| {
         answer(stream, "HTTP/1.1 503 Busy\r\nRetry-After: 600\r\nContent-Length: 0\r\n\r\n").await;
     });
     for (name, collector) in [

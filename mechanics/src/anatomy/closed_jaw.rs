@@ -76,12 +76,12 @@ pub fn close(
     surfaces[segment].points.iter_mut().for_each(|point| *point = movement.apply(point));
     let overlap = overlap as f64 * scan.voxel_volume();
     let warning = overlapping(&bone.labelled.segments[segment], overlap);
-    let labelled = as_scanned(labelled, bone.labelled);
+    let labelled = with_scan_report(labelled, bone.labelled);
     Ok(Closed { image, bone: PartedBone { labelled, surfaces, teeth }, farthest, warning })
 }
 
 /// What was told of the bone of the scan is still told.
-fn as_scanned(moved: Labelled, scanned: Labelled) -> Labelled {
+fn with_scan_report(moved: Labelled, scanned: Labelled) -> Labelled {
     let segments = moved.segments.into_iter().zip(scanned.segments);
     let segments = segments.map(|(now, was)| FoundSegment { left: was.left, ..now });
     Labelled { labels: moved.labels, segments: segments.collect(), ..scanned }

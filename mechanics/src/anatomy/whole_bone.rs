@@ -19,7 +19,7 @@ pub struct WholeBone {
 }
 
 /// The scan with bone, from the threshold on, made whole, and what became bone; nothing where nothing is asked for.
-pub fn made_whole(
+pub fn close_bone(
     scan: &ImageVolume,
     threshold: f64,
     rules: &WholeBone,

@@ -96,18 +96,18 @@ pub fn connected_parts(
     }
     let count = part_of_node.iter().flatten().max().map_or(0, |last| *last as usize + 1);
     let mut parts = vec![ConnectedPart::default(); count];
-    let mut wholly_held = vec![false; mesh.nodes.len()];
+    let mut fully_constrained = vec![false; mesh.nodes.len()];
     for (node, (part, place)) in part_of_node.iter().zip(&mesh.nodes).enumerate() {
         if let Some(part) = part {
             parts[*part as usize].take_in(node as u32, place);
         }
     }
     for hold in conditions.holds.iter().filter(|hold| hold.count() == 3) {
-        wholly_held[hold.node as usize] = true;
+        fully_constrained[hold.node as usize] = true;
     }
     // Skin that is held is bone; where all of it is, it is what there is.
     let mut free: Vec<u32> = skin.to_vec();
-    free.retain(|node| !wholly_held[*node as usize]);
+    free.retain(|node| !fully_constrained[*node as usize]);
     let skin = if free.is_empty() { skin } else { &free[..] };
     for part in skin.iter().filter_map(|node| part_of_node[*node as usize]) {
         parts[part as usize].skin_share += 1.0 / skin.len() as f64;
@@ -143,7 +143,7 @@ pub fn connected_parts(
     }
     parts.iter_mut().flat_map(|part| &mut part.held).for_each(HeldRows::finish);
     let mut has_tissue = vec![false; parts.len()];
-    for (part, held) in part_of_node.iter().zip(wholly_held) {
+    for (part, held) in part_of_node.iter().zip(fully_constrained) {
         part.iter().filter(|_| !held).for_each(|part| has_tissue[*part as usize] = true);
     }
     let mut has_tissue = has_tissue.into_iter();

@@ -35,7 +35,7 @@ pub struct ClassesPicture<'a> {
     /// For each point its entry in `classes`.
     pub class_of: &'a [usize],
     pub classes: &'a [NodeClasses],
-    pub outlook: FaceDirection,
+    pub face_direction: FaceDirection,
     pub frame: &'a str,
 }
 
@@ -72,7 +72,7 @@ impl ClassesPicture<'_> {
             .map(|&class| palette.get(class).copied().unwrap_or(colour::FREE))
             .collect();
         let held = self.held();
-        let cameras = VIEWS.map(|view| self.outlook.camera(view.around, view.above));
+        let cameras = VIEWS.map(|view| self.face_direction.camera(view.around, view.above));
         let extents = cameras.map(|camera| camera.extent(self.points.iter()));
         let widest = extents.iter().map(|e| e.size(0)).fold(1e-9, f64::max);
         let tallest = extents.iter().map(|e| e.size(1)).fold(1e-9, f64::max);
@@ -199,7 +199,7 @@ mod tests {
             triangles: &[[0, 1, 2]],
             class_of: &[0, 1, 5],
             classes: &classes,
-            outlook: FaceDirection::ras(),
+            face_direction: FaceDirection::ras(),
             frame: "RAS",
         };
         let mut palette = picture.palette();

@@ -17,7 +17,7 @@ pub struct DisplacementPicture<'a> {
     pub triangles: &'a [[u32; 3]],
     pub before: &'a [Vector],
     pub after: &'a [Vector],
-    pub outlook: FaceDirection,
+    pub face_direction: FaceDirection,
     /// The frame of the coordinates as clients name it, e.g. `LPS`.
     pub frame: &'a str,
     /// At which colours end, in mm: those of reports and of the page.
@@ -50,7 +50,7 @@ impl DisplacementPicture<'_> {
         let range_mm = self.range_mm;
         let values = ViewValues { values: &moved, range_mm, is_signed: false, name: "moved, mm" };
         let colours: Vec<Rgb> = moved.iter().map(|&length| values.colour(length)).collect();
-        let cameras = ROWS.map(|(_, around, above)| self.outlook.camera(around, above));
+        let cameras = ROWS.map(|(_, around, above)| self.face_direction.camera(around, above));
         let layout = Layout::of(&cameras, self);
         let width = 2.0 * MARGIN + 3.0 * PANEL_WIDTH + 3.0 * GAP + LEGEND_WIDTH;
         let foot = wrapped(self.statistics, width - 2.0 * MARGIN, Style::of(13.0));
@@ -197,7 +197,7 @@ mod tests {
             triangles: &[[0, 1, 2]],
             before: &before,
             after: &after,
-            outlook: FaceDirection::lps(),
+            face_direction: FaceDirection::lps(),
             frame: "LPS",
             range_mm: 5.0,
             statistics: "mean 2.30 mm",

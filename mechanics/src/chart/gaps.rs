@@ -13,7 +13,7 @@ pub struct GapsPicture<'a> {
     pub title: &'a str,
     pub subtitle: &'a str,
     pub bones: &'a [GapsOfBone<'a>],
-    pub outlook: FaceDirection,
+    pub face_direction: FaceDirection,
     pub frame: &'a str,
 }
 
@@ -119,7 +119,7 @@ impl GapsPicture<'_> {
 
     /// From above or from below, whichever shows more of what is near.
     fn camera(&self, bone: &GapsOfBone) -> Camera {
-        let up = self.outlook.up;
+        let up = self.face_direction.up;
         let mut seen = 0.0;
         for (points, gaps) in &bone.stages {
             for triangle in bone.triangles {
@@ -130,11 +130,11 @@ impl GapsPicture<'_> {
                 seen += weight * (b - a).cross(&(c - a)).dot(&up);
             }
         }
-        self.outlook.camera(0.0, if seen < 0.0 { -90.0 } else { 90.0 })
+        self.face_direction.camera(0.0, if seen < 0.0 { -90.0 } else { 90.0 })
     }
 
     fn words(&self, bone: &GapsOfBone, camera: &Camera) -> String {
-        let is_above = camera.towards.dot(&self.outlook.up) > 0.0;
+        let is_above = camera.towards.dot(&self.face_direction.up) > 0.0;
         format!("{}, from {}", bone.name, if is_above { "above" } else { "below" })
     }
 }
@@ -200,8 +200,8 @@ mod tests {
             },
         ];
         let (title, subtitle) = ("Gaps", "jaw 1 mm up");
-        let outlook = FaceDirection::lps();
-        let picture = GapsPicture { title, subtitle, bones: &bones, outlook, frame: "LPS" };
+        let face_direction = FaceDirection::lps();
+        let picture = GapsPicture { title, subtitle, bones: &bones, face_direction, frame: "LPS" };
         let text = picture.to_svg().expect("a picture");
         assert_eq!(text.matches("data:image/png;base64,").count(), 4);
         for words in ["mandible, from above", "maxilla, from below", "0 to 0.3: contact", "Before"]

@@ -15,7 +15,7 @@ pub struct MusclesPicture<'a> {
     pub muscles: &'a [MuscleGroup],
     /// Points in mm and triangles, counter-clockwise seen from outside.
     pub bones: &'a [(&'a [Vector], &'a [[u32; 3]])],
-    pub outlook: FaceDirection,
+    pub face_direction: FaceDirection,
     pub frame: &'a str,
 }
 
@@ -47,7 +47,7 @@ impl MusclesPicture<'_> {
     /// The picture as one SVG document.
     pub fn to_svg(&self) -> Result<String, PngError> {
         let (points, triangles, colours) = self.painted();
-        let cameras = VIEWS.map(|(_, around)| self.outlook.camera(around, 0.0));
+        let cameras = VIEWS.map(|(_, around)| self.face_direction.camera(around, 0.0));
         let extents = cameras.map(|camera| camera.extent(points.iter()));
         let [widest, tallest] =
             [0, 1].map(|axis| extents.iter().map(|e| e.size(axis)).fold(1e-9, f64::max));
@@ -155,7 +155,7 @@ mod tests {
             subtitle: "",
             muscles: &[muscle("buccinator", -2.0), muscle("levator <labii>", -4.0)],
             bones: &[(&bone, &triangles)],
-            outlook: FaceDirection::lps(),
+            face_direction: FaceDirection::lps(),
             frame: "LPS",
         };
         let (points, all, colours) = picture.painted();

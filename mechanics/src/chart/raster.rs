@@ -108,7 +108,7 @@ fn corners(surface: &ColouredSurface, shot: &Shot) -> Vec<Corner> {
     let scale = SAMPLES as f64 / shot.millimetres_per_pixel;
     let middle = [shot.width, shot.height].map(|side| (side * SAMPLES) as f64 / 2.0);
     let normals = point_normals(surface);
-    let openness = openness(surface, &normals);
+    let sky_visibility = sky_visibility(surface, &normals);
     let relief = surface.finish.relief();
     let points = surface.points.iter().zip(&normals).enumerate();
     points
@@ -119,7 +119,8 @@ fn corners(surface: &ColouredSurface, shot: &Shot) -> Vec<Corner> {
                 y: (shot.centre[1] - up) * scale + middle[1],
                 depth: towards,
                 normal: Vector::from(shot.camera.project(normal)),
-                albedo: linear(surface.colours[point]) * (1.0 - relief * (1.0 - openness[point])),
+                albedo: linear(surface.colours[point])
+                    * (1.0 - relief * (1.0 - sky_visibility[point])),
             }
         })
         .collect()
@@ -141,7 +142,7 @@ fn point_normals(surface: &ColouredSurface) -> Vec<Vector> {
 }
 
 /// For each point the share of skylight that its neighbours leave it, in [0.55, 1].
-fn openness(surface: &ColouredSurface, normals: &[Vector]) -> Vec<f64> {
+fn sky_visibility(surface: &ColouredSurface, normals: &[Vector]) -> Vec<f64> {
     let mut rise = vec![(0.0, 0.0); surface.points.len()];
     for triangle in surface.triangles {
         for (&from, &to) in triangle.iter().zip(triangle.iter().cycle().skip(1)) {
@@ -264,9 +265,9 @@ mod tests {
         (points, triangles)
     }
 
-    fn shot(outlook: FaceDirection, size: usize) -> Shot {
+    fn shot(face_direction: FaceDirection, size: usize) -> Shot {
         Shot {
-            camera: outlook.camera(30.0, 20.0),
+            camera: face_direction.camera(30.0, 20.0),
             centre: [0.0; 2],
             millimetres_per_pixel: 1.0,
             width: size,

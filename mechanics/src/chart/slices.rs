@@ -18,7 +18,7 @@ pub struct SlicesPicture<'a> {
     pub tetrahedra: &'a [[u32; 4]],
     /// A point of all three planes.
     pub middle: Vector,
-    pub outlook: FaceDirection,
+    pub face_direction: FaceDirection,
     /// The frame of the coordinates as clients name it, e.g. `LPS`.
     pub frame: &'a str,
 }
@@ -49,7 +49,7 @@ struct Cut {
 impl SlicesPicture<'_> {
     /// The picture as one SVG document.
     pub fn to_svg(&self) -> Result<String, PngError> {
-        let cameras = COLUMNS.map(|(_, around, above)| self.outlook.camera(around, above));
+        let cameras = COLUMNS.map(|(_, around, above)| self.face_direction.camera(around, above));
         let cuts = cameras.map(|camera| self.cut(&camera));
         let extents = [0, 1, 2].map(|column| cameras[column].extent(cuts[column].points.iter()));
         let sizes: Vec<f64> = self.tetrahedra.iter().map(|cell| self.longest_edge(*cell)).collect();
@@ -249,7 +249,7 @@ mod tests {
             points,
             tetrahedra,
             middle: Vector::new(0.1, 0.1, 0.1),
-            outlook: FaceDirection::lps(),
+            face_direction: FaceDirection::lps(),
             frame: "LPS",
         }
     }

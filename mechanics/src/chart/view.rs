@@ -161,9 +161,9 @@ mod tests {
     #[test]
     fn a_plate_that_lies_on_its_back_is_seen_from_above_and_a_face_from_the_front() {
         let plate = [Vector::zeros(), Vector::x(), Vector::y()];
-        let outlook = FaceDirection::lps().facing(&plate, &[[0, 1, 2]]);
-        assert!((outlook.front - Vector::z()).norm() < 1e-12, "{:?}", outlook.front);
-        assert!((outlook.up - Vector::y()).norm() < 1e-12, "{:?}", outlook.up);
+        let face_direction = FaceDirection::lps().facing(&plate, &[[0, 1, 2]]);
+        assert!((face_direction.front - Vector::z()).norm() < 1e-12, "{:?}", face_direction.front);
+        assert!((face_direction.up - Vector::y()).norm() < 1e-12, "{:?}", face_direction.up);
         let face = [Vector::zeros(), Vector::x(), Vector::z()];
         assert!(
             (FaceDirection::lps().facing(&face, &[[0, 1, 2]]).front + Vector::y()).norm() < 1e-12

@@ -12,7 +12,7 @@ use rayon::prelude::*;
 pub struct ViewsPicture<'a> {
     pub triangles: &'a [[u32; 3]],
     pub rows: &'a [ViewRow<'a>],
-    pub outlook: FaceDirection,
+    pub face_direction: FaceDirection,
     /// Front, between, side.
     pub columns: [&'a str; 3],
 }
@@ -62,7 +62,7 @@ const BANDS: usize = 10;
 impl ViewsPicture<'_> {
     pub fn to_drawing(&self) -> Result<Document, PngError> {
         let side = if self.shows_left() { -1.0 } else { 1.0 };
-        let cameras = VIEWS.map(|[around, above]| self.outlook.camera(side * around, above));
+        let cameras = VIEWS.map(|[around, above]| self.face_direction.camera(side * around, above));
         let layout = Layout::of(&cameras, self);
         let height = HEAD + (layout.height + GAP) * self.rows.len() as f64;
         let mut document = Document::new(WIDTH, height);
@@ -89,7 +89,7 @@ impl ViewsPicture<'_> {
     fn shows_left(&self) -> bool {
         let Some(row) = self.rows.first() else { return false };
         let [right, left] = [-90.0, 90.0].map(|around| {
-            let towards = self.outlook.camera(around, 0.0).towards;
+            let towards = self.face_direction.camera(around, 0.0).towards;
             let areas = self.triangles.iter().map(|triangle| {
                 let [a, b, c] = triangle.map(|point| row.points[point as usize]);
                 (b - a).cross(&(c - a)).dot(&towards).max(0.0)
@@ -272,7 +272,7 @@ mod tests {
         let picture = ViewsPicture {
             triangles: TRIANGLES,
             rows: &rows,
-            outlook: FaceDirection::lps(),
+            face_direction: FaceDirection::lps(),
             columns,
         };
         let drawing = picture.to_drawing().unwrap();
@@ -311,9 +311,9 @@ mod tests {
         let count = |outline_of| {
             let rows = [row(&after, outline_of)];
             let triangles = TRIANGLES;
-            let (outlook, columns) = (FaceDirection::lps(), [""; 3]);
-            let picture = ViewsPicture { triangles, rows: &rows, outlook, columns };
-            let camera = outlook.camera(0.0, 0.0);
+            let (face_direction, columns) = (FaceDirection::lps(), [""; 3]);
+            let picture = ViewsPicture { triangles, rows: &rows, face_direction, columns };
+            let camera = face_direction.camera(0.0, 0.0);
             let cameras = [camera; 3];
             let layout = Layout::of(&cameras, &picture);
             let image = picture.image(&rows[0], &layout.shot(camera, &picture));

@@ -58,8 +58,8 @@ impl<'a> Energy<'a> {
             }
             let product = self.multiplied(&p);
             let step = rho / dot(&p, &product);
-            advance(&mut x, &p, step);
-            advance(&mut r, &product, -step);
+            axpy(&mut x, &p, step);
+            axpy(&mut r, &product, -step);
             z = scaled(&r);
             let next = dot(&r, &z);
             p.iter_mut().zip(&z).for_each(|(p, z)| *p = z + *p * (next / rho));
@@ -130,7 +130,7 @@ fn dot(a: &[Vector], b: &[Vector]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a.dot(b)).sum()
 }
 
-fn advance(x: &mut [Vector], p: &[Vector], step: f64) {
+fn axpy(x: &mut [Vector], p: &[Vector], step: f64) {
     x.iter_mut().zip(p).for_each(|(x, p)| *x += p * step);
 }
 

@@ -52,7 +52,7 @@ impl SurfaceDomain {
         };
         let (mut depths, deepest): (Vec<f32>, Vec<u16>) =
             (0..count).into_par_iter().map(deepest).unzip();
-        deepen(&mut depths, &grid, near);
+        exact_deep_depths(&mut depths, &grid, near);
         let steps = [Vector::x(), Vector::y(), Vector::z()].map(|axis| axis * grid.edge);
         let placement = Placement { origin: grid.low, steps };
         let image = ImageVolume::new(grid.size, placement, Voxels::F32(depths));
@@ -88,7 +88,7 @@ fn depth(bone: &Shell, point: &Vector, near: f64) -> f64 {
 }
 
 /// Depths of `near` and more: to the nearest voxel outside, less its own way to the surface.
-fn deepen(depths: &mut [f32], grid: &Grid, near: f64) {
+fn exact_deep_depths(depths: &mut [f32], grid: &Grid, near: f64) {
     let outside = nearest_marked(grid.size, [grid.edge; 3], |voxel| depths[voxel] <= 0.0);
     for (voxel, outside) in outside.iter().enumerate() {
         if depths[voxel] >= near as f32 && outside.voxel != u32::MAX {

@@ -77,7 +77,7 @@ impl Edges {
                     }
                 }
             }
-            areas.push(follow_the_larger_part(&patch, corners, &mut turned));
+            areas.push(orient_by_majority(&patch, corners, &mut turned));
             members.push(patch);
         }
         Patches { turned, members, areas }
@@ -157,7 +157,7 @@ fn excess(edge: &[Side], turned: &[bool]) -> u32 {
 }
 
 /// Turns the whole patch where the larger part of its area was turned; returns its area in mm².
-fn follow_the_larger_part(patch: &[u32], corners: &[Corners], turned: &mut [bool]) -> f64 {
+fn orient_by_majority(patch: &[u32], corners: &[Corners], turned: &mut [bool]) -> f64 {
     let area = |n: u32| corners[n as usize].area_vector().norm();
     let all: f64 = patch.iter().map(|&n| area(n)).sum();
     let changed: f64 = patch.iter().filter(|&&n| turned[n as usize]).map(|&n| area(n)).sum();

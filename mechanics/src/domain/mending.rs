@@ -72,9 +72,9 @@ pub(super) fn mend(surface: &TriangleSurface) -> RepairedSurface {
     let edges = Edges::new(&triangles);
     let patches = edges.patches(&corners);
     let mut turned = patches.turned.clone();
-    turn_patches(&corners, &patches, &mut turned);
+    flip_patches(&corners, &patches, &mut turned);
     let pieces = edges.pieces();
-    turn_pieces(&corners, &pieces, &edges.open_lengths(&corners, &turned), &mut turned);
+    flip_pieces(&corners, &pieces, &edges.open_lengths(&corners, &turned), &mut turned);
     mending.was_inverted = 2 * turned.iter().filter(|&&turned| turned).count() > turned.len();
     let changed = turned.iter().filter(|&&turned| turned != mending.was_inverted);
     mending.turned = changed.count();
@@ -213,7 +213,7 @@ fn facets(corners: &[Corners], numbers: &[u32], turned: &[bool], open: &[[f64; 3
 }
 
 /// Turns small patches that the rest of the surface sees from the other side.
-fn turn_patches(corners: &[Corners], patches: &Patches, turned: &mut [bool]) {
+fn flip_patches(corners: &[Corners], patches: &Patches, turned: &mut [bool]) {
     let area: f64 = patches.areas.iter().sum();
     let small: Vec<usize> =
         (0..patches.areas.len()).filter(|&n| patches.areas[n] <= LARGE_PATCH * area).collect();
@@ -270,7 +270,7 @@ fn seen_from_behind(
 }
 
 /// Turns everything where the volume is negative, then closed pieces inside out that lie in no other piece.
-fn turn_pieces(corners: &[Corners], pieces: &Pieces, open: &[[f64; 3]], turned: &mut [bool]) {
+fn flip_pieces(corners: &[Corners], pieces: &Pieces, open: &[[f64; 3]], turned: &mut [bool]) {
     let middle = corners.iter().map(Corners::middle).sum::<Vector>() / corners.len().max(1) as f64;
     let signed = |n: usize, turned: &[bool]| {
         let volume = corners[n].volume_with(&middle);
@@ -295,7 +295,7 @@ fn turn_pieces(corners: &[Corners], pieces: &Pieces, open: &[[f64; 3]], turned: 
     let numbers: Vec<u32> = (0..corners.len() as u32).collect();
     let tree = TriangleTree::new(facets(corners, &numbers, turned, open));
     let lone: Vec<bool> = (0..pieces.count)
-        .map(|piece| inside_out(piece) && !lies_in_another(&tree, corners, pieces, piece))
+        .map(|piece| inside_out(piece) && !is_enclosed(&tree, corners, pieces, piece))
         .collect();
     for (n, &piece) in pieces.piece_of.iter().enumerate() {
         turned[n] ^= lone[piece as usize];
@@ -303,12 +303,7 @@ fn turn_pieces(corners: &[Corners], pieces: &Pieces, open: &[[f64; 3]], turned: 
 }
 
 /// Just beyond its outermost corner a closed piece goes around nothing: what is there are the others.
-fn lies_in_another(
-    tree: &TriangleTree,
-    corners: &[Corners],
-    pieces: &Pieces,
-    piece: usize,
-) -> bool {
+fn is_enclosed(tree: &TriangleTree, corners: &[Corners], pieces: &Pieces, piece: usize) -> bool {
     let members = pieces.piece_of.iter().zip(corners).filter(|(of, _)| **of as usize == piece);
     let points = members.flat_map(|(_, corners)| corners.0);
     let outermost = points.max_by(|a, b| a.x.total_cmp(&b.x));

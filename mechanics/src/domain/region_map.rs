@@ -5,7 +5,7 @@
 
 use nalgebra::Matrix3;
 
-use crate::image::spline::seen_from;
+use crate::image::spline::spline_weights;
 use crate::mesh::Vector;
 
 /// Steps to where two regions meet.
@@ -50,7 +50,7 @@ impl RegionMap {
     /// The region with most votes at a place in voxels; the first where no tissue is seen.
     pub(super) fn at(&self, place: [f64; 3]) -> u8 {
         let mut votes = [0.0; 256];
-        seen_from(self.size, place, |seen| {
+        spline_weights(self.size, place, |seen| {
             votes[usize::from(self.of_voxels[seen.voxel])] += seen.weight;
         });
         let of_tissue = votes.iter().enumerate().skip(1);
@@ -97,7 +97,7 @@ impl RegionMap {
 
     fn votes(&self, place: [f64; 3], between: [u8; 2]) -> [Votes; 2] {
         let mut votes = [Votes::default(); 2];
-        seen_from(self.size, place, |seen| {
+        spline_weights(self.size, place, |seen| {
             for (votes, region) in votes.iter_mut().zip(between) {
                 if self.of_voxels[seen.voxel] == region + 1 {
                     votes.sum += seen.weight;

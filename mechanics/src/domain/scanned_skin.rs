@@ -67,7 +67,7 @@ impl<'a> Field<'a> {
 
     fn at(&self, point: &Vector) -> Option<Depth> {
         let ScannedSkin { surface, reach, blend } = self.skin;
-        let closest = self.search.nearer_than(point, *reach)?;
+        let closest = self.search.closest_within(point, *reach)?;
         let corners = surface.triangles[closest.triangle].into_iter().zip(closest.barycentric);
         let border: f64 =
             corners.map(|(corner, weight)| weight * self.to_border[corner as usize]).sum();

@@ -60,7 +60,7 @@ pub(super) fn second_sheets(corners: &[Corners], pieces: &Pieces) -> SecondSheet
         let other = large[n + 1..].iter().copied().find(|&other| {
             !second[first as usize]
                 && !second[other as usize]
-                && sheets.lie_together([first, other])
+                && sheets.are_coincident([first, other])
         });
         if let Some(other) = other {
             second[other as usize] = true;
@@ -99,7 +99,7 @@ struct Sheets<'a> {
 }
 
 impl Sheets<'_> {
-    fn lie_together(&self, [a, b]: [u32; 2]) -> bool {
+    fn are_coincident(&self, [a, b]: [u32; 2]) -> bool {
         let of = |piece: u32| self.sizes[piece as usize];
         let alike = |a: f64, b: f64| a * b > 0.0 && (a - b).abs() <= ALIKE * a.abs().max(b.abs());
         alike(of(a).area, of(b).area)

@@ -56,7 +56,7 @@ impl Shell {
         let Some(Assessed { assessment, inside }) = assess(&mended, &tree, &cells) else {
             return Err(SurfaceDomainError::NoInside { surface: name, triangles, open_edges });
         };
-        refuse_unsure(&assessment, name)?;
+        refuse_uncertain_inside(&assessment, name)?;
         let threshold = 0.5 * assessment.level;
         Ok((Shell { tree, cells, threshold, inside }, assessment))
     }
@@ -107,7 +107,10 @@ impl Shell {
 }
 
 /// Refuses a surface whose inside is not certain.
-fn refuse_unsure(found: &Assessment, surface: SurfaceName) -> Result<(), SurfaceDomainError> {
+fn refuse_uncertain_inside(
+    found: &Assessment,
+    surface: SurfaceName,
+) -> Result<(), SurfaceDomainError> {
     let Assessment { level, uncertain, opening, pieces, open_edges, .. } = *found;
     let percent = |share: f64| 100.0 * share;
     if level < LEAST_LEVEL {

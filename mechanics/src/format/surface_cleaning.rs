@@ -68,7 +68,7 @@ fn drop_doubled(surface: &mut TriangleSurface, warnings: &mut Vec<Warning>) {
         let first = surface.triangles[group[0].1 as usize];
         for &(_, triangle) in &group[1..] {
             drop[triangle as usize] = true;
-            if is_same_turn(first, surface.triangles[triangle as usize]) {
+            if has_same_winding(first, surface.triangles[triangle as usize]) {
                 same += 1;
             } else {
                 flipped += 1;
@@ -92,7 +92,7 @@ fn sorted((&triangle, number): (&[u32; 3], u32)) -> ([u32; 3], u32) {
     (key, number)
 }
 
-fn is_same_turn([a, b, c]: [u32; 3], other: [u32; 3]) -> bool {
+fn has_same_winding([a, b, c]: [u32; 3], other: [u32; 3]) -> bool {
     [[a, b, c], [b, c, a], [c, a, b]].contains(&other)
 }
 

@@ -135,7 +135,7 @@ pub struct VoxelWeight {
 }
 
 /// The voxels that a place sees, with their weights, whose sum is one; those beyond the border are mirrored.
-pub fn seen_from(size: [usize; 3], place: [f64; 3], mut each: impl FnMut(VoxelWeight)) {
+pub fn spline_weights(size: [usize; 3], place: [f64; 3], mut each: impl FnMut(VoxelWeight)) {
     let support: [Support; 3] = std::array::from_fn(|axis| Support::new(place[axis], size[axis]));
     let [x, y, z] = support.map(Support::weights);
     let [dx, dy, dz] = support.map(Support::slopes);

@@ -39,7 +39,7 @@ impl<const N: usize> Range<N> {
     }
 
     /// Wider by more than the rounding of means.
-    fn widened(mut self) -> Self {
+    fn with_rounding_margin(mut self) -> Self {
         for channel in 0..N {
             let slack = 1e-6 * self.low[channel].abs().max(self.high[channel].abs());
             self.low[channel] -= slack;
@@ -159,7 +159,7 @@ fn piece_range<const N: usize>(columns: &[[[[f32; N]; 4]; 4]]) -> Range<N> {
         let along = bernstein(std::array::from_fn(|i| columns[i][k][j]));
         range = along.into_iter().fold(range, Range::with_value);
     }
-    range.widened()
+    range.with_rounding_margin()
 }
 
 /// B-spline coefficients around an interval to Bernstein coefficients on it.

@@ -125,7 +125,7 @@ impl ElasticTensor {
             return PressurePart { lambda: self.lambda, mu: self.mu };
         };
         let shear = self.mu.min(self.mu + fibre.moduli.delta_mu);
-        let BesidesLambda { along, mixed, across } = self.besides_lambda();
+        let WithoutLambda { along, mixed, across } = self.without_lambda();
         let bulk = self.lambda
             + (along * across - 2.0 * mixed * mixed) / (2.0 * along + across - 4.0 * mixed);
         PressurePart { lambda: (bulk - 2.0 / 3.0 * shear).max(0.0), mu: shear }
@@ -134,7 +134,7 @@ impl ElasticTensor {
     /// The smallest eigenvalue of the 6 x 6 matrix of C in kPa, shear strains as angles.
     pub fn smallest_eigenvalue(&self) -> f64 {
         let delta_mu = self.fibre.map_or(0.0, |fibre| fibre.moduli.delta_mu);
-        let BesidesLambda { along, mixed, across } = self.besides_lambda();
+        let WithoutLambda { along, mixed, across } = self.without_lambda();
         // Of the normal strains e1 and e2 = e3 these two remain: (C11, sqrt 2 C12; sqrt 2 C12, C22 + C23).
         // Their determinant is linear in lambda, which keeps it exact where lambda is large.
         let determinant = self.lambda * (across + 2.0 * along - 4.0 * mixed) + along * across
@@ -146,10 +146,10 @@ impl ElasticTensor {
         normal.min(self.mu).min(self.mu + delta_mu)
     }
 
-    fn besides_lambda(&self) -> BesidesLambda {
+    fn without_lambda(&self) -> WithoutLambda {
         let FibreModuli { delta_lambda, delta_mu, beta } =
             self.fibre.map_or_else(FibreModuli::default, |fibre| fibre.moduli);
-        BesidesLambda {
+        WithoutLambda {
             along: 2.0 * (self.mu + delta_lambda) + beta + 4.0 * delta_mu,
             mixed: delta_lambda,
             across: 2.0 * self.mu,
@@ -158,7 +158,7 @@ impl ElasticTensor {
 }
 
 /// C11 - lambda, C12 - lambda and C22 + C23 - 2 lambda with the fibre along the first axis.
-struct BesidesLambda {
+struct WithoutLambda {
     along: f64,
     mixed: f64,
     across: f64,

@@ -87,7 +87,7 @@ mod tests {
     }
 
     /// P(I + s H) less its first two orders, over s^3.
-    fn beyond_second(s: f64) -> Matrix3<f64> {
+    fn third_order_remainder(s: f64) -> Matrix3<f64> {
         let h = sheared();
         let law = Law::NeoHookean(NeoHookean { lambda: LAMBDA, mu: MU });
         let stress = Point::new(&law, None, Matrix3::identity() + h * s).stress();
@@ -102,7 +102,7 @@ mod tests {
         let h = sheared();
         let tensions = [second_log_volume(&h, &h), third_log_volume(&h)].map(|log| LAMBDA * log);
         let third = third_stress(MU, &stretch(h), tensions[0], tensions[1]);
-        let off = |s: f64| (beyond_second(s) - third).norm() / third.norm();
+        let off = |s: f64| (third_order_remainder(s) - third).norm() / third.norm();
         assert!(off(1e-2) < 0.05, "{}", off(1e-2));
         let ratio = off(1e-2) / off(5e-3);
         assert!((1.9..2.1).contains(&ratio), "{ratio}");

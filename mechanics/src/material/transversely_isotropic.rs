@@ -27,7 +27,7 @@ pub enum FibreLaw {
     #[default]
     Engineering,
     /// Lamé constants from each modulus with one nu: the law of Kim et al. 2012, corrected.
-    Paper002,
+    Kim2012,
 }
 
 /// What fibres add to a tissue whose own constants are those across them.
@@ -61,10 +61,10 @@ impl TransverselyIsotropic {
         }
         let stiffness = match fibre.law {
             FibreLaw::Engineering => engineering(across, fibre)?,
-            FibreLaw::Paper002 if fibre.shear_modulus.is_some() => {
+            FibreLaw::Kim2012 if fibre.shear_modulus.is_some() => {
                 return Err(MaterialError::ShearOfPaper002);
             }
-            FibreLaw::Paper002 => paper_002(across, fibre),
+            FibreLaw::Kim2012 => kim_2012(across, fibre),
         };
         let smallest = stiffness.along(&Vector3::x()).smallest_eigenvalue();
         if smallest.is_nan() || smallest <= 0.0 {
@@ -185,7 +185,7 @@ fn engineering(across: &Isotropic, fibre: &Fibre) -> Result<TransverselyIsotropi
     })
 }
 
-fn paper_002(across: &Isotropic, fibre: &Fibre) -> TransverselyIsotropic {
+fn kim_2012(across: &Isotropic, fibre: &Fibre) -> TransverselyIsotropic {
     let along = Isotropic { young_modulus: fibre.young_modulus, ..*across };
     let delta_lambda = along.lambda() - across.lambda();
     let delta_mu = along.shear_modulus() - across.shear_modulus();

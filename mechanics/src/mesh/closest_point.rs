@@ -96,12 +96,12 @@ impl SurfaceSearch {
     /// The nearest point of the surface to a finite `point`. Among equally near triangles it is
     /// always the same one for the same surface. The distance to a point that is not finite is infinite.
     pub fn closest(&self, point: &Vector) -> ClosestPoint {
-        self.nearer_than(point, f64::INFINITY).unwrap_or_else(|| self.infinitely_far())
+        self.closest_within(point, f64::INFINITY).unwrap_or_else(|| self.infinitely_far())
     }
 
     /// The nearest point of the surface if it is less than `limit` mm away; the smaller the limit,
     /// the less is searched.
-    pub fn nearer_than(&self, point: &Vector, limit: f64) -> Option<ClosestPoint> {
+    pub fn closest_within(&self, point: &Vector, limit: f64) -> Option<ClosestPoint> {
         self.closest_of(point, limit, |_| true)
     }
 
@@ -115,7 +115,7 @@ impl SurfaceSearch {
     }
 
     /// The nearest point of those triangles for which `counts` holds, if it is less than `limit` mm away.
-    pub fn nearer_where(
+    pub fn closest_within_where(
         &self,
         point: &Vector,
         limit: f64,

@@ -16,7 +16,7 @@ const FAIR: f64 = 0.21;
 type CreaseEdge = [u32; 2];
 
 /// Moves nodes onto creases; returns how many.
-pub(super) fn sharpen(climb: &mut Climb, watch: &Watch) -> Result<usize, MeshingError> {
+pub(super) fn snap_creases(climb: &mut Climb, watch: &Watch) -> Result<usize, MeshingError> {
     let mut moved = 0;
     for limit in LIMITS {
         let beside = beside_creases(climb.draft);

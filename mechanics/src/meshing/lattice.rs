@@ -44,7 +44,7 @@ impl Lattice {
         watch: &Watch,
     ) -> Result<Lattice, MeshingError> {
         let nodes = Nodes::new(leaves);
-        watch.go_on()?;
+        watch.check_cancelled()?;
         let inside = nodes.inside(domain, watch)?;
         let numbers: Vec<u32> = (0..leaves.list.len() as u32).collect();
         let tetrahedra = watch.gather(&numbers, |numbers, list| {

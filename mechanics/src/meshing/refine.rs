@@ -50,7 +50,7 @@ impl Refinement<'_> {
             }
         }
         tree.balance();
-        watch.go_on()?;
+        watch.check_cancelled()?;
         let leaves = tree.into_leaves();
         let tissue = leaves.list.iter().map(|leaf| share(leaf.held) * PER_CUBE);
         self.refuse(tissue.sum())?;

@@ -51,7 +51,7 @@ pub(super) fn part(climb: &mut Climb, watch: &Watch) -> Result<Vec<u8>, MeshingE
             }
             Nodes::Chords => {
                 let regions = of_cells(climb, watch)?;
-                beyond_chords(climb, &regions, watch)?
+                chord_corrected(climb, &regions, watch)?
             }
         };
         let nodes = (0..wanted.len() as u32).filter(|&node| wanted[node as usize].is_some());
@@ -125,7 +125,7 @@ fn projected(
 }
 
 /// For each node of faces between regions the place at which these lie as far beyond where the regions meet as within it.
-fn beyond_chords(
+fn chord_corrected(
     climb: &Climb,
     regions: &[u8],
     watch: &Watch,

@@ -70,7 +70,7 @@ pub fn mesh(
     watch.stage()?;
     let (low, high) = domain.bounds();
     let size = target::size_field(domain, settings, &watch)?.bounded((high - low).max());
-    let (mut draft, counts) = stuff(domain, settings, &size, &mut watch)?;
+    let (mut draft, counts) = fill_lattice(domain, settings, &size, &mut watch)?;
     watch.stage()?;
     let edges_cut = edge_copies::part(&mut draft);
     let dropped = if settings.keep_pieces { Vec::new() } else { pieces::drop_small(&mut draft) };
@@ -79,7 +79,7 @@ pub fn mesh(
     watch.stage()?;
     let raw_angles = Angles::of(&draft);
     let mut climb = Climb::new(&mut draft, domain);
-    let creased = creases::sharpen(&mut climb, &watch)?;
+    let creased = creases::snap_creases(&mut climb, &watch)?;
     climb.climb(settings.sweeps, &watch)?;
     climb.settle(&watch)?;
     let regions = regions::part(&mut climb, &watch)?;
@@ -138,7 +138,7 @@ fn refuse_too_few(
 }
 
 /// Fills the body with the cells of a warped lattice.
-fn stuff(
+fn fill_lattice(
     domain: &dyn Domain,
     settings: &MeshingSettings,
     size: &SizeField,

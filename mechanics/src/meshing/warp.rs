@@ -78,7 +78,7 @@ impl<'a> Warp<'a> {
             domain,
         };
         warp.snap();
-        warp.put_back_flat();
+        warp.undo_flat();
         warp
     }
 
@@ -142,7 +142,7 @@ impl<'a> Warp<'a> {
     }
 
     /// Puts nodes back until no tetrahedron with tissue in it is flat or turned over.
-    fn put_back_flat(&mut self) {
+    fn undo_flat(&mut self) {
         loop {
             let all = 0..self.lattice.tetrahedra.len() as u32;
             let flat: Vec<u32> = all
@@ -158,7 +158,7 @@ impl<'a> Warp<'a> {
                     && self.sine(tet) < POOR
                 {
                     self.undone += 1;
-                    self.put_back(node);
+                    self.undo_warp(node);
                 }
             }
         }
@@ -180,7 +180,7 @@ impl<'a> Warp<'a> {
         if way(other) > way(one) { other } else { one }
     }
 
-    fn put_back(&mut self, node: u32) {
+    fn undo_warp(&mut self, node: u32) {
         let inside = self.lattice.inside[node as usize];
         self.side[node as usize] = if inside { Side::Inside } else { Side::Outside };
         self.position[node as usize] = self.lattice.position(node);
@@ -190,8 +190,8 @@ impl<'a> Warp<'a> {
 
     /// Puts a node back and on, away from the boundary, so that its cuts do not lie at its feet.
     pub fn release(&mut self, node: u32) {
-        self.put_back(node);
-        let Some(back) = self.step_back(node) else { return };
+        self.undo_warp(node);
+        let Some(back) = self.position_away_from_cut(node) else { return };
         let at_lattice = std::mem::replace(&mut self.position[node as usize], back);
         let inside = self.lattice.inside[node as usize];
         let good = (self.domain.value(&back) > 0.0) == inside
@@ -211,7 +211,7 @@ impl<'a> Warp<'a> {
     }
 
     /// Where a node goes that lies too near to one of its cuts.
-    fn step_back(&self, node: u32) -> Option<Vector> {
+    fn position_away_from_cut(&self, node: u32) -> Option<Vector> {
         let here = self.position[node as usize];
         let of_node = self.cuts.of_node.row(node as usize).iter();
         let alive = of_node.map(|&cut| &self.cuts.list[cut as usize]);

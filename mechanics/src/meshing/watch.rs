@@ -26,7 +26,7 @@ impl<'a> Watch<'a> {
     pub fn stage(&mut self) -> Result<(), MeshingError> {
         self.progress.step(self.done, self.stages);
         self.done += 1;
-        self.go_on()
+        self.check_cancelled()
     }
 
     /// All of it is done.
@@ -34,7 +34,7 @@ impl<'a> Watch<'a> {
         self.progress.step(self.stages, self.stages);
     }
 
-    pub fn go_on(&self) -> Result<(), MeshingError> {
+    pub fn check_cancelled(&self) -> Result<(), MeshingError> {
         if self.progress.is_cancelled() { Err(MeshingError::Cancelled) } else { Ok(()) }
     }
 
@@ -46,7 +46,7 @@ impl<'a> Watch<'a> {
     ) -> Result<Vec<R>, MeshingError> {
         let mut results = Vec::with_capacity(things.len());
         for block in things.chunks(BLOCK) {
-            self.go_on()?;
+            self.check_cancelled()?;
             results.par_extend(block.par_iter().with_min_len(GRAIN).map(&work));
         }
         Ok(results)
@@ -58,7 +58,7 @@ impl<'a> Watch<'a> {
         things: &[T],
         work: impl Fn(&[T], &mut Vec<R>) + Sync,
     ) -> Result<Vec<R>, MeshingError> {
-        self.go_on()?;
+        self.check_cancelled()?;
         let chunks: Vec<Vec<R>> = things
             .par_chunks(CHUNK)
             .map(|chunk| {
@@ -67,7 +67,7 @@ impl<'a> Watch<'a> {
                 list
             })
             .collect();
-        self.go_on()?;
+        self.check_cancelled()?;
         Ok(chunks.concat())
     }
 }

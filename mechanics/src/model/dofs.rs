@@ -42,10 +42,10 @@ pub fn number(cells: &ElementConnectivity, positions: &[Vector], holds: &[Hold])
 impl Constrained<'_> {
     /// The system of a matrix, with partly held rows along their own axes. Positions are those of the nodes.
     pub fn system(&self, mut matrix: HalfMatrix<f64, 3>, positions: &[Vector]) -> System {
-        let partly_held = partly_held(self.holds, self.numbering);
-        turn_into_axes(&mut matrix, &partly_held);
+        let partly_constrained = partly_constrained(self.holds, self.numbering);
+        rotate_into_local_axes(&mut matrix, &partly_constrained);
         let positions = self.numbering.by_row(positions);
-        System { layout: self.numbering.layout.clone(), matrix, partly_held, positions }
+        System { layout: self.numbering.layout.clone(), matrix, partly_constrained, positions }
     }
 
     /// The number of unknowns that are not held.
@@ -81,7 +81,7 @@ impl Constrained<'_> {
             by_row[row as usize] = (*force).into();
         }
         by_row.truncate(system.layout.free);
-        for partly in &system.partly_held {
+        for partly in &system.partly_constrained {
             let own = partly.axes.transpose() * Vector::from(by_row[partly.row]);
             let free = |k: usize| if partly.held[k] { 0.0 } else { own[k] };
             by_row[partly.row] = std::array::from_fn(free);
@@ -136,7 +136,7 @@ impl PrescribedValues {
         for (value, [x, y, z]) in result.iter_mut().zip(&product) {
             *value = [value[0] - x[0], value[1] - y[0], value[2] - z[0]];
         }
-        for partly in &system.partly_held {
+        for partly in &system.partly_constrained {
             for (value, _) in result[partly.row].iter_mut().zip(partly.held).filter(|(_, h)| *h) {
                 *value = 0.0;
             }
@@ -158,7 +158,7 @@ impl PrescribedValues {
 /// nodes lie among the free ones, and with them every row counts.
 pub fn product_at_holds(system: &System, x: &[Lanes<f64, 3, 1>]) -> Vec<Lanes<f64, 3, 1>> {
     let mut product = vec![[[0.0]; 3]; x.len()];
-    let first = if system.partly_held.is_empty() { system.layout.free } else { 0 };
+    let first = if system.partly_constrained.is_empty() { system.layout.free } else { 0 };
     system.matrix.add_rows(first..x.len(), x, &mut product);
     product
 }
@@ -262,7 +262,7 @@ pub(crate) fn add_cell(matrix: &mut HalfMatrix<f64, 3>, rows: &[u32], blocks: &[
 }
 
 /// The rows of held nodes that keep free unknowns.
-pub fn partly_held(holds: &[Hold], numbering: &DofMap) -> Vec<PartlyHeld> {
+pub fn partly_constrained(holds: &[Hold], numbering: &DofMap) -> Vec<PartlyHeld> {
     holds
         .iter()
         .map(|hold| (hold, numbering.row(hold.node)))
@@ -276,12 +276,12 @@ pub fn partly_held(holds: &[Hold], numbering: &DofMap) -> Vec<PartlyHeld> {
 }
 
 /// Writes the rows and columns of nodes with axes of their own in those axes: Q^T K Q.
-pub fn turn_into_axes(matrix: &mut HalfMatrix<f64, 3>, partly_held: &[PartlyHeld]) {
-    if partly_held.is_empty() {
+pub fn rotate_into_local_axes(matrix: &mut HalfMatrix<f64, 3>, partly_constrained: &[PartlyHeld]) {
+    if partly_constrained.is_empty() {
         return;
     }
     let mut axes = vec![None; matrix.rows()];
-    for partly in partly_held {
+    for partly in partly_constrained {
         axes[partly.row] = Some(partly.axes);
     }
     let pattern = matrix.pattern.clone();

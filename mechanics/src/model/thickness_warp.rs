@@ -66,7 +66,7 @@ struct Followed {
 impl Warped<'_> {
     /// The displacement of every node.
     pub fn solve(&self, warp: &ThicknessWarp) -> Result<Equilibrium, ModelError> {
-        let held = self.wholly_held();
+        let held = self.fully_constrained();
         let bones = self.bones(&held);
         if bones.is_empty() {
             return Err(ModelError::NoBone);
@@ -89,7 +89,7 @@ impl Warped<'_> {
     }
 
     /// For each node the displacement that holds it in all directions.
-    fn wholly_held(&self) -> Vec<Option<Vector>> {
+    fn fully_constrained(&self) -> Vec<Option<Vector>> {
         let mut held = vec![None; self.mesh.nodes.len()];
         for hold in self.conditions.holds.iter().filter(|hold| hold.count() == 3) {
             held[hold.node as usize] = Some(hold.axes() * hold.values());
@@ -137,7 +137,7 @@ impl Warped<'_> {
         let mut in_reach = Vec::with_capacity(bones.len());
         let (mut nearest, mut bone) = (f64::INFINITY, 0);
         for (number, candidate) in bones.iter().enumerate() {
-            let Some(closest) = candidate.search.nearer_than(&x, nearest + radius) else {
+            let Some(closest) = candidate.search.closest_within(&x, nearest + radius) else {
                 continue;
             };
             if closest.distance < nearest {

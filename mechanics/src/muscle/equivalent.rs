@@ -26,7 +26,7 @@ impl EquivalentTissue {
 }
 
 /// The share of some volumes, each of a cell with the ratio of its rules, in which the rule decides.
-pub fn decided_by_rule(cells: impl IntoIterator<Item = (f64, f64)>) -> f64 {
+pub fn rule_dependent_share(cells: impl IntoIterator<Item = (f64, f64)>) -> f64 {
     let (mut all, mut decided) = (0.0, 0.0);
     for (volume, ratio) in cells {
         all += volume;

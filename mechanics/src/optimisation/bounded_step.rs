@@ -60,7 +60,7 @@ impl Linearised {
                     step[unknown] = end;
                     Some(unknown)
                 }
-                None => self.pulled_inwards(&step, &is_held, damping, room),
+                None => self.bound_to_release(&step, &is_held, damping, room),
             };
             let Some(unknown) = change else { break };
             is_held[unknown] = stopped.is_some();
@@ -100,7 +100,7 @@ impl Linearised {
     }
 
     /// The held unknown that most wants to go back into the room.
-    fn pulled_inwards(
+    fn bound_to_release(
         &self,
         step: &DVector<f64>,
         is_held: &[bool],

@@ -36,7 +36,7 @@ pub struct Minimum {
 /// Goes down from rest, or from where the bounds begin.
 pub fn minimise(unknowns: &Unknowns, reduction: &Reduction) -> Result<Minimum, OptimisationError> {
     let residual_at = |at: &DVector<f64>| reduction.residual(&unknowns.coefficients(at));
-    let mut at = unknowns.nearest_to_rest();
+    let mut at = unknowns.feasible_rest();
     let mut residual = residual_at(&at);
     let mut damping = 0.0;
     let mut step = DVector::zeros(at.len());

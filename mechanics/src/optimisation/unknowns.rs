@@ -66,7 +66,7 @@ impl<'a> Unknowns<'a> {
     }
 
     /// The point within the bounds that is nearest to no movement, to no growth, and to the constants of the response.
-    pub fn nearest_to_rest(&self) -> DVector<f64> {
+    pub fn feasible_rest(&self) -> DVector<f64> {
         let rest = |free: &Parameter| match free {
             Parameter::Movement { .. } | Parameter::Growth(_) => 0.0,
             Parameter::Constant(place) => self.question.constants[*place].value * free.scale(),

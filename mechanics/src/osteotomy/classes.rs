@@ -83,7 +83,7 @@ pub fn classify(
         let beyond = rules.fixed_above.is_some_and(|plane| plane.height(place) > 0.0);
         roles.push(overlaps.strongest(on_bone.unwrap_or(Role::Free), beyond));
     }
-    let in_band = free_beside_others(&tissue, rules, &mut roles);
+    let in_band = free_near_other_segments(&tissue, rules, &mut roles);
     NodeClasses { roles, in_band, without_bone, warnings: overlaps.warnings() }
 }
 
@@ -136,7 +136,7 @@ impl Overlaps {
 }
 
 /// Frees held nodes that are near others which move otherwise, or share a cell with one; how many they are.
-fn free_beside_others(
+fn free_near_other_segments(
     tissue: &TissueBoundary<'_>,
     rules: &ClassRules,
     roles: &mut [Role],

@@ -106,7 +106,7 @@ fn cut_between(osteotomy: &Osteotomy, owners: [Owner; 2], ends: [Vector; 2]) -> 
 
 /// The first piece of a line, and the segment that lies on its other side at most of the faces of voxels that the line parts: such a
 /// line is walked the other way than its segment says.
-pub(super) fn turned_about(
+pub(super) fn reversed_line(
     osteotomy: &Osteotomy,
     grid: &Grid<'_>,
     labels: &BoneLabels,

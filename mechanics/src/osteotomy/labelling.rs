@@ -2,7 +2,7 @@
 
 use super::bone_image::BoneImage;
 use super::bone_labels::{BoneLabels, Owner};
-use super::contact::{Bridge, Contact, bridges, contacts, turned_about};
+use super::contact::{Bridge, Contact, bridges, contacts, reversed_line};
 use super::flood::flood;
 use super::grid::Grid;
 use super::label_error::LabelError;
@@ -47,13 +47,13 @@ pub fn label(bone: &BoneImage<'_>, osteotomy: &Osteotomy) -> Result<Labelled, La
     let markers = markers(osteotomy, bone, &grid, &labels)?;
     flood(osteotomy, &grid, |voxel| bone.value(voxel), &markers, &mut labels);
     saw(osteotomy, &grid, &mut labels);
-    if let Some((cut, segment)) = turned_about(osteotomy, &grid, &labels) {
+    if let Some((cut, segment)) = reversed_line(osteotomy, &grid, &labels) {
         let [cut, segment] =
             [&osteotomy.cuts()[cut].name, &osteotomy.segments()[segment].name].map(String::clone);
         return Err(LabelError::LineTurned { segment, cut });
     }
     let found = Labelled::segments_of(osteotomy, bone, &grid, &labels);
-    let loose = set_loose(osteotomy, bone, &grid, &mut labels);
+    let loose = separate_loose(osteotomy, bone, &grid, &mut labels);
     Ok(Labelled { loose, ..Labelled::new(osteotomy, &grid, labels, found) })
 }
 
@@ -126,7 +126,7 @@ fn saw(osteotomy: &Osteotomy, grid: &Grid<'_>, labels: &mut BoneLabels) {
 }
 
 /// Tells pieces of bone of no segment that are too small to hold tissue from the skull.
-fn set_loose(
+fn separate_loose(
     osteotomy: &Osteotomy,
     bone: &BoneImage<'_>,
     grid: &Grid<'_>,

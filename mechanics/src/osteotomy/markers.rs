@@ -47,12 +47,12 @@ pub(super) fn markers(
             largest_pieces.push((segment, largest));
         }
     }
-    unambiguous(osteotomy, &markers, &largest_pieces)?;
+    refuse_ambiguous_seeds(osteotomy, &markers, &largest_pieces)?;
     Ok(markers)
 }
 
 /// Refuses two segments that begin at one voxel, and one without a seed that is not alone in its piece.
-fn unambiguous(
+fn refuse_ambiguous_seeds(
     osteotomy: &Osteotomy,
     markers: &[Marker],
     largest_pieces: &[(usize, Vec<usize>)],

@@ -36,7 +36,7 @@ const MEMORY_MARGIN: f64 = 1.15;
 const TIME_GROWTH: f64 = 1.1;
 
 /// The warning where what linearity leaves out is above what is accepted of the mesh.
-fn more_is_left_out(
+fn linearisation_error_warning(
     scene: &Scene,
     prediction: &Prediction,
     wanted: &RefinementGoal,
@@ -327,7 +327,7 @@ pub fn predict_adaptively(
         Finest { bisection, scene: on_it, displacement }
     });
     prediction.warnings.extend((stop != Stop::Met).then(|| not_met(&limits, &levels, stop)));
-    prediction.warnings.extend(more_is_left_out(scene, &prediction, wanted));
+    prediction.warnings.extend(linearisation_error_warning(scene, &prediction, wanted));
     prediction.warnings.extend(finest.is_some().then(|| muscles_stay(scene)).flatten());
     Ok(AdaptivePrediction { prediction, finest, levels, stop })
 }

@@ -9,7 +9,7 @@ use super::hounsfield::TissueOfCells;
 use super::muscle_field::{MuscleField, MuscleTissue};
 use super::problem::SceneErrors;
 use super::scene::Scene;
-use super::skin_check::doubtful_skin;
+use super::skin_check::suspect_skin;
 use super::stiff_layer;
 use super::suspect_constants::{moduli_apart, no_soft_tissue, suspect_constants};
 use super::walls;
@@ -75,7 +75,7 @@ impl Scene {
         let part_of_cell = faces.parts();
         let parts = connected_parts(&case.volume, &part_of_cell, &conditions, skin.nodes());
         if is_sound {
-            check.unheld(plan, &segments, &parts);
+            check.unconstrained(plan, &segments, &parts);
         }
         let membrane = check.membrane(&skin, settings);
         let mut scene = Scene {
@@ -106,16 +106,16 @@ impl Scene {
             warnings: Vec::new(),
         };
         check.method(settings, plan);
-        check.problems.give_up_if_any()?;
-        check.add_what_acts(plan, &mut scene);
+        check.problems.fail_on_problems()?;
+        check.add_loads_growth_and_muscles(plan, &mut scene);
 
         // 4. What cannot be solved, and what a reader must know.
         check.support(&scene, &part_of_cell);
-        check.problems.give_up_if_any()?;
+        check.problems.fail_on_problems()?;
         scene.warnings = scene.conditions.warnings.clone();
         scene.warnings.extend(check.warnings);
         scene.warnings.extend(far);
-        scene.warnings.extend(doubtful_skin(&scene, case.skin.is_some()));
+        scene.warnings.extend(suspect_skin(&scene, case.skin.is_some()));
         scene.warnings.extend(cut::duplicate_nodes(&scene.mesh, &check.boundary_nodes));
         scene.warnings.extend(scene.doubts(case, plan));
         Ok(scene)
@@ -126,7 +126,7 @@ impl Scene {
         let mut warnings: Vec<Warning> = Vec::new();
         let name = |class| self.class_name(class);
         warnings.extend(tearing::tearing(&self.mesh, &self.conditions, name));
-        warnings.extend(walls::turned_normals(self));
+        warnings.extend(walls::warn_of_rotated_walls(self));
         warnings.extend(states_rest(plan, self));
         warnings.extend(suspect_constants(self, plan));
         warnings.extend(moduli_apart(case, self));

@@ -257,7 +257,7 @@ impl<'a> Check<'a> {
     }
 
     /// Loads, growth and muscles that pull.
-    pub(super) fn add_what_acts(&mut self, plan: &Plan, scene: &mut Scene) {
+    pub(super) fn add_loads_growth_and_muscles(&mut self, plan: &Plan, scene: &mut Scene) {
         self.add_loads(plan, scene);
         self.add_inner_stress(plan, scene);
     }
@@ -278,7 +278,11 @@ impl<'a> Check<'a> {
                 Load::Force { nodes, force } => {
                     let nodes = self.select(nodes, &format!("{pointer}/nodes"));
                     nodes.iter().for_each(|&node| forces[node as usize] += force);
-                    self.warnings.extend(load_on_held(&nodes, &scene.conditions.holds, &pointer));
+                    self.warnings.extend(load_on_constrained(
+                        &nodes,
+                        &scene.conditions.holds,
+                        &pointer,
+                    ));
                     continue;
                 }
                 Load::Traction { faces, traction } => (faces, FaceLoad::Traction(*traction)),
@@ -302,7 +306,7 @@ impl<'a> Check<'a> {
             };
             let faces = self.loaded_faces(faces, &pointer);
             let nodes: Vec<u32> = faces.iter().flat_map(BoundaryFace::nodes).copied().collect();
-            self.warnings.extend(load_on_held(&nodes, &scene.conditions.holds, &pointer));
+            self.warnings.extend(load_on_constrained(&nodes, &scene.conditions.holds, &pointer));
             self.face_load(&faces, load, edges, &mut forces);
             scene.distributed.faces.push((faces, load));
         }
@@ -350,7 +354,7 @@ impl<'a> Check<'a> {
 }
 
 /// The warning of a load all of whose nodes are held, so that it moves nothing.
-fn load_on_held(nodes: &[u32], holds: &[Hold], pointer: &str) -> Option<Warning> {
+fn load_on_constrained(nodes: &[u32], holds: &[Hold], pointer: &str) -> Option<Warning> {
     let held: BTreeSet<u32> =
         holds.iter().filter(|hold| hold.count() == 3).map(|hold| hold.node).collect();
     let all = !nodes.is_empty() && nodes.iter().all(|node| held.contains(node));

@@ -42,7 +42,7 @@ mod stated;
 mod states;
 mod stiff_layer;
 mod suspect_constants;
-mod unheld;
+mod unconstrained;
 mod walls;
 
 use std::collections::BTreeMap;
@@ -70,7 +70,7 @@ pub use scene::Scene;
 pub use skin::{Skin, least_moving};
 pub use skin_overlap::{SKIN_OVERLAPS, skin_overlap};
 pub use stated::{StatedCondition, StatedHold};
-pub use unheld::{GoesAlong, NOTHING_HELD, goes_along};
+pub use unconstrained::{NOTHING_HELD, RigidlyCarried, rigidly_carried};
 pub use walls::normal_turned;
 
 pub use adaptive::{

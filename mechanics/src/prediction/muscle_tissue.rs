@@ -21,7 +21,7 @@ use crate::material::mixture::MixingRule;
 use crate::mesh::jacobian::signed_volume;
 use crate::mesh::{Vector, VolumeMesh, Warning};
 use crate::muscle::axis::MeanAxis;
-use crate::muscle::equivalent::{EquivalentTissue, decided_by_rule};
+use crate::muscle::equivalent::{EquivalentTissue, rule_dependent_share};
 
 /// Shares of cells are whole numbers of this at the finest.
 const STEPS: u16 = 512;
@@ -74,7 +74,7 @@ impl Check<'_> {
             }
         }
         let Counts { cells, mixed, crossing } = told;
-        let rule_decides = decided_by_rule(volumes);
+        let rule_decides = rule_dependent_share(volumes);
         let told = MuscleTissue { rule, cells, mixed, crossing, rule_decides };
         self.warnings.extend(told.warnings());
         Some(told)
@@ -87,7 +87,7 @@ impl Check<'_> {
         if method.properties().knows_fibres {
             let all = case.muscles.iter();
             return all
-                .map(|muscle| Some(self.as_it_pulls(muscle, muscle.tissue?, plan)))
+                .map(|muscle| Some(self.activated_tissue(muscle, muscle.tissue?, plan)))
                 .collect();
         }
         let ignored = own.clone().flatten().filter(LinearElastic::has_fibre).count();
@@ -98,7 +98,7 @@ impl Check<'_> {
     }
 
     /// The tissue of a muscle, stiffer where the plan activates it.
-    fn as_it_pulls(
+    fn activated_tissue(
         &mut self,
         muscle: &Muscle,
         tissue: LinearElastic,

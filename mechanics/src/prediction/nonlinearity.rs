@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 use super::method::Method;
 use super::scene::Scene;
 use super::skin::landmark_displacement;
-use super::walls::turned_at_second_order;
+use super::walls::rotation_beyond_second_order;
 use crate::mesh::Vector;
 use crate::model::fem::force_series::{ForceSeries, Forces, LinearState};
 use crate::model::fem::linear_system::{Correction, LinearSystem, Residual, Solved};
@@ -71,7 +71,7 @@ pub(super) fn reason_for_none(scene: &Scene) -> Option<NonlinearityUnknown> {
             if scene.has_pulling_fibres() {
                 return Some(NonlinearityUnknown::PullingFibres);
             }
-            let turned = turned_at_second_order(scene);
+            let turned = rotation_beyond_second_order(scene);
             turned.map(|segment| NonlinearityUnknown::TurnedWall { segment })
         }
         Method::FemNonlinear | Method::MassTensorNonlinear => {

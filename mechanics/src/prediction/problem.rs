@@ -46,7 +46,7 @@ impl Problems {
         self.0.len()
     }
 
-    pub(super) fn give_up_if_any(&mut self) -> Result<(), SceneErrors> {
+    pub(super) fn fail_on_problems(&mut self) -> Result<(), SceneErrors> {
         match self.0.is_empty() {
             true => Ok(()),
             false => Err(SceneErrors(std::mem::take(&mut self.0))),

@@ -110,7 +110,7 @@ pub(super) fn by_condition(
     }
     for (node, walls) in walls {
         if rest[node as usize].is_held.contains(&true) {
-            share_out(&rest[node as usize].force, &walls, &mut sums);
+            split_by_normals(&rest[node as usize].force, &walls, &mut sums);
         }
     }
     sums.extend(by_bone(scene, contact));
@@ -152,7 +152,7 @@ impl ConditionReaction {
 }
 
 /// A force on a node between walls, as the sum of one along the normal of each.
-fn share_out(force: &Vector, walls: &[(usize, Vector)], sums: &mut [ConditionReaction]) {
+fn split_by_normals(force: &Vector, walls: &[(usize, Vector)], sums: &mut [ConditionReaction]) {
     let mut own: Vec<(usize, Vector)> = Vec::new();
     for (place, normal) in walls {
         if own.iter().all(|(_, other)| other.cross(normal).norm() > ONE_WALL) {

@@ -24,7 +24,7 @@ const FACING: f64 = 0.5;
 const MEASURED_FACES: usize = 250;
 
 /// Warnings of a skin that is no skin.
-pub(super) fn doubtful_skin(scene: &Scene, is_stated: bool) -> Vec<Warning> {
+pub(super) fn suspect_skin(scene: &Scene, is_stated: bool) -> Vec<Warning> {
     let unnamed = (!is_stated).then(|| unnamed_skin(&scene.skin.surface));
     [unnamed, held_skin(scene), inward_skin(scene)].into_iter().flatten().collect()
 }
@@ -75,7 +75,7 @@ fn inward_skin(scene: &Scene) -> Option<Warning> {
         .map(|&triangle| {
             let normal = surface.area_vector(triangle);
             let middle = surface.corners(triangle).iter().sum::<Vector>() / 3.0;
-            let way = held.way_to_closest(&middle);
+            let way = held.step_to_closest(&middle);
             let faces_it = way.dot(&normal) > FACING * way.norm() * normal.norm();
             [normal.norm(), if faces_it { normal.norm() } else { 0.0 }]
         })
@@ -120,7 +120,7 @@ impl ByHeight {
     }
 
     /// The way to the closest place, of several that are as close to the first.
-    fn way_to_closest(&self, from: &Vector) -> Vector {
+    fn step_to_closest(&self, from: &Vector) -> Vector {
         let middle = self.places.partition_point(|other| other.place.z < from.z);
         let (below, above) = self.places.split_at(middle);
         let none = Closest { squared: f64::INFINITY, number: usize::MAX, way: Vector::zeros() };
@@ -191,7 +191,7 @@ mod tests {
         {
             let ways = places.iter().map(|place| place - from);
             let closest = ways.min_by(|a, b| a.norm_squared().total_cmp(&b.norm_squared()));
-            assert_eq!(Some(sorted.way_to_closest(&from)), closest);
+            assert_eq!(Some(sorted.step_to_closest(&from)), closest);
         }
     }
 }

@@ -39,7 +39,7 @@ pub(super) fn deepest_overlap(surface: &TriangleSurface) -> Option<Deepest> {
 }
 
 /// How much deeper moved skin passes through itself than at rest, and where; none where no depth is known.
-pub(super) fn deeper_than_at_rest(skin: &Skin, moved: &TriangleSurface) -> Option<Deepest> {
+pub(super) fn added_overlap(skin: &Skin, moved: &TriangleSurface) -> Option<Deepest> {
     let depth_of = |surface: &TriangleSurface| {
         let passes = |pair: &TrianglePair| pass(surface, pair, TOUCHING_MM);
         deepest(surface, &self_crossings(surface, passes).pairs)

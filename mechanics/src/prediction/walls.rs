@@ -62,7 +62,7 @@ impl Check<'_> {
             .collect();
         self.two_carriers(&walls, segments);
         self.two_bones(&walls, segments, held);
-        self.beside_moving_bone(&walls, segments, held);
+        self.warn_of_walls_at_moving_bone(&walls, segments, held);
         let keeps_normals = settings.method.properties().is_small_strain;
         for Wall { index, carrier, nodes } in walls {
             let turn = carrier.filter(|_| !keeps_normals);
@@ -183,7 +183,7 @@ impl Check<'_> {
 
     /// Warns of walls that stay while a bone moves across them that their nodes touch: nodes of it, or on one face of a
     /// cell with one. Where no segment moves yet, each may.
-    fn beside_moving_bone(
+    fn warn_of_walls_at_moving_bone(
         &mut self,
         walls: &[Wall],
         segments: &[PlannedSegment],
@@ -274,7 +274,7 @@ fn carried_by(carrier: Option<u32>, segments: &[PlannedSegment]) -> String {
 }
 
 /// Warnings of walls that turn with their segments while small strain keeps their normals.
-pub(super) fn turned_normals(scene: &Scene) -> Vec<Warning> {
+pub(super) fn warn_of_rotated_walls(scene: &Scene) -> Vec<Warning> {
     if !scene.settings.method.properties().is_small_strain {
         return Vec::new();
     }
@@ -289,7 +289,7 @@ pub(super) fn turned_normals(scene: &Scene) -> Vec<Warning> {
 }
 
 /// The first segment that carries a wall and turns by more than the second order bears.
-pub(super) fn turned_at_second_order(scene: &Scene) -> Option<String> {
+pub(super) fn rotation_beyond_second_order(scene: &Scene) -> Option<String> {
     let mut segments = (0_u32..).zip(&scene.segments);
     let turns = |segment: &PlannedSegment| {
         segment.movement.angle().to_degrees() > NORMAL_TURNED_AT_SECOND_ORDER_DEG

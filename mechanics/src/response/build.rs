@@ -91,7 +91,7 @@ pub fn chosen(scene: &Scene, names: &[String]) -> Result<Vec<usize>, ResponseErr
     if segments.is_empty() {
         return Err(ResponseError::NoSegments);
     }
-    match carried_by_every_plan(scene, &segments) {
+    match segment_carrying_skin(scene, &segments) {
         Some(name) if !scene.allow_unfixed => Err(ResponseError::NothingHeld { name }),
         _ => Ok(segments),
     }
@@ -115,7 +115,7 @@ fn parts_where(scene: &Scene, chosen: &[usize]) -> Vec<ConnectedPart> {
 
 /// A segment with which every part of the skin that may move goes along as one, whatever the plan: nothing else
 /// holds it.
-fn carried_by_every_plan(scene: &Scene, chosen: &[usize]) -> Option<String> {
+fn segment_carrying_skin(scene: &Scene, chosen: &[usize]) -> Option<String> {
     let parts = parts_where(scene, chosen);
     let moving =
         parts.iter().filter(|part| part.has_much_skin() && part.segments().next().is_some());

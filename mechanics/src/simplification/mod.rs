@@ -247,7 +247,7 @@ impl<'a> Work<'a> {
                 (0..=rows - i).all(|j| {
                     let [u, v] = [i, j].map(|step| step as f64 / rows as f64);
                     let point = a + (b - a) * u + (c - a) * v;
-                    self.search.nearer_than(&point, deviation).is_some()
+                    self.search.closest_within(&point, deviation).is_some()
                 })
             })
         })

@@ -3,7 +3,7 @@
 use std::sync::OnceLock;
 
 use super::cholesky::Factor;
-use super::conjugate_gradient::{solve_by, solve_loosely};
+use super::conjugate_gradient::{solve_best_effort, solve_by};
 use super::multigrid::Multigrid;
 use super::ordering::{self, Ordering};
 use super::report::SolveReport;
@@ -93,7 +93,7 @@ impl Solver {
 
     /// Solves until a relative residual is met or nothing more is gained, whichever comes first: the residual
     /// that was reached is told. Where there is a factor the solution is as good as that is.
-    pub fn solve_loosely(
+    pub fn solve_best_effort(
         &self,
         system: &System,
         right_hand_sides: &[Unknowns],
@@ -107,7 +107,7 @@ impl Solver {
                 .collect(),
             None => {
                 let hierarchy = self.hierarchy(system, progress)?;
-                solve_loosely(system, hierarchy, right_hand_sides, relative_residual, progress)
+                solve_best_effort(system, hierarchy, right_hand_sides, relative_residual, progress)
             }
         }
     }

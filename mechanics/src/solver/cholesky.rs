@@ -13,7 +13,7 @@ use faer::{Conj, MatMut, Par, Side};
 use super::lanes::Lanes;
 use super::ordering::Ordering;
 use super::scaling::scaled;
-use super::vector::{column, interleave, norm};
+use super::vector::{column, norm, pack_lanes};
 use super::{Solution, SolveReport, SolverError, System, Tolerance, Unknowns, tell};
 use crate::progress::Progress;
 
@@ -81,7 +81,7 @@ impl Refined<'_> {
         wanted: f64,
         progress: &dyn Progress,
     ) -> Result<Solution, SolverError> {
-        let right_hand_side = interleave::<1, 3>(std::slice::from_ref(right_hand_side));
+        let right_hand_side = pack_lanes::<1, 3>(std::slice::from_ref(right_hand_side));
         let [scale] = norm(right_hand_side.as_flattened());
         let mut x = vec![[[0.0; 1]; 3]; right_hand_side.len()];
         let mut residual = right_hand_side.clone();
@@ -130,7 +130,7 @@ struct FreeUnknowns {
 impl FreeUnknowns {
     fn new(system: &System, ordering: &Ordering) -> Self {
         let mut held = vec![[false; 3]; system.layout.free];
-        for partly in &system.partly_held {
+        for partly in &system.partly_constrained {
             held[partly.row] = partly.held;
         }
         let unknown: Vec<(usize, usize)> = ordering

@@ -9,7 +9,7 @@
 use super::lanes::{Lanes, MOST_LANES};
 use super::multigrid::{Multigrid, Workspace};
 use super::scaling::scaled;
-use super::vector::{advance, column, dot, interleave, largest, norm, ratio, turn};
+use super::vector::{axpby, column, dot, largest, norm, pack_lanes, ratio, update};
 use super::{Solution, SolveReport, SolverError, System, Tolerance, Unknowns, tell};
 use crate::progress::Progress;
 
@@ -51,7 +51,7 @@ pub fn solve_by(
 }
 
 /// Solves until every relative residual is met or nothing more is gained, and keeps what was found until then.
-pub fn solve_loosely(
+pub fn solve_best_effort(
     system: &System,
     multigrid: &Multigrid,
     right_hand_sides: &[Unknowns],
@@ -60,9 +60,10 @@ pub fn solve_loosely(
 ) -> Result<Vec<Solution>, SolverError> {
     scaled(right_hand_sides, |right_hand_sides| {
         in_lanes(right_hand_sides, |columns| match columns.len() {
-            1 => Run::<1>::new(system, multigrid, columns).solve_loosely(wanted, progress),
-            2..=4 => Run::<4>::new(system, multigrid, columns).solve_loosely(wanted, progress),
-            _ => Run::<MOST_LANES>::new(system, multigrid, columns).solve_loosely(wanted, progress),
+            1 => Run::<1>::new(system, multigrid, columns).solve_best_effort(wanted, progress),
+            2..=4 => Run::<4>::new(system, multigrid, columns).solve_best_effort(wanted, progress),
+            _ => Run::<MOST_LANES>::new(system, multigrid, columns)
+                .solve_best_effort(wanted, progress),
         })
     })
 }
@@ -145,7 +146,7 @@ struct Run<'a, const N: usize> {
 
 impl<'a, const N: usize> Run<'a, N> {
     fn new(system: &'a System, multigrid: &'a Multigrid, columns: &[Unknowns]) -> Self {
-        let right_hand_side = interleave::<N, 3>(columns);
+        let right_hand_side = pack_lanes::<N, 3>(columns);
         let zeros = || vec![[[0.0; N]; 3]; right_hand_side.len()];
         Run {
             system,
@@ -181,7 +182,7 @@ impl<'a, const N: usize> Run<'a, N> {
     }
 
     /// One run of the recursive residual, whatever it reaches.
-    fn solve_loosely(
+    fn solve_best_effort(
         mut self,
         wanted: f64,
         progress: &dyn Progress,
@@ -212,7 +213,7 @@ impl<'a, const N: usize> Run<'a, N> {
     fn iterate(&mut self, wanted: f64, progress: &dyn Progress) -> Result<(), SolverError> {
         let correction = self.multigrid.apply(&self.r, &mut self.workspace);
         let z = correction.values.as_flattened();
-        turn(self.p.as_flattened_mut(), &[0.0; N], z, &correction.scale);
+        axpby(self.p.as_flattened_mut(), &[0.0; N], z, &correction.scale);
         let mut rho = dot(self.r.as_flattened(), self.p.as_flattened());
         let mut residuals = self.relative_residuals();
         let (mut smallest, mut smallest_at) = (f64::INFINITY, self.iterations);
@@ -225,7 +226,7 @@ impl<'a, const N: usize> Run<'a, N> {
             }
             let step: [f64; N] =
                 std::array::from_fn(|n| if is_open[n] { rho[n] / curvature[n] } else { 0.0 });
-            let norms = self.advance(&step);
+            let norms = self.update(&step);
             self.iterations += 1;
             (0..N).filter(|&n| is_open[n]).for_each(|n| self.own_iterations[n] += 1);
             residuals = self.relative(&norms);
@@ -251,14 +252,14 @@ impl<'a, const N: usize> Run<'a, N> {
             let factor: [f64; N] =
                 std::array::from_fn(|n| ratio(-step[n] * along_product[n] * scale[n], rho[n]));
             rho = std::array::from_fn(|n| along_residual[n] * scale[n]);
-            turn(self.p.as_flattened_mut(), &factor, z, &scale);
+            axpby(self.p.as_flattened_mut(), &factor, z, &scale);
         }
     }
 
     /// Takes a step; returns the norm of what is left.
-    fn advance(&mut self, step: &[f64; N]) -> [f64; N] {
+    fn update(&mut self, step: &[f64; N]) -> [f64; N] {
         let (x, r) = (self.x.as_flattened_mut(), self.r.as_flattened_mut());
-        advance(x, r, step, self.p.as_flattened(), self.product.as_flattened())
+        update(x, r, step, self.p.as_flattened(), self.product.as_flattened())
     }
 
     /// Keeps every residual up to 100, then every tenth, for the report of a failure.

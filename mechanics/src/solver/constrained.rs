@@ -8,7 +8,7 @@
 use super::independent::Independent;
 use super::lanes::MOST_LANES;
 use super::preconditioned::{Equation, Preconditioned};
-use super::vector::{advance, dot, norm, scale, subtract_all};
+use super::vector::{dot, norm, scale, subtract_all, update};
 use super::{SolverError, tell};
 use crate::progress::Progress;
 
@@ -179,7 +179,7 @@ impl Run<'_, '_> {
         }
         let mut residual = f64::INFINITY;
         for _ in 0..=MOST_RESTARTS {
-            self.meet_equations();
+            self.satisfy_equations();
             residual = self.true_residual();
             if !residual.is_finite() {
                 return Err(SolverError::NotFinite);
@@ -193,7 +193,7 @@ impl Run<'_, '_> {
     }
 
     /// x += Z (G Z)^-1 (h - G x), and the multipliers with it.
-    fn meet_equations(&mut self) {
+    fn satisfy_equations(&mut self) {
         let rows = self.wanted.rows.iter().zip(self.wanted.values);
         let left: Vec<f64> =
             rows.map(|(&row, value)| value - self.equations.value(row, &self.point.x)).collect();
@@ -231,7 +231,7 @@ impl Run<'_, '_> {
         loop {
             let Some(new) = self.direction(&kept) else { return Ok(()) };
             let step = dot(&self.r, &new.product);
-            let norms = advance(&mut self.point.x, &mut self.r, &step, &new.change, &new.product);
+            let norms = update(&mut self.point.x, &mut self.r, &step, &new.change, &new.product);
             let multipliers = self.point.multipliers.iter_mut().zip(&new.multipliers);
             multipliers.for_each(|(m, change)| *m += step[0] * change);
             if kept.len() == KEPT {

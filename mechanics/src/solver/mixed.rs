@@ -38,7 +38,7 @@ pub fn solve(
 }
 
 /// Solves until every relative residual is met or nothing more is gained, and keeps what was found until then.
-pub fn solve_loosely(
+pub fn solve_best_effort(
     system: &MixedSystem,
     right_hand_sides: &[MixedRightHandSide],
     wanted: f64,
@@ -49,11 +49,12 @@ pub fn solve_loosely(
         let mut solutions = Vec::with_capacity(right_hand_sides.len());
         for chunk in right_hand_sides.chunks(MOST_LANES) {
             solutions.extend(match chunk.len() {
-                1 => Run::<1>::new(system, multigrid, chunk).solve_loosely(wanted, progress),
-                2..=4 => Run::<4>::new(system, multigrid, chunk).solve_loosely(wanted, progress),
-                _ => {
-                    Run::<MOST_LANES>::new(system, multigrid, chunk).solve_loosely(wanted, progress)
+                1 => Run::<1>::new(system, multigrid, chunk).solve_best_effort(wanted, progress),
+                2..=4 => {
+                    Run::<4>::new(system, multigrid, chunk).solve_best_effort(wanted, progress)
                 }
+                _ => Run::<MOST_LANES>::new(system, multigrid, chunk)
+                    .solve_best_effort(wanted, progress),
             }?);
         }
         Ok(solutions)

@@ -4,7 +4,7 @@
 use super::lanes::Lanes;
 use super::mixed_system::{MixedRightHandSide, MixedSolution, MixedSystem};
 use super::multigrid::{Multigrid, Workspace};
-use super::vector::{advance, column, dot, interleave, largest, norm, ratio, scale, subtract_all};
+use super::vector::{column, dot, largest, norm, pack_lanes, ratio, scale, subtract_all, update};
 use super::{Solution, SolveReport, SolverError, Unknowns, tell};
 use crate::progress::Progress;
 use std::collections::VecDeque;
@@ -74,8 +74,8 @@ impl<'a, const N: usize> Run<'a, N> {
         let volumes: Vec<Vec<[f64; 1]>> =
             columns.iter().map(|right| right.volumes.clone()).collect();
         let mut right_hand_side: Vec<[f64; N]> =
-            interleave::<N, 3>(&forces).into_iter().flatten().collect();
-        for ([values], weight) in interleave::<N, 1>(&volumes).iter().zip(&weights) {
+            pack_lanes::<N, 3>(&forces).into_iter().flatten().collect();
+        for ([values], weight) in pack_lanes::<N, 1>(&volumes).iter().zip(&weights) {
             right_hand_side.push(values.map(|value| weight * value));
         }
         let unknowns = right_hand_side.len();
@@ -119,7 +119,7 @@ impl<'a, const N: usize> Run<'a, N> {
     }
 
     /// One run of the recursive residual, whatever it reaches.
-    pub fn solve_loosely(
+    pub fn solve_best_effort(
         mut self,
         wanted: f64,
         progress: &dyn Progress,
@@ -160,7 +160,7 @@ impl<'a, const N: usize> Run<'a, N> {
         let force: &mut [Lanes<f64, 3, N>] = force.as_chunks_mut().0;
         self.system.stiffness.multiply(u.as_chunks().0, force);
         self.system.coupling.gradient.add_expanded(p, force);
-        self.system.stiffness.clear_held(force);
+        self.system.stiffness.zero_constrained(force);
         self.system.coupling.compliance.multiply(p, volume);
         for ((value, given), weight) in volume.iter_mut().zip(volumes).zip(&self.weights) {
             for n in 0..N {
@@ -226,7 +226,7 @@ impl<'a, const N: usize> Run<'a, N> {
                     self.keep = MOST_DIRECTIONS / N;
                 }
             }
-            let norms = advance(&mut self.x, &mut self.r, &step, &new.change, &new.product);
+            let norms = update(&mut self.x, &mut self.r, &step, &new.change, &new.product);
             self.keep(new);
             self.iterations += 1;
             residuals = self.relative(&norms);

@@ -51,7 +51,7 @@ impl<'a> Preconditioned<'a> {
         self.system.multiply(u.as_chunks().0, force);
         let Some((coupling, weights)) = &self.pressures else { return product };
         coupling.gradient.add_expanded(p, force);
-        self.system.clear_held(force);
+        self.system.zero_constrained(force);
         let mut divergence = vec![[0.0]; p.len()];
         coupling.divergence.contract(u.as_chunks().0, &mut divergence);
         coupling.compliance.multiply(p, volume);

@@ -7,7 +7,7 @@
 use super::conjugate_gradient::Enough;
 use super::lanes::Lanes;
 use super::mixed_system::MixedSystem;
-use super::vector::{advance, dot, norm, ratio, turn};
+use super::vector::{axpby, dot, norm, ratio, update};
 use super::{SolverError, Unknowns, tell};
 use crate::progress::Progress;
 
@@ -27,7 +27,7 @@ pub fn is_positive_definite(
     let multigrid = system.solver.hierarchy(system.stiffness, progress)?;
     let mut workspace = multigrid.workspace::<1>();
     let mut r: Vectors = load.iter().map(|values| values.map(|value| [value])).collect();
-    system.stiffness.clear_held(&mut r);
+    system.stiffness.zero_constrained(&mut r);
     let wanted = enough.relative_residual;
     let scale = norm(r.as_flattened())[0];
     let zeros = || vec![[[0.0]; 3]; r.len()];
@@ -42,7 +42,7 @@ pub fn is_positive_definite(
             let along = dot(product.as_flattened(), z)[0] * correction.scale[0];
             ratio(-step * along, rho)
         });
-        turn(p.as_flattened_mut(), &[factor], z, &correction.scale);
+        axpby(p.as_flattened_mut(), &[factor], z, &correction.scale);
         rho = dot(r.as_flattened(), p.as_flattened())[0];
         let Some(product) = product(system, &p) else { return Ok(None) };
         let curvature = dot(p.as_flattened(), product.as_flattened())[0];
@@ -53,7 +53,7 @@ pub fn is_positive_definite(
             return Ok(Some(false));
         }
         let (own, rest, step) = (x.as_flattened_mut(), r.as_flattened_mut(), rho / curvature);
-        let left = advance(own, rest, &[step], p.as_flattened(), product.as_flattened());
+        let left = update(own, rest, &[step], p.as_flattened(), product.as_flattened());
         let residual = ratio(left[0], scale);
         last = Some((step, product));
         tell(progress, iteration, residual, wanted)?;
@@ -73,7 +73,7 @@ fn product(system: &MixedSystem, u: &Vectors) -> Option<Vectors> {
     coupling.divergence.contract(u, &mut volumes);
     let p = by_compliance(system, &volumes)?;
     coupling.gradient.add_expanded(&p, &mut product);
-    system.stiffness.clear_held(&mut product);
+    system.stiffness.zero_constrained(&mut product);
     Some(product)
 }
 
@@ -99,7 +99,7 @@ fn by_compliance(system: &MixedSystem, v: &[[f64; 1]]) -> Option<Vec<[f64; 1]>> 
     for _ in 0..MOST_OF_MASS {
         compliance.multiply(&p, &mut product);
         let step = rho / dot(&p, &product)[0];
-        if advance(&mut x, &mut r, &[step], &p, &product)[0] <= SHARP * scale {
+        if update(&mut x, &mut r, &[step], &p, &product)[0] <= SHARP * scale {
             return Some(x);
         }
         let z = conditioned(&r);

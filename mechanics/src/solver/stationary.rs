@@ -18,7 +18,7 @@ use rayon::prelude::*;
 
 use super::lanes::{Lanes, add_product, add_transposed, negated};
 use super::scaling::{factor, times};
-use super::vector::{column, dot, interleave, norm, ratio};
+use super::vector::{column, dot, norm, pack_lanes, ratio};
 use super::vectorised::vectorised;
 use super::{Block, Solution, SolveReport, SolverError, System, Tolerance, Unknowns, tell};
 use crate::progress::{Progress, Unobserved};
@@ -80,7 +80,7 @@ pub fn solve(
     check_memory(system, tolerance.memory_mb)?;
     let inverse = inverse_diagonal(system)?;
     let factor = factor(right_hand_side.as_flattened().iter());
-    let right_hand_side = interleave::<1, 3>(&[times(right_hand_side, factor)]);
+    let right_hand_side = pack_lanes::<1, 3>(&[times(right_hand_side, factor)]);
     let mut run = Run::new(system, &inverse, &right_hand_side);
     let mut solution = match stationary.iteration {
         Iteration::GaussSeidel => {
@@ -129,7 +129,7 @@ fn check_memory(system: &System, allowed_mb: f64) -> Result<(), SolverError> {
 /// D^-1 of the free rows, zero where held.
 fn inverse_diagonal(system: &System) -> Result<Vec<Block>, SolverError> {
     let mut held = vec![[false; 3]; system.layout.free];
-    system.partly_held.iter().for_each(|partly| held[partly.row] = partly.held);
+    system.partly_constrained.iter().for_each(|partly| held[partly.row] = partly.held);
     let invert = |(row, held): (usize, &[bool; 3])| {
         let block = &system.matrix.diagonal[row];
         let open = Matrix3::from_fn(|i, j| match held[i] || held[j] {
@@ -163,7 +163,7 @@ fn power_iteration(
     let value = |k: usize| [((k * 7919 + 13) % 1009) as f64 / 1009.0 - 0.5];
     let mut x: Rows =
         (0..system.layout.free).map(|row| std::array::from_fn(|c| value(3 * row + c))).collect();
-    system.clear_held(&mut x);
+    system.zero_constrained(&mut x);
     let mut product = x.clone();
     let mut lambda = 0.0;
     for _ in 0..MOST_POWER_ITERATIONS {
@@ -333,7 +333,7 @@ impl<'a> GaussSeidel<'a> {
         for ((residual, above), before) in residual.iter_mut().zip(above).zip(before) {
             *residual = std::array::from_fn(|c| [above[c][0] - before[c][0]]);
         }
-        self.system.clear_held(residual);
+        self.system.zero_constrained(residual);
         in_parts.into_iter().chain([in_separator]).sum::<f64>().sqrt()
     }
 }

@@ -20,7 +20,7 @@ pub struct System {
     /// All rows, held ones last.
     pub matrix: HalfMatrix<f64, 3>,
     /// Free rows that are not free in all three unknowns, or have axes of their own.
-    pub partly_held: Vec<PartlyHeld>,
+    pub partly_constrained: Vec<PartlyHeld>,
     /// Where each row stands, in mm: rigid movements of neighbourhoods are what varies slowly.
     pub positions: Vec<Vector3<f64>>,
 }
@@ -125,7 +125,8 @@ impl System {
 
     /// The number of unknowns that are not held.
     pub fn free_unknowns(&self) -> usize {
-        let held = self.partly_held.iter().flat_map(|row| row.held).filter(|held| *held).count();
+        let held =
+            self.partly_constrained.iter().flat_map(|row| row.held).filter(|held| *held).count();
         3 * self.layout.free - held
     }
 
@@ -136,12 +137,14 @@ impl System {
         product: &mut [Lanes<f64, 3, N>],
     ) {
         self.matrix.multiply(&self.layout, x, product);
-        self.clear_held(product);
+        self.zero_constrained(product);
     }
 
     /// Zeros where held.
-    pub(super) fn clear_held<const N: usize>(&self, values: &mut [Lanes<f64, 3, N>]) {
-        self.partly_held.iter().for_each(|partly| partly.clear_held(&mut values[partly.row]));
+    pub(super) fn zero_constrained<const N: usize>(&self, values: &mut [Lanes<f64, 3, N>]) {
+        self.partly_constrained
+            .iter()
+            .for_each(|partly| partly.zero_constrained(&mut values[partly.row]));
     }
 
     /// f - K x, zero where held, into `residual`.
@@ -163,7 +166,7 @@ impl System {
 }
 
 impl PartlyHeld {
-    pub(super) fn clear_held<T: Real, const N: usize>(&self, values: &mut Lanes<T, 3, N>) {
+    pub(super) fn zero_constrained<T: Real, const N: usize>(&self, values: &mut Lanes<T, 3, N>) {
         for (value, _) in values.iter_mut().zip(self.held).filter(|(_, held)| *held) {
             *value = [T::default(); N];
         }
@@ -187,6 +190,6 @@ impl PartlyHeld {
                 value[n] = (0..3).map(|k| self.axes[(k, i)] as f32 * coordinates[k][n]).sum();
             }
         }
-        self.clear_held(values);
+        self.zero_constrained(values);
     }
 }

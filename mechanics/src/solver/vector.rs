@@ -64,7 +64,7 @@ pub fn norm<const N: usize>(a: &[[f64; N]]) -> [f64; N] {
 }
 
 /// x += step p and r -= step y; returns the norm of r.
-pub fn advance<const N: usize>(
+pub fn update<const N: usize>(
     x: &mut [[f64; N]],
     r: &mut [[f64; N]],
     step: &[f64; N],
@@ -95,7 +95,7 @@ pub fn advance<const N: usize>(
 }
 
 /// p = scale z + factor p.
-pub fn turn<const N: usize>(
+pub fn axpby<const N: usize>(
     p: &mut [[f64; N]],
     factor: &[f64; N],
     z: &[[f32; N]],
@@ -136,7 +136,7 @@ pub fn scale<const N: usize>(y: &mut [[f64; N]], factor: &[f64; N]) {
 }
 
 /// Unknowns of several right-hand sides side by side; those that are missing are zero.
-pub fn interleave<const N: usize, const B: usize>(columns: &[Vec<[f64; B]>]) -> Vec<[[f64; N]; B]> {
+pub fn pack_lanes<const N: usize, const B: usize>(columns: &[Vec<[f64; B]>]) -> Vec<[[f64; N]; B]> {
     let mut lanes = vec![[[0.0; N]; B]; columns.first().map_or(0, Vec::len)];
     for (n, column) in columns.iter().enumerate() {
         for (lanes, values) in lanes.iter_mut().zip(column) {

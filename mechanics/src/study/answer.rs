@@ -232,7 +232,7 @@ impl Bench<'_> {
     ) -> Result<(T, Time), NoAnswer> {
         let mut times: Vec<f64> = Vec::new();
         let mut peak_mb = None;
-        self.stopwatch.forget_peak();
+        self.stopwatch.reset_peak();
         loop {
             let begin = self.stopwatch.seconds();
             let deadline = Deadline::after(self.row_s, self.stopwatch, self.progress);

@@ -43,7 +43,7 @@ pub trait Stopwatch: Sync {
     /// Seconds since some moment.
     fn seconds(&self) -> f64;
     /// Starts anew to look for the most memory in use.
-    fn forget_peak(&self);
+    fn reset_peak(&self);
     /// The most memory in use since then in MB, where the system tells.
     fn peak_mb(&self) -> Option<f64>;
 }

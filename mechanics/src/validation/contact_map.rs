@@ -43,7 +43,7 @@ fn touching(
     let density = DENSITY * (MOST_SAMPLES / count).min(1.0);
     let samples = area_sampling::every_triangle(first, density);
     let gap = |sample: &AreaSample| {
-        let closest = second.nearer_than(&sample.point, DEEPEST)?;
+        let closest = second.closest_within(&sample.point, DEEPEST)?;
         let gap = second.signed_distance(&sample.point, &closest);
         (gap <= within && !second.is_on_open_border(&closest)).then_some((*sample, gap))
     };
@@ -89,7 +89,7 @@ pub fn contact_regions(
 /// beside an open border.
 pub fn gaps(first: &TriangleSurface, second: &SurfaceSearch, farthest: f64) -> Vec<f64> {
     let gap = |point: &Vector| {
-        let closest = second.nearer_than(point, farthest)?;
+        let closest = second.closest_within(point, farthest)?;
         let gap = second.signed_distance(point, &closest);
         (!second.is_on_open_border(&closest)).then_some(gap)
     };

@@ -20,7 +20,7 @@ pub enum Side {
 /// lies on an open border are beside the surface and do not count.
 pub fn reach(points: &[Vector], side: Side, surface: &SurfaceSearch) -> f64 {
     let depth = |point: &Vector| {
-        let Some(closest) = surface.nearer_than(point, DEEPEST) else { return 0.0 };
+        let Some(closest) = surface.closest_within(point, DEEPEST) else { return 0.0 };
         if surface.is_on_open_border(&closest) {
             return 0.0;
         }
@@ -94,7 +94,7 @@ fn inside(surface: &TriangleSurface, other: &SurfaceSearch) -> Vec<Part> {
     let count = area_sampling::count_of_every_triangle(surface, DENSITY);
     let samples = area_sampling::every_triangle(surface, DENSITY * (MOST_SAMPLES / count).min(1.0));
     let part = |sample: &AreaSample| {
-        let closest = other.nearer_than(&sample.point, DEEPEST)?;
+        let closest = other.closest_within(&sample.point, DEEPEST)?;
         let is_inside = other.signed_distance(&sample.point, &closest) < 0.0;
         let normal = surface.area_vector(sample.triangle as usize).normalize();
         (is_inside && !other.is_on_open_border(&closest))

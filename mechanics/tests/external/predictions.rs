@@ -16,7 +16,7 @@ use mechanics::model::fem::linear_system::Residual;
 use mechanics::model::spline::VolumeSpline;
 use mechanics::plan::{PlannedSegment, RigidMovement};
 use mechanics::prediction::{
-    Bone, Case, CaseSegment, ContactKind, Method, Plan, Scene, Settings, goes_along, predict,
+    Bone, Case, CaseSegment, ContactKind, Method, Plan, Scene, Settings, predict, rigidly_carried,
     skin_overlap,
 };
 use mechanics::progress::Unobserved;
@@ -205,7 +205,7 @@ fn tissue_of_a_face_and_of_a_shell_is_one_part_that_moves_as_planned() -> Result
             let (conditions, skin) = (&scene.conditions, scene.skin.nodes());
             let parts = connected_parts(&scene.mesh, &faces, conditions, skin);
             let movement = |segment: u32| scene.segments[segment as usize].movement;
-            let told = goes_along(&parts, movement);
+            let told = rigidly_carried(&parts, movement);
             (begun.elapsed(), parts.len(), told)
         };
         timed();

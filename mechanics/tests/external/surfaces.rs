@@ -7,7 +7,7 @@ use mechanics::validation::{Alignment, ComparisonSettings, compare};
 
 use crate::samples::{read_default, surface};
 use crate::support::external::{Missing, shared_data, trials};
-use crate::support::surfaces::{Noise, difference, distance_by_trying, map, movement};
+use crate::support::surfaces::{Noise, brute_force_distance, difference, map, movement};
 
 trials! {
     a_real_skin_that_moved_is_brought_back
@@ -50,7 +50,7 @@ fn a_dirty_bone_has_a_nearest_point_for_everything() -> Result<(), Missing> {
         let share = Vector::new(random.uniform(), random.uniform(), random.uniform());
         let point = low + (high - low).component_mul(&share);
         let closest = search.closest(&point);
-        let tried = distance_by_trying(&bone, &point);
+        let tried = brute_force_distance(&bone, &point);
         assert!((closest.distance - tried).abs() < 1e-9, "{closest:?} {tried}");
         assert!(search.signed_distance(&point, &closest).is_finite());
     }

@@ -8,7 +8,7 @@ use mechanics::material::{Fibre, FibreLaw, LinearElastic};
 use mechanics::mesh::sample::block;
 use mechanics::mesh::{CellShape, TriangleSurface, Vector};
 use mechanics::muscle::axis::mean_axis;
-use mechanics::muscle::equivalent::{EquivalentTissue, decided_by_rule};
+use mechanics::muscle::equivalent::{EquivalentTissue, rule_dependent_share};
 use mechanics::muscle::lines::{MuscleLines, fibre_cells};
 use mechanics::muscle::share::shares_inside;
 use mechanics::muscle::strap::{box_surface, strap_of};
@@ -188,9 +188,9 @@ fn the_tissue_of_a_cell_with_a_tenth_of_muscle_depends_on_the_rule() {
     let parts = [(0.5, fibred), (0.5, tissue(3.0, 0.46))];
     let found = EquivalentTissue::new(&parts, MixingRule::Voigt);
     assert!((found.rule_ratio - 56.5 * (0.5 / 110.0 + 0.5 / 3.0)).abs() < 1e-9, "{found:?}");
-    let decided = decided_by_rule([(2.0, 24.5), (6.0, 1.2), (2.0, 3.5)]);
+    let decided = rule_dependent_share([(2.0, 24.5), (6.0, 1.2), (2.0, 3.5)]);
     assert!((decided - 0.4).abs() < 1e-12);
-    assert_eq!(decided_by_rule([]), 0.0);
+    assert_eq!(rule_dependent_share([]), 0.0);
 }
 
 #[test]

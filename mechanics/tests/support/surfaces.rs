@@ -153,7 +153,7 @@ pub fn difference(found: &RigidTransform, wanted: &RigidTransform, place: &Vecto
 
 /// By trying all triangles with a projection written differently: the minimum over the plane, the edges
 /// and the corners.
-pub fn distance_by_trying(surface: &TriangleSurface, point: &Vector) -> f64 {
+pub fn brute_force_distance(surface: &TriangleSurface, point: &Vector) -> f64 {
     let segment = |a: &Vector, b: &Vector| {
         let along = ((point - a).dot(&(b - a)) / (b - a).norm_squared()).clamp(0.0, 1.0);
         (point - (a + (b - a) * along)).norm()

@@ -1,7 +1,7 @@
 //! `distance.svg`: the prediction in colours of its signed distance, and how much of its area has which.
 
 use crate::jobs::report::SIGNED_RANGE_MM;
-use crate::jobs::result::pictures::outlook;
+use crate::jobs::result::pictures::face_direction;
 use crate::schema::compare::result::ComparisonDocument;
 use mechanics::chart::drawing::{Document, Rectangle, Style};
 use mechanics::chart::svg::svg;
@@ -30,9 +30,10 @@ pub fn distance_picture(
     let values_of_views = Some(values("distance, mm"));
     let rows = [ViewRow { name: "Prediction", points, values: values_of_views, outline_of: None }];
     let columns = ["Front", "Three-quarter", "Side"];
-    let outlook = outlook(frame, surface);
-    let views = ViewsPicture { triangles: &surface.triangles, rows: &rows, outlook, columns }
-        .to_drawing()?;
+    let face_direction = face_direction(frame, surface);
+    let views =
+        ViewsPicture { triangles: &surface.triangles, rows: &rows, face_direction, columns }
+            .to_drawing()?;
     let weights = surface.point_areas();
     let name = "signed distance, mm: below 0 inside the actual skin, above 0 outside";
     let histogram = HistogramPicture { values: values(name), weights: &weights }.to_drawing();

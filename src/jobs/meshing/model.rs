@@ -13,7 +13,7 @@ use mechanics::anatomy::left_out::left_out_of_scan;
 use mechanics::anatomy::loose::{loose_bone, without_loose};
 use mechanics::anatomy::region::around_segments;
 use mechanics::anatomy::skin_scan::{FittedScan, told};
-use mechanics::anatomy::whole_bone::made_whole;
+use mechanics::anatomy::whole_bone::close_bone;
 use mechanics::anatomy::{Anatomy, AnatomyError, build, part_bone};
 use mechanics::domain::{ImageDomain, ImageDomainError, ImageOptions, LabelBody};
 use mechanics::image::{ImageVolume, scan_report};
@@ -60,7 +60,7 @@ impl PreparedMeshing {
         skin: Option<&FittedScan>,
     ) -> Result<PartedBody, AnatomyError> {
         let mut options = self.rules.image.clone();
-        let whole = made_whole(scan, options.bone_threshold, &self.rules.whole_bone);
+        let whole = close_bone(scan, options.bone_threshold, &self.rules.whole_bone);
         let (whole, closed) = whole.map_err(ImageDomainError::from)?.unzip();
         let seen = scan;
         let scan = whole.as_ref().unwrap_or(scan);

@@ -4,7 +4,7 @@ use super::cost;
 use super::density::default_density;
 use super::input::{PredictInput, Prepared};
 use super::overlap::{Collision, collisions, contacts};
-use super::planned::{doubtful_landmarks, in_numbers, movements};
+use super::planned::{in_numbers, movements, suspect_landmarks};
 use crate::jobs::failure::JobError;
 use crate::jobs::result::pictures::classes_picture;
 use crate::jobs::result::warnings::warnings_after;
@@ -49,7 +49,7 @@ impl Prepared {
         let held: usize = scene.conditions.holds.iter().map(|hold| hold.count()).sum();
         let collisions = collisions(&self.case, scene);
         let mut of_plan: Vec<Warning> = collisions.iter().filter_map(Collision::warning).collect();
-        of_plan.extend(doubtful_landmarks(&input.case, &self.case));
+        of_plan.extend(suspect_landmarks(&input.case, &self.case));
         of_plan.extend(default_density(input));
         let warnings = self.warnings.iter().chain(&scene.warnings).chain(&of_plan);
         let head = in_numbers(&input.case, &self.case, scene, None);

@@ -8,7 +8,7 @@ const MOST_BESIDE_DEG: f64 = 65.0;
 
 /// A warning where the skin clearly looks elsewhere than the stated frame has the front: in LPS along -y, in RAS
 /// along +y, upright along +z in both.
-pub(super) fn looks_elsewhere(frame: Frame, skin: &TriangleSurface) -> Option<Warning> {
+pub(super) fn frame_mismatch(frame: Frame, skin: &TriangleSurface) -> Option<Warning> {
     let stated = match frame {
         Frame::Lps => FaceDirection::lps(),
         Frame::Ras => FaceDirection::ras(),
@@ -50,9 +50,9 @@ mod tests {
 
     #[test]
     fn a_face_that_looks_to_the_back_of_its_frame_is_told_with_both_directions() {
-        assert_eq!(looks_elsewhere(Frame::Ras, &tent()), None);
-        assert_eq!(looks_elsewhere(Frame::Unspecified, &tent()), None);
-        let told = looks_elsewhere(Frame::Lps, &tent()).expect("LPS looks along -y");
+        assert_eq!(frame_mismatch(Frame::Ras, &tent()), None);
+        assert_eq!(frame_mismatch(Frame::Unspecified, &tent()), None);
+        let told = frame_mismatch(Frame::Lps, &tent()).expect("LPS looks along -y");
         assert_eq!(told.code, "frame-suspect");
         let angle = told.numbers.iter().find(|(name, _)| *name == "angle_deg").expect("an angle").1;
         assert!((angle - 180.0).abs() < 1e-6, "{told:?}");
@@ -64,8 +64,8 @@ mod tests {
     fn a_closed_surface_and_one_that_looks_up_have_no_front_to_doubt() {
         let mut closed = tent();
         closed.triangles.extend([[0, 1, 2], [1, 3, 2]]);
-        assert_eq!(looks_elsewhere(Frame::Lps, &closed), None);
+        assert_eq!(frame_mismatch(Frame::Lps, &closed), None);
         let up = TriangleSurface { triangles: vec![[0, 3, 1]], ..tent() };
-        assert_eq!(looks_elsewhere(Frame::Lps, &up), None);
+        assert_eq!(frame_mismatch(Frame::Lps, &up), None);
     }
 }

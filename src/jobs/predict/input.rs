@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use super::facing::looks_elsewhere;
+use super::facing::frame_mismatch;
 use super::fitted_model::FittedModel;
 use super::refinable::check_refinable;
 use crate::jobs::compare::{ComparedMeshes, admit};
@@ -95,7 +95,7 @@ impl PredictInput {
         let told = stored.values().flat_map(|mesh| mesh.told.iter().cloned()).collect();
         warnings.extend(converted.warnings);
         warnings.extend(quality.warnings());
-        warnings.extend(looks_elsewhere(converted.case.frame, &scene.skin.surface));
+        warnings.extend(frame_mismatch(converted.case.frame, &scene.skin.surface));
         Ok(Prepared {
             case: converted.case,
             plan: converted.plan,

@@ -90,7 +90,7 @@ pub fn gaps_picture(case: &Case, scene: &Scene) -> Result<Option<String>, PngErr
         title: "How bones meet",
         subtitle: &format!("moved: {}", names.join(", ")),
         bones: &shown,
-        outlook: upright(case.frame, &scene.skin.surface),
+        face_direction: upright(case.frame, &scene.skin.surface),
         frame: case.frame.name(),
     };
     picture.to_svg().map(Some)

@@ -46,7 +46,7 @@ pub fn in_numbers(
 }
 
 /// Landmarks of bone that something speaks against: sides that look swapped, places and extents that no head has beside this mesh.
-pub fn doubtful_landmarks(document: &CaseDocument, case: &Case) -> Vec<Warning> {
+pub fn suspect_landmarks(document: &CaseDocument, case: &Case) -> Vec<Warning> {
     let landmarks = Bone::before(&document.bone_landmarks).before;
     let swapped = Landmarks(&landmarks).swapped_sides(case.frame).into_iter();
     let swapped = swapped.map(|swapped| {

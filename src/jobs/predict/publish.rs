@@ -9,7 +9,7 @@ use super::correction::{CORRECTED_FILE, Correction, corrected};
 use super::density::default_density;
 use super::input::{PredictInput, Prepared};
 use super::overlap::{Collision, bones_file, collisions, gaps_picture, through_skin};
-use super::planned::{doubtful_landmarks, in_numbers};
+use super::planned::{in_numbers, suspect_landmarks};
 use crate::jobs::clock::Observed;
 use crate::jobs::failure::JobError;
 use crate::jobs::output::{JobOutput, MadeMesh};
@@ -148,7 +148,7 @@ fn warnings_of(input: &PredictInput, prepared: &Prepared, prediction: &Predictio
     warnings.extend(prediction.warnings.iter().cloned());
     warnings.extend(collisions(case, scene).iter().filter_map(Collision::warning));
     warnings.extend(through_skin(case, scene, prediction));
-    warnings.extend(doubtful_landmarks(&input.case, case));
+    warnings.extend(suspect_landmarks(&input.case, case));
     warnings.extend(default_density(input));
     warnings
 }

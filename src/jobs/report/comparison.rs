@@ -7,7 +7,7 @@ use super::content::{Block, Figure, Report, Section, Table};
 use super::tables::{mm, provenance, report, texts};
 use super::warnings::warnings;
 use super::words::{Words, filled, words};
-use crate::jobs::result::pictures::outlook;
+use crate::jobs::result::pictures::face_direction;
 use crate::schema::Language;
 use crate::schema::compare::result::{ComparisonDocument, DistanceDocument};
 use crate::schema::predict::result::ResultDocument;
@@ -64,7 +64,7 @@ fn views(facts: &ComparisonFacts, words: &Words) -> Result<Section, PngError> {
     let picture = ViewsPicture {
         triangles: &facts.surface.triangles,
         rows: &rows,
-        outlook: outlook(facts.frame, facts.surface),
+        face_direction: face_direction(facts.frame, facts.surface),
         columns: words.columns,
     };
     let caption = filled(words.outside, &[format!("{range_mm}")]);

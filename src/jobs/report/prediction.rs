@@ -18,7 +18,7 @@ use super::warnings::warnings;
 use super::words::{Words, filled, words};
 use crate::jobs::failure::JobError;
 use crate::jobs::result::folder::ResultFolder;
-use crate::jobs::result::pictures::outlook;
+use crate::jobs::result::pictures::face_direction;
 use crate::schema::predict::output::OutputName;
 use crate::schema::predict::planned::MeasureDocument;
 use crate::schema::predict::result::{DisplacementDocument, ResultDocument};
@@ -182,7 +182,7 @@ fn views(facts: &PredictionFacts, words: &Words) -> Result<Section, PngError> {
     let picture = ViewsPicture {
         triangles: &before.triangles,
         rows: &rows,
-        outlook: outlook(facts.frame, before),
+        face_direction: face_direction(facts.frame, before),
         columns: words.columns,
     };
     let caption = filled(words.outline, &[format!("{range_mm}")]);

@@ -132,7 +132,7 @@ pub(super) fn same_scan(
 }
 
 /// A movement that is nearer to the plan backwards than to the plan, by how far the middle of the segment goes.
-pub(super) fn undoes_the_plan(
+pub(super) fn reversed_plan(
     segment: &ReproducedSegmentDocument,
     found: &Performed,
     planned: &RigidMovement,

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::doubts::{
-    BEFORE_OPERATION, base_warnings, lies_on_the_other_scan, misfit, same_scan, undoes_the_plan,
+    BEFORE_OPERATION, base_warnings, lies_on_the_other_scan, misfit, reversed_plan, same_scan,
     unmasked,
 };
 use super::input::ReproduceInput;
@@ -180,7 +180,7 @@ impl Scans<'_> {
             let plan = self.planned_of(segment).map(|planned| &planned.movement);
             let swapped = match segment.before {
                 Some(_) => lies_on_the_other_scan(segment, &bone, [&before, &after], &base),
-                None => plan.and_then(|plan| undoes_the_plan(segment, &found, plan)),
+                None => plan.and_then(|plan| reversed_plan(segment, &found, plan)),
             };
             warnings.extend(swapped);
             segments.push(self.document(segment, &found));

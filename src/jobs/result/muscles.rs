@@ -78,7 +78,7 @@ pub fn muscles_picture(case: &Case, scene: &Scene) -> Result<Option<String>, Png
         subtitle: &subtitle,
         muscles: &groups.collect::<Vec<MuscleGroup>>(),
         bones: &bones,
-        outlook: upright(case.frame, &scene.skin.surface),
+        face_direction: upright(case.frame, &scene.skin.surface),
         frame: case.frame.name(),
     };
     picture.to_svg().map(Some)

@@ -51,7 +51,7 @@ pub fn classes_picture(scene: &Scene, frame: Frame, title: &str) -> Result<Strin
         triangles: &boundary.triangles,
         class_of: &class_of,
         classes: &classes,
-        outlook: outlook(frame, &scene.skin.surface),
+        face_direction: face_direction(frame, &scene.skin.surface),
         frame: frame.name(),
     }
     .to_svg()
@@ -81,7 +81,7 @@ pub fn displacement_picture(
         triangles: &before.triangles,
         before: &before.points,
         after: &moved.points,
-        outlook: outlook(frame, before),
+        face_direction: face_direction(frame, before),
         frame: frame.name(),
         range_mm,
         statistics: &numbers,
@@ -113,14 +113,18 @@ pub fn slices_picture(anatomy: &Anatomy, frame: Frame) -> Result<String, PngErro
         points: &mesh.nodes,
         tetrahedra: &cells,
         middle: (boxed.0 + boxed.1) / 2.0,
-        outlook: if frame == Frame::Ras { FaceDirection::ras() } else { FaceDirection::lps() },
+        face_direction: if frame == Frame::Ras {
+            FaceDirection::ras()
+        } else {
+            FaceDirection::lps()
+        },
         frame: frame.name(),
     }
     .to_svg()
 }
 
 /// From where the face is seen; without a known frame its front is found from its skin.
-pub fn outlook(frame: Frame, skin: &TriangleSurface) -> FaceDirection {
+pub fn face_direction(frame: Frame, skin: &TriangleSurface) -> FaceDirection {
     upright(frame, skin).facing(&skin.points, &skin.triangles)
 }
 

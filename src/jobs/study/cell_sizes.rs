@@ -69,7 +69,7 @@ pub fn cell_sizes_chart(report: &ReportDocument, group: [&str; 3]) -> String {
          tetrahedra, two wedges or one hexahedron in the mean."
             .to_owned(),
     ];
-    notes.extend(own.iter().map(|of| settled_words(of)));
+    notes.extend(own.iter().map(|of| convergence_text(of)));
     let series_of: Vec<CellSizesSeries> = drawn.collect();
     let picture = CellSizesPicture {
         title: &format!("Convergence over cell sizes: {}", scene_in_words(series)),
@@ -81,7 +81,7 @@ pub fn cell_sizes_chart(report: &ReportDocument, group: [&str; 3]) -> String {
 }
 
 /// What a reader wants to know of a series.
-pub fn settled_words(of: &CellSizesDocument) -> String {
+pub fn convergence_text(of: &CellSizesDocument) -> String {
     let fit = match (of.order, of.limit_mm, of.fit_rms_mm) {
         (Some(order), Some(limit), Some(rms)) => {
             let finest = of.meshes.last().map_or(limit, |mesh| mesh.skin_mean_mm);

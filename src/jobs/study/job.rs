@@ -52,9 +52,9 @@ impl Stopwatch for Rows<'_> {
     }
 
     /// A study does so where a row begins.
-    fn forget_peak(&self) {
+    fn reset_peak(&self) {
         self.begin();
-        self.stopwatch.forget_peak();
+        self.stopwatch.reset_peak();
     }
 
     fn peak_mb(&self) -> Option<f64> {

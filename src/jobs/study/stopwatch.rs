@@ -21,7 +21,7 @@ impl Stopwatch for MachineStopwatch {
 
     /// Linux forgets the peak of a process that writes 5 here (proc(5), since 4.0). Where it may not, the peak
     /// stays that of everything before.
-    fn forget_peak(&self) {
+    fn reset_peak(&self) {
         let _ = std::fs::write("/proc/self/clear_refs", "5");
     }
 
@@ -46,7 +46,7 @@ mod tests {
         drop(block);
         let can_forget =
             std::fs::OpenOptions::new().write(true).open("/proc/self/clear_refs").is_ok();
-        watch.forget_peak();
+        watch.reset_peak();
         let after = watch.peak_mb().unwrap_or_default();
         assert!(!can_forget || after < with - 300.0, "{with} {after}");
     }

@@ -70,7 +70,7 @@ impl CaseDocument {
         warnings.extend(mended.as_ref().and_then(RepairedMesh::warning));
         let regions = self.to_regions(&at.key("regions"), faults);
         if let Some(known) = region_names(&regions, &volume) {
-            warnings.extend(spec.serves_nothing(&own, &known));
+            warnings.extend(spec.unused_default(&own, &known));
             check_regions(&[own, spec], &known, faults);
         }
         let (skin, skin_regions) = self.to_skin(&at, limits, faults);

@@ -59,7 +59,7 @@ pub enum FibreLawName {
     /// docs/methods.md#fibres); only where the ratio of moduli along
     /// and across is below (1 - nu) / (2 nu^2).
     #[serde(rename = "paper_002")]
-    Paper002,
+    Kim2012,
 }
 
 impl FibreDocument {
@@ -140,7 +140,7 @@ impl FibreDocument {
     pub(super) fn to_fibre(&self) -> Option<Fibre> {
         let law = match self.law.unwrap_or_default() {
             FibreLawName::Engineering => FibreLaw::Engineering,
-            FibreLawName::Paper002 => FibreLaw::Paper002,
+            FibreLawName::Kim2012 => FibreLaw::Kim2012,
         };
         let (young_modulus, shear_modulus) = (self.young_modulus_kpa?, self.shear_modulus_kpa);
         Some(Fibre { young_modulus, shear_modulus, law })

@@ -27,7 +27,7 @@ impl PlacedMaterials<'_> {
     }
 
     /// The `*` of a spec where every region of the mesh has an entry of its own, in the spec or in the case below.
-    pub fn serves_nothing(
+    pub fn unused_default(
         &self,
         case: &PlacedMaterials,
         regions: &BTreeSet<String>,

@@ -86,7 +86,7 @@ pub fn material_of(preset: PresetName) -> MaterialDocument {
             along(110.0, FibreLawName::Engineering, isotropic(6.2, 0.49))
         }
         PresetName::FatKim => isotropic(3.0, 0.46),
-        PresetName::MuscleKim => along(500.0, FibreLawName::Paper002, isotropic(790.0, 0.43)),
+        PresetName::MuscleKim => along(500.0, FibreLawName::Kim2012, isotropic(790.0, 0.43)),
         PresetName::EmbeddingZachow => isotropic(20.0, 0.455),
         PresetName::MuscleZachow => isotropic(300.0, 0.44),
         PresetName::MuscleMandibleZhang => rubin_bodner(MUSCLE_OF_ZHANG, 0.95),

@@ -7,7 +7,7 @@ use mechanics::prediction::MethodKind;
 
 impl PredictDocument {
     /// Asks for stress, and for the file that it stands in.
-    pub fn ask_for_stress(&mut self) {
+    pub fn request_stress(&mut self) {
         self.stress = true;
         let mut outputs = self.files();
         outputs.push(OutputName::VolumeVtu);

@@ -79,7 +79,7 @@ impl Error for Mistake {
     }
 
     fn invalid_type(found: Unexpected, expected: &dyn Expected) -> Self {
-        Mistake::wrong_type(&in_json(&expected.to_string()), &found_in_json(found))
+        Mistake::wrong_type(&in_json(&expected.to_string()), &json_type_name(found))
     }
 
     fn invalid_value(found: Unexpected, expected: &dyn Expected) -> Self {
@@ -142,7 +142,7 @@ fn in_json(expected: &str) -> String {
 }
 
 /// What stands there, in JSON's terms.
-fn found_in_json(found: Unexpected) -> String {
+fn json_type_name(found: Unexpected) -> String {
     match found {
         Unexpected::Bool(value) => value.to_string(),
         Unexpected::Unsigned(number) => format!("the number {number}"),

@@ -18,9 +18,9 @@ pub fn is_unavailable(error: &sqlx::Error) -> bool {
     match error {
         sqlx::Error::PoolTimedOut | sqlx::Error::PoolClosed => true,
         sqlx::Error::Io(inner) => inner.kind() != std::io::ErrorKind::StorageFull,
-        sqlx::Error::Database(inner) => inner.code().is_some_and(|code| {
-            sqlite::may_succeed_later(&code) || postgres::may_succeed_later(&code)
-        }),
+        sqlx::Error::Database(inner) => inner
+            .code()
+            .is_some_and(|code| sqlite::is_transient(&code) || postgres::is_transient(&code)),
         _ => false,
     }
 }
@@ -29,7 +29,9 @@ pub fn is_unavailable(error: &sqlx::Error) -> bool {
 pub fn is_refused(error: &sqlx::Error) -> bool {
     match error {
         sqlx::Error::Configuration(_) | sqlx::Error::Tls(_) => true,
-        sqlx::Error::Database(inner) => inner.code().is_some_and(|code| postgres::keeps_out(&code)),
+        sqlx::Error::Database(inner) => {
+            inner.code().is_some_and(|code| postgres::is_access_denied(&code))
+        }
         _ => false,
     }
 }

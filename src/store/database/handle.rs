@@ -134,7 +134,7 @@ impl Database {
     }
 
     /// The same in another line of writers, for one who has nothing to do before.
-    pub fn plainly(&self, line: &str) -> Database {
+    pub fn in_line(&self, line: &str) -> Database {
         Database { line: line.into(), first: None, ..self.clone() }
     }
 

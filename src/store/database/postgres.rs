@@ -137,11 +137,11 @@ fn without_nul(text: String) -> String {
 
 /// Connections lost (08), too many of them (53), the server stopping or starting (57P), a deadlock or
 /// another transaction in the way (40, 55P03), a limit of time (57014).
-pub fn may_succeed_later(code: &str) -> bool {
+pub fn is_transient(code: &str) -> bool {
     code != FULL && ["08", "40", "53", "55P03", "57"].iter().any(|class| code.starts_with(class))
 }
 
 /// A wrong user or password (28), no such database (3D).
-pub fn keeps_out(code: &str) -> bool {
+pub fn is_access_denied(code: &str) -> bool {
     code.starts_with("28") || code.starts_with("3D")
 }

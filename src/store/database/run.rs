@@ -90,7 +90,7 @@ impl Statement {
     }
 
     /// Waits for the answer however long it takes.
-    pub fn patiently(mut self) -> Self {
+    pub fn without_timeout(mut self) -> Self {
         self.patient = true;
         self
     }

@@ -120,6 +120,6 @@ fn without_row_locks(sql: Cow<'static, str>) -> Cow<'static, str> {
 }
 
 /// Codes say more in their upper bytes; those of PostgreSQL have five characters.
-pub fn may_succeed_later(code: &str) -> bool {
+pub fn is_transient(code: &str) -> bool {
     code.len() < 5 && code.parse().is_ok_and(|code: u32| PASSING.contains(&(code & 0xff)))
 }

@@ -176,7 +176,7 @@ impl Process {
         }
     }
 
-    pub fn hear(&self, wait: Duration) -> Output {
+    pub fn receive(&self, wait: Duration) -> Output {
         match self.reports.recv_timeout(wait) {
             Ok(report) => Output::Report(report),
             Err(RecvTimeoutError::Timeout) => Output::Nothing,
@@ -185,7 +185,7 @@ impl Process {
     }
 
     /// Whose lines standard error holds from here on.
-    pub fn is_for(&self, job: Option<(&str, i64)>) {
+    pub fn set_log_owner(&self, job: Option<(&str, i64)>) {
         lock(&self.log).job = job.map(|(job, attempt)| (job.to_owned(), attempt));
     }
 
@@ -203,7 +203,7 @@ impl Process {
         // An output that is closed is the last that a dying process does: its own death is told, not ours.
         let mut ended = self.child.try_wait().ok().flatten();
         for _ in 0..50 {
-            if ended.is_some() || !matches!(self.hear(Duration::ZERO), Output::Gone) {
+            if ended.is_some() || !matches!(self.receive(Duration::ZERO), Output::Gone) {
                 break;
             }
             std::thread::sleep(Duration::from_millis(2));

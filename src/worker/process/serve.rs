@@ -15,7 +15,7 @@ use super::reports::Reports;
 use super::source::{FullAnswer, SlotSource};
 use crate::library::cache::MeshCache;
 use crate::worker::fail_point::FailPoints;
-use crate::worker::niceness::give_way;
+use crate::worker::niceness::lower_priority;
 use crate::worker::process::attempt::attempt;
 use mechanics::progress::{Phase, Progress};
 
@@ -34,8 +34,8 @@ pub enum SlotError {
 
 /// Serves until standard input is closed.
 pub fn serve() -> Result<(), SlotError> {
-    die_with_parent();
-    give_way();
+    end_with_parent();
+    lower_priority();
     FailPoints::of(0, "").pass_by("slot:start", &|| false);
     let mut orders = BufReader::new(io::stdin());
     let first = read_message(&mut orders).map_err(|_| SlotError::NoOrders)?;
@@ -63,7 +63,7 @@ pub fn serve() -> Result<(), SlotError> {
 }
 
 /// The system ends this process with its worker, even one that does not read any more.
-fn die_with_parent() {
+fn end_with_parent() {
     #[cfg(target_os = "linux")]
     {
         use rustix::process::{Signal, set_parent_process_death_signal};

@@ -88,7 +88,7 @@ impl SlotWork {
     fn start(&self) -> Result<Process, String> {
         let started = Process::start(&self.shared.program, &self.shared.settings);
         let process = started.map_err(|error| error.to_string())?;
-        match process.hear(START) {
+        match process.receive(START) {
             Output::Report(Report::Ready) => Ok(process),
             Output::Report(_) | Output::Nothing | Output::Gone => Err(process.end().to_string()),
         }
@@ -168,7 +168,7 @@ impl SlotWork {
         process.jobs += 1;
         let panicked = matches!(outcome, Outcome::Panicked(_));
         let limit = self.shared.settings.memory_bytes;
-        let why = worn_out(panicked, process.jobs, usage.map(|usage| usage.now_bytes), limit);
+        let why = recycling(panicked, process.jobs, usage.map(|usage| usage.now_bytes), limit);
         if let Some(why) = why {
             tracing::info!(why, jobs = process.jobs, "a slot gets a fresh process");
             metrics::slot_ended(why);
@@ -215,7 +215,7 @@ impl Work for SlotWork {
             document: claim.document.clone(),
             folder: std::path::absolute(folder)?,
         };
-        process.is_for(Some((&lease.job, lease.attempt)));
+        process.set_log_owner(Some((&lease.job, lease.attempt)));
         process.tell(&Order::Work(assignment))?;
         let mut attempt = Attempt {
             shared: &self.shared,
@@ -231,7 +231,7 @@ impl Work for SlotWork {
         let usage = attempt.usage;
         let ended = self.judge(end, usage, folder);
         if let Some(process) = &self.process {
-            process.is_for(None);
+            process.set_log_owner(None);
         }
         if let Some(usage) = usage {
             metrics::job_memory(usage.peak_bytes);
@@ -244,7 +244,7 @@ impl Attempt<'_> {
     /// Passes on what the process tells until it is done, or has to be done with.
     fn follow(&mut self) -> End {
         loop {
-            match self.process.hear(LOOK) {
+            match self.process.receive(LOOK) {
                 Output::Report(Report::Ended(ended)) => {
                     self.usage = ended.memory.or(self.usage);
                     return End::Outcome(ended.outcome);
@@ -253,7 +253,7 @@ impl Attempt<'_> {
                 Output::Nothing => self.usage = self.process.usage().or(self.usage),
                 Output::Gone => return End::Died,
             }
-            if let Some(end) = self.impatience() {
+            if let Some(end) = self.enforce_deadlines() {
                 return end;
             }
         }
@@ -281,7 +281,7 @@ impl Attempt<'_> {
     }
 
     /// Tells the process to stop when the job is not wanted any more; says when to wait no longer.
-    fn impatience(&mut self) -> Option<End> {
+    fn enforce_deadlines(&mut self) -> Option<End> {
         let now = Instant::now();
         if self.stopped.is_none() && self.progress.is_cancelled() {
             self.stopped = Some(now);
@@ -346,7 +346,7 @@ impl Attempt<'_> {
 
 /// Why a process is not to be used again, if so: a bug may have left anything, many jobs leave memory in pieces, and a
 /// half of the memory that is not given back is missing in the next job.
-fn worn_out(panicked: bool, jobs: usize, bytes: Option<u64>, limit: u64) -> Option<&'static str> {
+fn recycling(panicked: bool, jobs: usize, bytes: Option<u64>, limit: u64) -> Option<&'static str> {
     if panicked {
         return Some("panic");
     }
@@ -391,10 +391,10 @@ mod tests {
 
     #[test]
     fn a_process_is_used_until_it_panics_is_old_or_keeps_half_of_its_memory() {
-        assert_eq!(worn_out(false, JOBS_OF_A_PROCESS - 1, Some(500), 1000), None);
-        assert_eq!(worn_out(true, 1, Some(1), 1000), Some("panic"));
-        assert_eq!(worn_out(false, JOBS_OF_A_PROCESS, Some(1), 1000), Some("jobs"));
-        assert_eq!(worn_out(false, 1, Some(501), 1000), Some("memory"));
-        assert_eq!(worn_out(false, 1, None, 1000), None);
+        assert_eq!(recycling(false, JOBS_OF_A_PROCESS - 1, Some(500), 1000), None);
+        assert_eq!(recycling(true, 1, Some(1), 1000), Some("panic"));
+        assert_eq!(recycling(false, JOBS_OF_A_PROCESS, Some(1), 1000), Some("jobs"));
+        assert_eq!(recycling(false, 1, Some(501), 1000), Some("memory"));
+        assert_eq!(recycling(false, 1, None, 1000), None);
     }
 }

@@ -35,7 +35,7 @@ fn fibres_of_a_document_are_those_of_the_material() {
     assert_eq!(uniform.fibres["*"], FibreDirection::Uniform(Vector::z() * 2.0));
     let paper = r#"{"young_modulus_kpa":6.3,"direction":[1,0,0],"law":"paper_002"}"#;
     let paper = case(&with(paper)).unwrap().0;
-    assert_eq!(paper.materials["*"], muscle(6.3, None, FibreLaw::Paper002));
+    assert_eq!(paper.materials["*"], muscle(6.3, None, FibreLaw::Kim2012));
 }
 
 #[test]

@@ -81,7 +81,7 @@ async fn a_client_that_never_ends_its_head_is_given_up() {
 }
 
 /// A byte of the body after the other goes out until the server answers with 408.
-async fn gives_up_while_it_trickles(what: &str, mut stream: TcpStream) {
+async fn times_out_while_trickling(what: &str, mut stream: TcpStream) {
     let answer = until(what, async || {
         // Who has answered may have gone.
         let _ = stream.write_all(b"x").await;
@@ -98,7 +98,7 @@ async fn a_body_that_comes_byte_by_byte_is_given_up() {
     let server = Server::start_with(&["--body-idle-s", "0.5"]);
     let head = "POST /v1/meshes HTTP/1.1\r\nHost: localhost\r\nContent-Type: model/stl\r\nContent-Length: 999999\r\n\r\n";
     let stream = send(&server, head).await;
-    gives_up_while_it_trickles("74 byte by byte", stream).await;
+    times_out_while_trickling("74 byte by byte", stream).await;
 }
 
 #[tokio::test]
@@ -108,7 +108,7 @@ async fn what_came_at_once_is_no_excuse_for_a_body_that_trickles() {
     let mut stream = send(&server, head).await;
     // At the least rate this is worth half an hour.
     stream.write_all(&vec![b'x'; 32_000_000]).await.unwrap();
-    gives_up_while_it_trickles("after 32 MB at once", stream).await;
+    times_out_while_trickling("after 32 MB at once", stream).await;
 }
 
 #[tokio::test]
@@ -131,10 +131,11 @@ async fn an_answer_that_is_taken_too_slowly_is_broken_off() {
 async fn the_listener_for_administration_has_no_more_patience() {
     let mut server = Server::start_with(&["--body-idle-s", "0.5", "--admin-bind", "127.0.0.1:0"]);
     let line = server.second_line();
-    let office = line.strip_prefix("metrics on http://").unwrap().trim_end_matches("/metrics");
+    let admin_address =
+        line.strip_prefix("metrics on http://").unwrap().trim_end_matches("/metrics");
     let head = "PUT /tenants/a HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\n";
     for sent in ["", "GET /heal", &format!("{head}Content-Length: 99\r\n\r\n{{")] {
-        let mut stream = TcpStream::connect(office).await.unwrap();
+        let mut stream = TcpStream::connect(admin_address).await.unwrap();
         stream.write_all(sent.as_bytes()).await.unwrap();
         let mut taken = Vec::new();
         let closed = tokio::time::timeout(Duration::from_secs(30), stream.read_to_end(&mut taken));

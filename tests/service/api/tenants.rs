@@ -10,7 +10,7 @@ use crate::helpers::{Answer, SMALL, Server, ask, spec};
 /// A service that asks for keys, and where it is run from.
 pub struct Hospital {
     pub server: Server,
-    office: String,
+    admin_address: String,
 }
 
 impl Hospital {
@@ -27,16 +27,16 @@ impl Hospital {
         let own = ["--ask-for-keys", "true", "--admin-bind", "127.0.0.1:0"];
         let mut server = Server::start_in(folder, &[&own, settings].concat());
         let line = server.second_line();
-        let office = line.strip_prefix("metrics on ").unwrap().trim_end_matches("/metrics");
-        Hospital { office: office.to_owned(), server }
+        let admin_address = line.strip_prefix("metrics on ").unwrap().trim_end_matches("/metrics");
+        Hospital { admin_address: admin_address.to_owned(), server }
     }
 
     pub fn admin(&self, method: Method, path: &str) -> RequestBuilder {
-        self.server.client.request(method, format!("{}{path}", self.office))
+        self.server.client.request(method, format!("{}{path}", self.admin_address))
     }
 
     pub fn admin_host(&self) -> &str {
-        self.office.strip_prefix("http://").unwrap()
+        self.admin_address.strip_prefix("http://").unwrap()
     }
 
     /// A key of a tenant.

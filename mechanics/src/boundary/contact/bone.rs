@@ -112,13 +112,13 @@ impl MovedBone<'_> {
     pub fn faced(&self, at: &Vector, reach: f64, own: &Vector) -> Option<FacedBone> {
         let search = &self.bone.search;
         let query = self.back * (at - self.shift);
-        let nearest = search.nearer_than(&query, reach)?;
+        let nearest = search.closest_within(&query, reach)?;
         let is_outside = search.signed_distance(&query, &nearest) >= 0.0;
         let is_shallow = is_outside || nearest.distance <= SHALLOW * reach;
         let most = if is_shallow { ACROSS } else { OPPOSED };
         let opposes = |normal: &Vector| own.dot(normal) < most;
         let counts = |triangle: usize| opposes(&self.moved_normal(&self.bone.flats[triangle]));
-        let closest = search.nearer_where(&query, reach, counts)?;
+        let closest = search.closest_within_where(&query, reach, counts)?;
         let (normal, gap) = self.normal_and_gap(at, &closest, is_outside);
         opposes(&normal).then_some(FacedBone {
             triangle: closest.triangle,

@@ -53,7 +53,7 @@ pub struct FacingSurfaces<'a> {
     at_rest: Vec<f64>,
     bones: Vec<BesideTissue>,
     /// Of points that are held in one or two directions.
-    partly_held: BTreeMap<u32, Hold>,
+    partly_constrained: BTreeMap<u32, Hold>,
 }
 
 /// A bone beside the tissue.
@@ -96,7 +96,7 @@ impl<'a> FacingSurfaces<'a> {
             reach: longest_edges(&rest),
             at_rest: vec![0.0; rest.points.len()],
             bones: beside(bones, rest.points.len()),
-            partly_held: partly_held(holds),
+            partly_constrained: partly_constrained(holds),
             boundary: Boundary::new(rest),
         };
         surfaces.set_depths_at_rest();
@@ -231,7 +231,7 @@ impl<'a> FacingSurfaces<'a> {
                 || found.is_closest && -found.gap <= DEEPEST * reach
         };
         let is_free = |normal: &Vector| {
-            let held = self.partly_held.get(&self.nodes()[at]);
+            let held = self.partly_constrained.get(&self.nodes()[at]);
             held.is_none_or(|hold| (normal - hold.part_along(normal)).norm() > LEAST_FREE)
         };
         (is_free(&found.normal) && (found.gap >= 0.0 || is_behind())).then_some(found)
@@ -245,13 +245,14 @@ impl<'a> FacingSurfaces<'a> {
         let (at, reach) = (moved.surface.points[point as usize], self.reach[point as usize]);
         let first = |triangle: usize| self.first(moved, point, triangle);
         let nearest =
-            moved.search.nearer_where(&at, reach, |triangle| first(triangle).is_some())?;
+            moved.search.closest_within_where(&at, reach, |triangle| first(triangle).is_some())?;
         let normal = self.normal(moved, point, nearest.triangle, &first(nearest.triangle)?)?;
         let along = |triangle: usize, normal: &Vector| {
             let found = meeting(&moved.surface.corners(triangle), &at, &-normal)?;
-            self.may_face(moved, point, triangle, found.ahead).then_some(found)
+            self.can_touch(moved, point, triangle, found.ahead).then_some(found)
         };
-        let nearest = moved.search.nearer_where(&at, reach, |t| along(t, &normal).is_some())?;
+        let nearest =
+            moved.search.closest_within_where(&at, reach, |t| along(t, &normal).is_some())?;
         let triangle = nearest.triangle;
         let weights = along(triangle, &normal)?.weights;
         let better = self.normal(moved, point, triangle, &weights)?;
@@ -268,7 +269,7 @@ impl<'a> FacingSurfaces<'a> {
         let corners = moved.surface.corners(triangle);
         let across = || meeting(&corners, &at, &-moved.flats[triangle]);
         let Meeting { weights, ahead } = meeting(&corners, &at, &own).or_else(across)?;
-        self.may_face(moved, point, triangle, ahead).then_some(weights)
+        self.can_touch(moved, point, triangle, ahead).then_some(weights)
     }
 
     /// The mean of the normals of both sides, out of the triangle.
@@ -289,12 +290,12 @@ impl<'a> FacingSurfaces<'a> {
     }
 
     /// Whether a triangle that lies so far ahead of a point, in mm, is one that it may not pass.
-    fn may_face(&self, moved: &MovedBoundary, point: u32, triangle: usize, ahead: f64) -> bool {
+    fn can_touch(&self, moved: &MovedBoundary, point: u32, triangle: usize, ahead: f64) -> bool {
         if self.boundary.rest.triangles[triangle].contains(&point) {
             return false;
         }
         let is_behind = || {
-            self.was_in_front(point, triangle)
+            self.faced_at_rest(point, triangle)
                 || -ahead <= DEEPEST * self.reach[point as usize]
                     && !self.is_of_one_fold(point, triangle)
         };
@@ -302,7 +303,7 @@ impl<'a> FacingSurfaces<'a> {
     }
 
     /// Whether a point and a triangle lay in front of each other at rest.
-    fn was_in_front(&self, point: u32, triangle: usize) -> bool {
+    fn faced_at_rest(&self, point: u32, triangle: usize) -> bool {
         let rest = &self.boundary.rest;
         let corners = rest.corners(triangle);
         let at = rest.points[point as usize];
@@ -346,7 +347,7 @@ fn beside(bones: &[BoneSurface], points: usize) -> Vec<BesideTissue> {
     numbered.filter_map(of_bone).collect()
 }
 
-fn partly_held(holds: &[Hold]) -> BTreeMap<u32, Hold> {
+fn partly_constrained(holds: &[Hold]) -> BTreeMap<u32, Hold> {
     let partly = holds.iter().filter(|hold| (1..3).contains(&hold.count()));
     partly.map(|hold| (hold.node, hold.clone())).collect()
 }

@@ -252,7 +252,7 @@ impl Entry {
         if made_by >> 8 == 3 && attributes >> 28 == 0o12 {
             return refuse("it is a link");
         }
-        if leads_out(&name) {
+        if escapes_folder(&name) {
             return refuse("its name leads out of the archive");
         }
         let method = match method {
@@ -268,7 +268,7 @@ impl Entry {
 }
 
 /// Names are never used as paths; one that could do harm as such was made to.
-fn leads_out(name: &[u8]) -> bool {
+fn escapes_folder(name: &[u8]) -> bool {
     let is_up = |part: &[u8]| part == b"..";
     name.starts_with(b"/")
         || name.contains(&b'\\')

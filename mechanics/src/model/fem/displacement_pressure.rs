@@ -65,7 +65,7 @@ pub(super) fn shear_stiffness(
     let tensor = |cell: usize| {
         let tensor = tissue.tensor(cell);
         match tissue.mesh.cells.shape(cell) {
-            CellShape::Tet4 => beside_pressure(tensor),
+            CellShape::Tet4 => without_pressure_part(tensor),
             CellShape::Hex8 | CellShape::Wedge6 => tensor,
         }
     };
@@ -73,7 +73,7 @@ pub(super) fn shear_stiffness(
 }
 
 /// What a pressure leaves of a stiffness.
-pub(super) fn beside_pressure(tensor: ElasticTensor) -> ElasticTensor {
+pub(super) fn without_pressure_part(tensor: ElasticTensor) -> ElasticTensor {
     let lambda = tensor.lambda - tensor.pressure_part().lambda;
     ElasticTensor { lambda, ..tensor }
 }

@@ -17,7 +17,7 @@ use nalgebra::Matrix3;
 
 use super::assembly::Tissue;
 use super::cell_stiffness::tetrahedron;
-use super::displacement_pressure::{beside_pressure, carries_pressure};
+use super::displacement_pressure::{carries_pressure, without_pressure_part};
 use super::edge_nodes::EdgeNodes;
 use crate::element::tetrahedron10;
 use crate::material::ElasticTensor;
@@ -115,7 +115,7 @@ impl InnerStress {
         has_pressure: bool,
     ) -> Option<Matrix3<f64>> {
         let tensor = tissue.tensor(cell);
-        let tensor = if has_pressure { beside_pressure(tensor) } else { tensor };
+        let tensor = if has_pressure { without_pressure_part(tensor) } else { tensor };
         self.of_cell(cell, &tensor)
     }
 

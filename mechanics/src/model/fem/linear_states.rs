@@ -11,7 +11,7 @@ use nalgebra::Matrix3;
 use rayon::prelude::*;
 
 use super::assembly::Tissue;
-use super::displacement_pressure::beside_pressure;
+use super::displacement_pressure::without_pressure_part;
 use super::edge_nodes::EdgeNodes;
 use super::inner_stress::{InnerStress, slopes, volume};
 use crate::mesh::jacobian::signed_volume;
@@ -39,7 +39,7 @@ pub fn at_small_strain(
         let gradient = mean_gradient(tissue.mesh, cell, displaced)?;
         let pressure = displaced.pressures.get(cell).copied().flatten();
         let tensor = tissue.tensor(cell);
-        let tensor = if pressure.is_some() { beside_pressure(tensor) } else { tensor };
+        let tensor = if pressure.is_some() { without_pressure_part(tensor) } else { tensor };
         let inner = inner.stress(tissue, cell, pressure.is_some()).unwrap_or_default();
         let pressure = Matrix3::from_diagonal_element(pressure.unwrap_or(0.0));
         let strain = (gradient + gradient.transpose()) * 0.5;

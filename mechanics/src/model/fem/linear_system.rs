@@ -218,12 +218,12 @@ impl<'a> LinearSystem<'a> {
                 };
                 let sides: Vec<MixedRightHandSide> = residuals.par_iter().map(side).collect();
                 let system = MixedSystem { stiffness, coupling, solver: &self.solver };
-                mixed::solve_loosely(&system, &sides, relative_residual, progress)?
+                mixed::solve_best_effort(&system, &sides, relative_residual, progress)?
             }
             None => {
                 let sides: Vec<Unknowns> = residuals.par_iter().map(forces).collect();
                 let loose =
-                    self.solver.solve_loosely(stiffness, &sides, relative_residual, progress);
+                    self.solver.solve_best_effort(stiffness, &sides, relative_residual, progress);
                 let solved = loose.map_err(|error| constrained.in_nodes(error))?;
                 let without = |solution| MixedSolution { solution, pressures: Vec::new() };
                 solved.into_iter().map(without).collect()
@@ -284,7 +284,7 @@ impl<'a> LinearSystem<'a> {
     }
 
     /// A residual with its sign turned, in the order and with the weights of `preconditioned`.
-    pub(super) fn taken_away(&self, residual: &Residual) -> Vec<[f64; 1]> {
+    pub(super) fn negated(&self, residual: &Residual) -> Vec<[f64; 1]> {
         let forces = self.constrained().free_forces(&self.stiffness, &residual.forces);
         let mut volumes = residual.volumes.clone();
         if let Some(own) = &self.pressures {

@@ -159,10 +159,10 @@ impl Newton<'_> {
         &mut self,
         positions: &[Vector],
         unbalanced: &[Vector],
-        sideways: GeometricStiffness,
+        geometric: GeometricStiffness,
     ) -> Result<Vec<Vector>, SolverError> {
         let Problem { holds, tolerance, .. } = self.problem;
-        let matrix = self.network.springs.tangent(positions, sideways, self.constrained.numbering);
+        let matrix = self.network.springs.tangent(positions, geometric, self.constrained.numbering);
         let system = self.constrained.system(matrix, positions);
         let case = LoadCase {
             held: vec![Vector::zeros(); holds.len()],

@@ -70,10 +70,10 @@ impl Spring {
         n * (self.stiffness * (l - self.length))
     }
 
-    fn tangent(&self, positions: &[Vector], sideways: GeometricStiffness) -> Block {
+    fn tangent(&self, positions: &[Vector], geometric: GeometricStiffness) -> Block {
         let (l, n) = self.span(positions);
         let exact = 1.0 - self.length / l.max(NO_LENGTH * self.length);
-        let g = match sideways {
+        let g = match geometric {
             GeometricStiffness::Exact => exact,
             GeometricStiffness::Raised => exact.max(LEAST_SIDEWAYS),
         };
@@ -162,12 +162,12 @@ impl Springs {
     pub(super) fn tangent(
         &self,
         positions: &[Vector],
-        sideways: GeometricStiffness,
+        geometric: GeometricStiffness,
         numbering: &DofMap,
     ) -> HalfMatrix<f64, 3> {
         let mut matrix = HalfMatrix::zeros(numbering.pattern.clone());
         for spring in &self.springs {
-            let block = spring.tangent(positions, sideways);
+            let block = spring.tangent(positions, geometric);
             let [i, j] = spring.nodes.map(|node| numbering.row(node));
             add(matrix.block_mut(i, i), &block, 1.0);
             add(matrix.block_mut(j, j), &block, 1.0);

@@ -30,7 +30,7 @@ struct BonePoint {
 
 impl BonePoints {
     /// Takes the control points that are bone out of a system: their displacements become what nodes are held at.
-    pub fn take_out(
+    pub fn eliminate(
         assembly: &Assembly,
         holds: &[Hold],
         matrix: &mut HalfMatrix<f64, 3>,

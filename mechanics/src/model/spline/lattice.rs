@@ -76,7 +76,7 @@ impl Frame {
             let arm = point.position - origin;
             sum + arm * arm.transpose() * point.volume
         });
-        Frame { origin, axes: told_apart(&moments) }
+        Frame { origin, axes: unique_axes(&moments) }
     }
 
     /// The coordinates of a point along the axes.
@@ -87,7 +87,7 @@ impl Frame {
 
 /// Eigenvectors, those of the largest moment first and right-handed. Where moments coincide, the axes
 /// among them are those nearest to the axes of the coordinates.
-fn told_apart(moments: &Matrix3<f64>) -> Matrix3<f64> {
+fn unique_axes(moments: &Matrix3<f64>) -> Matrix3<f64> {
     let eigen = moments.symmetric_eigen();
     let mut order = [0, 1, 2];
     order.sort_by(|&a, &b| eigen.eigenvalues[b].total_cmp(&eigen.eigenvalues[a]));

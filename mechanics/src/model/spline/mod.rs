@@ -191,12 +191,12 @@ fn assemble<'a>(
     let bone = match spline.bone {
         Bone::Springs => None,
         Bone::ControlPoints => {
-            Some(BonePoints::take_out(&assembly, problem.holds, &mut matrix, &mut force))
+            Some(BonePoints::eliminate(&assembly, problem.holds, &mut matrix, &mut force))
         }
     };
     let layout = assembly.numbering.layout.clone();
     let positions = assembly.numbering.by_row(&lattice.points);
-    let system = System { layout, matrix, partly_held: Vec::new(), positions };
+    let system = System { layout, matrix, partly_constrained: Vec::new(), positions };
     Some(Assembled { assembly, held, bone, system, force })
 }
 

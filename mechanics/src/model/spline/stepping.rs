@@ -91,18 +91,18 @@ const POWER_ITERATIONS: usize = 500;
 
 impl Motion<'_> {
     /// Steps until `end`, or until the steps to come, as a geometric series, are shorter than
-    /// `relative_rest` times the displacement.
+    /// `relative_tolerance` times the displacement.
     pub fn run(
         &self,
         clock: &Clock,
-        relative_rest: f64,
+        relative_tolerance: f64,
         memory_mb: f64,
         progress: &dyn Progress,
     ) -> Result<State, ModelError> {
         match clock.scheme {
-            Scheme::Explicit => self.explicit(clock, relative_rest, progress),
+            Scheme::Explicit => self.explicit(clock, relative_tolerance, progress),
             Scheme::BackwardEuler | Scheme::Newmark => {
-                self.implicit(clock, relative_rest, memory_mb, progress)
+                self.implicit(clock, relative_tolerance, memory_mb, progress)
             }
         }
     }
@@ -170,7 +170,7 @@ impl Motion<'_> {
     fn explicit(
         &self,
         clock: &Clock,
-        relative_rest: f64,
+        relative_tolerance: f64,
         progress: &dyn Progress,
     ) -> Result<State, ModelError> {
         let limit = self.explicit_limit();
@@ -181,7 +181,7 @@ impl Motion<'_> {
         let (masses, h) = (self.lumped(), clock.step);
         let mut state = self.rest();
         let mut product = state.velocity.clone();
-        while state.goes_on(clock, relative_rest, progress)? {
+        while state.has_next_step(clock, relative_tolerance, progress)? {
             let forces = self.unbalanced(&state.displacement);
             self.stiffness.multiply(&state.velocity, &mut product);
             let Damping { mass, stiffness } = self.damping;
@@ -200,7 +200,7 @@ impl Motion<'_> {
     fn implicit(
         &self,
         clock: &Clock,
-        relative_rest: f64,
+        relative_tolerance: f64,
         memory_mb: f64,
         progress: &dyn Progress,
     ) -> Result<State, ModelError> {
@@ -216,7 +216,7 @@ impl Motion<'_> {
         let factor = Factor::new(&system, &ordering)?;
         let mut state = self.rest();
         let mut product = state.velocity.clone();
-        while state.goes_on(clock, relative_rest, progress)? {
+        while state.has_next_step(clock, relative_tolerance, progress)? {
             let backward = order == 1.0 || state.history.len() < 4;
             let order = if backward { 1.0 } else { order };
             let mut right = self.unbalanced(&state.displacement);
@@ -248,7 +248,7 @@ impl Motion<'_> {
         System {
             layout: layout.clone(),
             matrix: sum,
-            partly_held: Vec::new(),
+            partly_constrained: Vec::new(),
             positions: positions.clone(),
         }
     }
@@ -269,21 +269,21 @@ impl State {
     }
 
     /// Whether there is a step to take.
-    fn goes_on(
+    fn has_next_step(
         &mut self,
         clock: &Clock,
-        relative_rest: f64,
+        relative_tolerance: f64,
         progress: &dyn Progress,
     ) -> Result<bool, SolverError> {
         let steps = self.history.len();
         if steps == 0 {
             return Ok(true);
         }
-        self.at_rest = self.remaining() <= relative_rest;
+        self.at_rest = self.remaining() <= relative_tolerance;
         if self.at_rest || self.time(clock) >= clock.end * (1.0 - 1e-9) {
             return Ok(false);
         }
-        tell(progress, steps, self.history[steps - 1], relative_rest)?;
+        tell(progress, steps, self.history[steps - 1], relative_tolerance)?;
         Ok(true)
     }
 

@@ -193,12 +193,17 @@ impl<'a> Assembly<'a> {
             add_stiffness(&moments, [lambda, mu], members, &mut blocks);
         }
         let shear = if volume > 0.0 { shear / volume } else { mean_shear };
-        self.continue_smoothly(span, [CONTINUATION * shear, volume], &mut blocks);
+        self.add_smoothness_penalty(span, [CONTINUATION * shear, volume], &mut blocks);
         blocks
     }
 
     /// Adds the penalty on the highest derivatives.
-    fn continue_smoothly(&self, span: usize, [modulus, tissue]: [f64; 2], blocks: &mut [Block]) {
+    fn add_smoothness_penalty(
+        &self,
+        span: usize,
+        [modulus, tissue]: [f64; 2],
+        blocks: &mut [Block],
+    ) {
         let bases = &self.lattice.bases;
         let (orders, place) = (self.lattice.orders(), self.lattice.span(span));
         let members = self.lattice.members();

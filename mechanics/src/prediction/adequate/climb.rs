@@ -2,7 +2,7 @@
 
 use super::accepted::{Accepted, MeanErrors};
 use super::crossing::overlap;
-use super::duration::{SECOND_ORDER_TAKES, newton_takes};
+use super::duration::{SECOND_ORDER_TAKES, newton_relative_time};
 use super::rung::{Considered, Errors, Rung};
 use crate::mesh::{Vector, Warning};
 use crate::model::fem::finite_strain::Advance;
@@ -60,7 +60,7 @@ pub fn predict_adequately(
         watched,
         begun: (watched.stopwatch)(),
         linear_s: 0.0,
-        newton_takes: newton_takes(1.0),
+        newton_relative_time: newton_relative_time(1.0),
         in_contact: false,
         moving: linear.skin.points(),
         errors: Errors::default(),
@@ -84,7 +84,7 @@ struct Climb<'a> {
     /// What the linear answer took, with its estimates.
     linear_s: f64,
     /// Newton's method as a multiple of that.
-    newton_takes: f64,
+    newton_relative_time: f64,
     /// Whether tissue presses on something in the linear answer: what linearity leaves out is not estimated then.
     in_contact: bool,
     /// Points of the skin that the linear answer moves.
@@ -108,14 +108,15 @@ impl Climb<'_> {
             Linear::Solved(known) => Some(&**known),
             Linear::Other(_) => None,
         };
-        self.look_at(&solved);
+        self.read_linear_answer(&solved);
         self.linear_s = self.elapsed();
         self.note(Rung::Linear, Some(self.linear_s), self.linear_s);
 
         // 2. To second order, by the same matrix.
         let mut second_order = None;
         if let Some(known) = known
-            && self.may_try(Rung::SecondOrder, self.second_order_expected(known.displacement()))
+            && self
+                .is_affordable(Rung::SecondOrder, self.second_order_expected(known.displacement()))
         {
             let begun = self.elapsed();
             let found = known.to_second_order(self.scene, progress)?;
@@ -137,7 +138,7 @@ impl Climb<'_> {
 
         // 3. At finite strain.
         let mut finite_strain = None;
-        if self.may_try(Rung::FiniteStrain, self.errors.on(Rung::FiniteStrainCorrected)) {
+        if self.is_affordable(Rung::FiniteStrain, self.errors.on(Rung::FiniteStrainCorrected)) {
             let begun = self.elapsed();
             match at_finite_strain(case, plan, &self.scene.settings, progress) {
                 Ok((scene, found)) => {
@@ -163,7 +164,7 @@ impl Climb<'_> {
     }
 
     /// What the linear answer tells of itself.
-    fn look_at(&mut self, solved: &Linear) {
+    fn read_linear_answer(&mut self, solved: &Linear) {
         let (displacement, mesh, linearity) = match solved {
             Linear::Solved(own) => (own.displacement(), &own.numerical_error, &own.nonlinearity),
             Linear::Other(own) => {
@@ -172,7 +173,7 @@ impl Climb<'_> {
             }
         };
         self.moving = self.scene.skin.moving_points(displacement);
-        self.newton_takes = newton_takes(least_det_f(self.scene, displacement));
+        self.newton_relative_time = newton_relative_time(least_det_f(self.scene, displacement));
         self.errors.mesh = mesh.as_ref().ok().map(|error| self.means(&error.missing));
         self.errors.linearity = linearity.as_ref().ok().map(|left| self.means(&left.left_out));
     }
@@ -215,7 +216,9 @@ impl Climb<'_> {
     fn time_of(&self, rung: Rung) -> f64 {
         match rung.solution() {
             Rung::SecondOrder | Rung::SecondOrderCorrected => SECOND_ORDER_TAKES * self.linear_s,
-            Rung::FiniteStrain | Rung::FiniteStrainCorrected => self.newton_takes * self.linear_s,
+            Rung::FiniteStrain | Rung::FiniteStrainCorrected => {
+                self.newton_relative_time * self.linear_s
+            }
             Rung::Linear | Rung::Corrected => self.linear_s,
         }
     }
@@ -238,7 +241,7 @@ impl Climb<'_> {
     }
 
     /// Whether a rung is worth its time; `expected` is the least error that it may have. Says why it is not.
-    fn may_try(&mut self, rung: Rung, expected: Option<MeanErrors>) -> bool {
+    fn is_affordable(&mut self, rung: Rung, expected: Option<MeanErrors>) -> bool {
         let share = self.accepted.share(expected.as_ref());
         let so_far = self.least_share();
         let left = self.accepted.time_s - self.elapsed();

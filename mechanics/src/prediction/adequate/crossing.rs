@@ -4,7 +4,7 @@ use super::accepted::Accepted;
 use crate::mesh::Warning;
 use crate::prediction::Prediction;
 use crate::prediction::skin::Skin;
-use crate::prediction::skin_overlap::{Deepest, SKIN_OVERLAPS, deeper_than_at_rest};
+use crate::prediction::skin_overlap::{Deepest, SKIN_OVERLAPS, added_overlap};
 
 /// The warning where the skin newly passes through itself, deeper than the error that is accepted: no estimate has that.
 pub(super) fn overlap(
@@ -14,7 +14,7 @@ pub(super) fn overlap(
 ) -> Option<Warning> {
     prediction.warnings.iter().find(|warning| warning.code == SKIN_OVERLAPS)?;
     let wanted = accepted.skin_mm;
-    let Deepest { depth, at } = deeper_than_at_rest(skin, &skin.moved(&prediction.displacement))
+    let Deepest { depth, at } = added_overlap(skin, &skin.moved(&prediction.displacement))
         .filter(|deepest| deepest.depth > wanted)?;
     let detail = format!(
         "the skin passes through itself {depth:.2} mm deeper than at rest, and {wanted:.3} mm were to be met: no error of a model \

@@ -21,7 +21,7 @@ const STEPS_TURNED: f64 = 5.0;
 pub const NEWTON_MAY_TAKE: [f64; 2] = [STEP_TAKES * STEPS, STEP_TAKES * MOST_STEPS as f64];
 
 /// Newton's method, by the smallest det F of the linear answer.
-pub(super) fn newton_takes(least_det_f: f64) -> f64 {
+pub(super) fn newton_relative_time(least_det_f: f64) -> f64 {
     let steps = STEPS + STEPS_TURNED * (-least_det_f).max(0.0);
     STEP_TAKES * steps.min(MOST_STEPS as f64)
 }
@@ -35,10 +35,10 @@ mod tests {
         for (least_det_f, took) in
             [(-2.0, 11.0), (-2.14, 13.0), (-3.65, 17.0), (-8.54, 36.0), (-10.0, 57.0)]
         {
-            let steps = newton_takes(least_det_f) / STEP_TAKES;
+            let steps = newton_relative_time(least_det_f) / STEP_TAKES;
             assert!(took <= steps && steps <= 2.0 * took, "{least_det_f}: {steps}, took {took}");
         }
-        assert_eq!(newton_takes(-1e6), NEWTON_MAY_TAKE[1]);
-        assert_eq!(newton_takes(0.5), NEWTON_MAY_TAKE[0]);
+        assert_eq!(newton_relative_time(-1e6), NEWTON_MAY_TAKE[1]);
+        assert_eq!(newton_relative_time(0.5), NEWTON_MAY_TAKE[0]);
     }
 }

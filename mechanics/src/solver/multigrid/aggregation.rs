@@ -8,11 +8,11 @@ const NONE: u32 = u32::MAX;
 /// For each row its group: grown from the lowest free row over its neighbours up to `size` rows.
 /// A group of less than a quarter of that joins the neighbour it is tied to most. Groups are numbered in the
 /// order of their lowest rows.
-pub(super) fn aggregate(ties: &StrengthOfConnection, size: usize) -> (Vec<u32>, usize) {
-    let mut group = vec![NONE; ties.rows()];
+pub(super) fn aggregate(strength: &StrengthOfConnection, size: usize) -> (Vec<u32>, usize) {
+    let mut group = vec![NONE; strength.rows()];
     let mut sizes: Vec<usize> = Vec::new();
     let mut members: Vec<usize> = Vec::with_capacity(size);
-    for seed in 0..ties.rows() {
+    for seed in 0..strength.rows() {
         if group[seed] != NONE {
             continue;
         }
@@ -22,7 +22,7 @@ pub(super) fn aggregate(ties: &StrengthOfConnection, size: usize) -> (Vec<u32>, 
         group[seed] = number;
         let mut next = 0;
         while next < members.len() && members.len() < size {
-            for (column, tie) in ties.of(members[next]) {
+            for (column, tie) in strength.of(members[next]) {
                 if members.len() < size && group[column] == NONE && tie > 0.0 {
                     group[column] = number;
                     members.push(column);
@@ -32,7 +32,7 @@ pub(super) fn aggregate(ties: &StrengthOfConnection, size: usize) -> (Vec<u32>, 
         }
         sizes.push(members.len());
         if 4 * members.len() < size
-            && let Some(host) = strongest_neighbour(ties, &members, &group, number)
+            && let Some(host) = strongest_neighbour(strength, &members, &group, number)
         {
             members.iter().for_each(|&row| group[row] = host);
             sizes[host as usize] += members.len();
@@ -44,14 +44,14 @@ pub(super) fn aggregate(ties: &StrengthOfConnection, size: usize) -> (Vec<u32>, 
 
 /// The group to which the members are tied most; `None` where they have no neighbour in another group.
 fn strongest_neighbour(
-    ties: &StrengthOfConnection,
+    strength: &StrengthOfConnection,
     members: &[usize],
     group: &[u32],
     own: u32,
 ) -> Option<u32> {
     let mut sums: Vec<(u32, f32)> = Vec::new();
     for &row in members {
-        for (column, tie) in ties.of(row) {
+        for (column, tie) in strength.of(row) {
             let other = group[column];
             if other == NONE || other == own || tie == 0.0 {
                 continue;

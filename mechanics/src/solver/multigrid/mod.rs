@@ -49,7 +49,7 @@ const MOST_DENSE_ROWS: usize = 500;
 /// A hierarchy for one matrix and one set of held unknowns.
 pub struct Multigrid {
     finest: Smoother<3>,
-    partly_held: Vec<PartlyHeld>,
+    partly_constrained: Vec<PartlyHeld>,
     below: CoarseLevels,
 }
 
@@ -124,8 +124,8 @@ impl Multigrid {
             || Smoother::new(&system.matrix, system.layout.clone(), mask),
             || CoarseLevels::new(system, &special, progress),
         );
-        let partly_held = system.partly_held.clone();
-        Ok(Multigrid { finest, partly_held, below: below? })
+        let partly_constrained = system.partly_constrained.clone();
+        Ok(Multigrid { finest, partly_constrained, below: below? })
     }
 
     pub fn megabytes(&self) -> f64 {
@@ -167,13 +167,13 @@ impl Multigrid {
         });
         let Workspace { right, x, rest, coarse } = workspace;
         self.finest.forward(right, x, rest);
-        self.partly_held.iter().for_each(|row| row.to_coordinates(&mut rest[row.row]));
+        self.partly_constrained.iter().for_each(|row| row.to_coordinates(&mut rest[row.row]));
         let below = &mut coarse[0];
         self.below.first.restrict(rest, &mut below.partial, &mut below.right);
         self.below.descend(0, coarse);
-        self.partly_held.iter().for_each(|row| row.to_coordinates(&mut x[row.row]));
+        self.partly_constrained.iter().for_each(|row| row.to_coordinates(&mut x[row.row]));
         self.below.first.add_prolonged(&mut coarse[0].x, x);
-        self.partly_held.iter().for_each(|row| row.to_own_axes(&mut x[row.row]));
+        self.partly_constrained.iter().for_each(|row| row.to_own_axes(&mut x[row.row]));
         self.finest.backward(x, right);
         Correction { values: x, scale }
     }
@@ -187,12 +187,12 @@ impl CoarseLevels {
     ) -> Result<Self, SolverError> {
         let free = &system.positions[..system.layout.free];
         let origin = mean(free);
-        go_on(progress)?;
-        let ties =
+        check_cancelled(progress)?;
+        let strength =
             StrengthOfConnection::new(&system.matrix, &system.layout, |row| special.axes(row));
-        go_on(progress)?;
-        let weights = Weights::new(&ties, free, FIRST_AGGREGATE);
-        go_on(progress)?;
+        check_cancelled(progress)?;
+        let weights = Weights::new(&strength, free, FIRST_AGGREGATE);
+        check_cancelled(progress)?;
         let fine = Fine {
             matrix: &system.matrix,
             layout: &system.layout,
@@ -201,14 +201,14 @@ impl CoarseLevels {
             turned: |row, column, block: &_| special.to_coordinates(row, column, block),
         };
         let mut current = galerkin(&fine, &weights);
-        let mut centres = in_places(&weights.centres, &current.layout);
+        let mut centres = permuted(&weights.centres, &current.layout);
         let place = &current.layout.place;
         let first = weights.into_prolongator(place, free, system.layout.clone(), &origin);
         let mut levels = Vec::new();
         while current.matrix.rows() > DENSE_ROWS {
-            go_on(progress)?;
+            check_cancelled(progress)?;
             let Some((weights, next)) = coarsen(&current, &centres, &origin) else { break };
-            let next_centres = in_places(&weights.centres, &next.layout);
+            let next_centres = permuted(&weights.centres, &next.layout);
             let layout = Arc::new(current.layout);
             let place = &next.layout.place;
             let below = weights.into_prolongator(place, &centres, layout.clone(), &origin);
@@ -239,7 +239,7 @@ impl CoarseLevels {
     }
 }
 
-fn go_on(progress: &dyn Progress) -> Result<(), SolverError> {
+fn check_cancelled(progress: &dyn Progress) -> Result<(), SolverError> {
     if progress.is_cancelled() { Err(SolverError::Stopped) } else { Ok(()) }
 }
 
@@ -255,8 +255,8 @@ fn coarsen(
     centres: &[Vector3<f64>],
     origin: &Vector3<f64>,
 ) -> Option<(Weights, Coarse)> {
-    let ties = StrengthOfConnection::new(&current.matrix, &current.layout, |_| None);
-    let weights = Weights::new(&ties, centres, LATER_AGGREGATE);
+    let strength = StrengthOfConnection::new(&current.matrix, &current.layout, |_| None);
+    let weights = Weights::new(&strength, centres, LATER_AGGREGATE);
     if weights.aggregates >= current.matrix.rows() {
         return None;
     }
@@ -275,7 +275,7 @@ fn mean(positions: &[Vector3<f64>]) -> Vector3<f64> {
     positions.iter().sum::<Vector3<f64>>() / positions.len().max(1) as f64
 }
 
-fn in_places(centres: &[Vector3<f64>], layout: &super::layout::Layout) -> Vec<Vector3<f64>> {
+fn permuted(centres: &[Vector3<f64>], layout: &super::layout::Layout) -> Vec<Vector3<f64>> {
     let mut placed = vec![Vector3::zeros(); centres.len()];
     for (centre, &place) in centres.iter().zip(&layout.place) {
         placed[place as usize] = *centre;
@@ -311,10 +311,10 @@ struct SpecialRows<'a> {
 impl<'a> SpecialRows<'a> {
     fn new(system: &'a System) -> Self {
         let mut of_row = vec![u32::MAX; system.matrix.rows()];
-        for (index, partly) in system.partly_held.iter().enumerate() {
+        for (index, partly) in system.partly_constrained.iter().enumerate() {
             of_row[partly.row] = index as u32;
         }
-        SpecialRows { rows: &system.partly_held, of_row }
+        SpecialRows { rows: &system.partly_constrained, of_row }
     }
 
     fn of(&self, row: usize) -> Option<&'a PartlyHeld> {

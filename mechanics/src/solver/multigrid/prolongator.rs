@@ -52,15 +52,15 @@ pub(super) struct Weights {
 impl Weights {
     /// w = (I - omega D^-1 L) w_0, with w_0 one on the row's own aggregate and ties to held rows kept in
     /// D, which draw weights to zero there.
-    pub fn new(ties: &StrengthOfConnection, positions: &[Vector3<f64>], size: usize) -> Self {
-        let (group, aggregates) = aggregate(ties, size);
-        let chunks: Vec<Rows<Weight>> = (0..ties.rows().div_ceil(CHUNK))
+    pub fn new(strength: &StrengthOfConnection, positions: &[Vector3<f64>], size: usize) -> Self {
+        let (group, aggregates) = aggregate(strength, size);
+        let chunks: Vec<Rows<Weight>> = (0..strength.rows().div_ceil(CHUNK))
             .into_par_iter()
             .map(|chunk| {
                 let mut weights = Rows::with_room(CHUNK, 3 * CHUNK);
                 let mut of_row: Vec<Weight> = Vec::new();
-                for row in chunk * CHUNK..((chunk + 1) * CHUNK).min(ties.rows()) {
-                    smooth(row, &group, ties, &mut of_row);
+                for row in chunk * CHUNK..((chunk + 1) * CHUNK).min(strength.rows()) {
+                    smooth(row, &group, strength, &mut of_row);
                     weights.push(of_row.iter().copied());
                 }
                 weights
@@ -105,11 +105,11 @@ fn centres(group: &[u32], count: usize, positions: &[Vector3<f64>]) -> Vec<Vecto
     sums.into_iter().map(|(sum, members)| sum / members).collect()
 }
 
-fn smooth(row: usize, group: &[u32], ties: &StrengthOfConnection, weights: &mut Vec<Weight>) {
+fn smooth(row: usize, group: &[u32], strength: &StrengthOfConnection, weights: &mut Vec<Weight>) {
     weights.clear();
     weights.push(Weight { partner: group[row], weight: 0.0 });
-    let mut sum = ties.held[row];
-    for (column, tie) in ties.of(row) {
+    let mut sum = strength.held[row];
+    for (column, tie) in strength.of(row) {
         sum += tie;
         match weights.iter_mut().find(|known| known.partner == group[column]) {
             Some(known) => known.weight += tie,

@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use super::{materials, shift, turn};
+use super::{materials, rotated, shift};
 use crate::boundary::NodeSelection;
 use crate::mesh::half_head::{LAYERS, half_head as made};
 use crate::mesh::{Frame, Vector, VolumeMesh};
@@ -64,7 +64,7 @@ pub fn half_head_far() -> StudyScene {
     let pivot = middle(&near.case.volume, "mandible");
     let mut plans: Vec<(String, Plan)> =
         [10.0, 15.0, 25.0].map(|length| shift("mandible", length, forward)).into();
-    plans.push(turn("mandible", 20.0, Vector::x(), pivot));
+    plans.push(rotated("mandible", 20.0, Vector::x(), pivot));
     let (element, strain) = (ElementChoice::Stabilised, Strain::Finite);
     let truth = Truth::Refined { times: 1, element, strain };
     StudyScene { name: "half_head_far".to_owned(), plans, truth, ..near }
@@ -77,7 +77,7 @@ fn plans(mesh: &VolumeMesh) -> Vec<(String, Plan)> {
     let pivot = middle(mesh, "mandible");
     let mut plans: Vec<(String, Plan)> =
         [1.0, 2.0, 4.0, 8.0].map(|length| shift("mandible", length, forward)).into();
-    plans.extend([2.0, 5.0, 10.0].map(|angle| turn("mandible", angle, Vector::x(), pivot)));
+    plans.extend([2.0, 5.0, 10.0].map(|angle| rotated("mandible", angle, Vector::x(), pivot)));
     let (name, mut maxilla) = shift("maxilla", 4.0, forward);
     plans.push((name, maxilla.clone()));
     let (_, mandible) = shift("mandible", 4.0, -forward);

@@ -6,7 +6,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use super::{materials, nodes_where, shift, turn};
+use super::{materials, nodes_where, rotated, shift};
 use crate::boundary::NodeSelection;
 use crate::mesh::sample::block;
 use crate::mesh::{CellShape, TriangleSurface, Vector, VolumeMesh};
@@ -43,7 +43,7 @@ pub fn slab_far() -> StudyScene {
     let along = Vector::new(4.0, 0.0, 8.0);
     let mut plans: Vec<(String, Plan)> =
         [10.0, 15.0, 25.0].map(|length| shift("patch", length, along)).into();
-    plans.push(turn("patch", 20.0, Vector::y(), Vector::zeros()));
+    plans.push(rotated("patch", 20.0, Vector::y(), Vector::zeros()));
     StudyScene { name: "slab_far".to_owned(), plans, materials, ..near }
 }
 
@@ -100,7 +100,9 @@ fn plans() -> Vec<(String, Plan)> {
     let (_, whole) = shift("patch", along.norm(), along);
     let mut plans = vec![("patch 4,0,8 mm".to_owned(), whole)];
     plans.extend([1.0, 2.0, 4.0, 8.0].map(|length| shift("patch", length, along)));
-    plans.extend([2.0, 5.0, 10.0].map(|angle| turn("patch", angle, Vector::y(), Vector::zeros())));
+    plans.extend(
+        [2.0, 5.0, 10.0].map(|angle| rotated("patch", angle, Vector::y(), Vector::zeros())),
+    );
     plans
 }
 

@@ -114,7 +114,7 @@ fn rotation() -> Axis {
             case.segments[0].nodes = set("base");
             case.fixed.clear();
             case.allow_unfixed = true;
-            found(case, jaw(turn(degrees)), variant)
+            found(case, jaw(rotated(degrees)), variant)
         },
         truth: turned,
         finite_truth: Some(|degrees, _| turned(degrees)),
@@ -122,10 +122,10 @@ fn rotation() -> Axis {
 }
 
 fn turned(degrees: f64) -> Truth {
-    Truth::Formula(Box::new(move |x| turn(degrees).displacement(x)))
+    Truth::Formula(Box::new(move |x| rotated(degrees).displacement(x)))
 }
 
-fn turn(degrees: f64) -> RigidMovement {
+fn rotated(degrees: f64) -> RigidMovement {
     let angles = Vector::new(0.0, degrees.to_radians(), 0.0);
     RigidMovement::about_pivot(angles, Vector::new(0.0, 0.0, -40.0), Vector::zeros())
 }

@@ -14,7 +14,7 @@ use crate::model::spline::{ControlPoints, Stiffness, VolumeSpline};
 use crate::prediction::{Case, FibreDirection, Method, Settings};
 
 pub fn every() -> Vec<Axis> {
-    vec![fibre_ratio(), fibre_ratio_of_paper(), time_step(), explicit_time_step()]
+    vec![fibre_ratio(), fibre_ratio_of_kim(), time_step(), explicit_time_step()]
 }
 
 // Fibres.
@@ -36,7 +36,7 @@ fn fibre_ratio() -> Axis {
     }
 }
 
-fn fibre_ratio_of_paper() -> Axis {
+fn fibre_ratio_of_kim() -> Axis {
     Axis {
         name: "fibre_ratio_paper_002",
         title: "Fibres, Kim et al.",
@@ -45,9 +45,9 @@ fn fibre_ratio_of_paper() -> Axis {
         reference: FINER,
         bound_mm: TENTH_OF_MOVEMENT,
         values: numbers(&[0.2, 0.5, 1.0, 1.2, 1.5, 2.0, 3.0, 10.0]),
-        probe: |ratio, variant| fibred_probe(ratio, FibreLaw::Paper002, variant),
+        probe: |ratio, variant| fibred_probe(ratio, FibreLaw::Kim2012, variant),
         truth: |ratio| {
-            finer(fibred(ratio, FibreLaw::Paper002, CellShape::Tet4), jaw(shift(moved())))
+            finer(fibred(ratio, FibreLaw::Kim2012, CellShape::Tet4), jaw(shift(moved())))
         },
         finite_truth: None,
     }

@@ -28,7 +28,7 @@ pub fn fibred((along, across, nu, law): Stated) -> Result<LinearElastic, Materia
     material(across, nu).with_fibre(&Fibre { young_modulus: along, shear_modulus: None, law })
 }
 
-const TABLE_2: Stated = (500.0, 790.0, 0.43, FibreLaw::Paper002);
+const TABLE_2: Stated = (500.0, 790.0, 0.43, FibreLaw::Kim2012);
 pub const MUSCLE: Stated = (110.0, 6.2, 0.49, FibreLaw::Engineering);
 
 /// The residual that rounding leaves to matrices of muscle, whose stiffest and softest modulus differ by 1e5.
@@ -67,7 +67,7 @@ impl Numbers {
 fn constants((along, across, nu, law): Stated) -> Matrix6<f64> {
     let mut c = Matrix6::zeros();
     match law {
-        FibreLaw::Paper002 => {
+        FibreLaw::Kim2012 => {
             let (t, f) = (material(across, nu), material(along, nu));
             c.fill(0.0);
             c.fixed_view_mut::<3, 3>(0, 0).fill(f.lambda());
@@ -126,7 +126,7 @@ fn largest<'a>(blocks: impl IntoIterator<Item = &'a Matrix3<f64>>) -> f64 {
 fn the_block_of_two_nodes_is_the_tensor_contracted_with_their_gradients() {
     let mut numbers = Numbers(1);
     let soft = (110.0, 6.2, 0.3, FibreLaw::Engineering);
-    for stated in [TABLE_2, soft, (20.0, 15.0, 0.3, FibreLaw::Paper002)] {
+    for stated in [TABLE_2, soft, (20.0, 15.0, 0.3, FibreLaw::Kim2012)] {
         let c = constants(stated);
         for _ in 0..50 {
             let (corners, direction) = (numbers.tetrahedron(), numbers.vector().normalize());
@@ -269,7 +269,7 @@ fn muscle_by_engineering_constants_has_the_stiffness_of_its_inverted_compliance(
 #[test]
 fn the_smallest_eigenvalue_is_that_of_the_whole_matrix() {
     let steep = (200.0, 10.0, 0.4999, FibreLaw::Engineering);
-    for stated in [TABLE_2, MUSCLE, steep, (30.0, 10.0, 0.3, FibreLaw::Paper002)] {
+    for stated in [TABLE_2, MUSCLE, steep, (30.0, 10.0, 0.3, FibreLaw::Kim2012)] {
         let smallest = constants(stated).symmetric_eigenvalues().min();
         let found = fibred(stated).unwrap().tensor(&Vector::x()).smallest_eigenvalue();
         // The eigenvalues of the whole matrix carry the rounding of its largest entries.
@@ -281,8 +281,8 @@ fn the_smallest_eigenvalue_is_that_of_the_whole_matrix() {
 #[test]
 fn a_law_without_lowest_energy_is_refused_with_its_eigenvalue_and_its_limit() {
     let gates = [
-        ((790.0, 500.0, 0.43, FibreLaw::Paper002), -29.5, 1.5414),
-        ((110.0, 6.2, 0.49, FibreLaw::Paper002), -1646.0, 1.0621),
+        ((790.0, 500.0, 0.43, FibreLaw::Kim2012), -29.5, 1.5414),
+        ((110.0, 6.2, 0.49, FibreLaw::Kim2012), -1646.0, 1.0621),
     ];
     for (stated, wanted, limits) in gates {
         let Err(error) = fibred(stated) else { panic!("{stated:?} is refused") };
@@ -300,8 +300,8 @@ fn a_law_without_lowest_energy_is_refused_with_its_eigenvalue_and_its_limit() {
     // On either side of the limit, for every ratio that has one.
     for nu in [0.2_f64, 0.3, 0.43, 0.46, 0.49, 0.499] {
         let limit = (1.0 - nu) / (2.0 * nu * nu);
-        assert!(fibred((10.0 * limit * 0.9999, 10.0, nu, FibreLaw::Paper002)).is_ok(), "{nu}");
-        assert!(fibred((10.0 * limit * 1.0001, 10.0, nu, FibreLaw::Paper002)).is_err(), "{nu}");
+        assert!(fibred((10.0 * limit * 0.9999, 10.0, nu, FibreLaw::Kim2012)).is_ok(), "{nu}");
+        assert!(fibred((10.0 * limit * 1.0001, 10.0, nu, FibreLaw::Kim2012)).is_err(), "{nu}");
     }
 }
 
@@ -328,6 +328,6 @@ fn engineering_constants_are_positive_definite_wherever_they_are_taken() {
         let refused = stated(110.0, Some(modulus), FibreLaw::Engineering);
         assert!(matches!(refused, Err(MaterialError::FibreShear(_))));
     }
-    let refused = stated(6.0, Some(2.0), FibreLaw::Paper002);
+    let refused = stated(6.0, Some(2.0), FibreLaw::Kim2012);
     assert_eq!(refused, Err(MaterialError::ShearOfPaper002));
 }

@@ -51,7 +51,7 @@ fn single(value: f64) -> System {
     System {
         layout: Arc::new(Layout::new(&connectivity, &around, &[false], 3, 0)),
         matrix,
-        partly_held: Vec::new(),
+        partly_constrained: Vec::new(),
         positions: vec![Vector::zeros()],
     }
 }

@@ -80,7 +80,7 @@ fn any_plan_within_the_limits_of_the_service_is_found_from_rest() {
 }
 
 /// The mean squared error of each parameter over draws of noise, divided by the variance stated.
-fn honesty(plan: [[f64; 6]; 2], draws: usize, seed: u64) -> Vec<f64> {
+fn variance_ratio(plan: [[f64; 6]; 2], draws: usize, seed: u64) -> Vec<f64> {
     const NOISE: f64 = 0.3;
     let response = response(&skin());
     let skin = moved_skin(&response, &plan);
@@ -108,7 +108,7 @@ fn the_error_that_noise_causes_is_as_large_as_the_variance_says() {
     const SEED: u64 = 1;
     for plan in [planted([[0.0; 6]; 2]), planted(SURGERY)] {
         for (draws, low, high) in [(200, 0.8, 1.25), (2000, 0.9, 1.1)] {
-            let ratios = honesty(plan, draws, SEED);
+            let ratios = variance_ratio(plan, draws, SEED);
             assert!(
                 ratios.iter().all(|ratio| (low..high).contains(ratio)),
                 "{draws}: {ratios:.3?}"

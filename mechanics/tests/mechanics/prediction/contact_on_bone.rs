@@ -107,14 +107,14 @@ fn a_slab_pressed_by_a_plate_of_bone_is_strained_evenly_whichever_of_both_moves(
                 let off = slab.map(|n| found.displacement[n] - wanted(&case.volume.nodes[n]));
                 let off = off.map(|off| off.norm()).fold(0.0, f64::max);
                 assert!(off < 1e-6, "{told}: {off}");
-                told_alike(&case, &found, -stress * LENGTHS[0] * LENGTHS[1], &told);
+                assert_same_report(&case, &found, -stress * LENGTHS[0] * LENGTHS[1], &told);
             }
         }
     }
 }
 
 /// What is told of a plate that presses with a force in mN.
-fn told_alike(case: &Case, found: &Prediction, force: f64, told: &str) {
+fn assert_same_report(case: &Case, found: &Prediction, force: f64, told: &str) {
     let touch = found.contact.as_ref().unwrap();
     let [pair] = &touch.pairs[..] else { panic!("{told}: {:?}", touch.pairs) };
     assert_eq!(pair.between, ["plate", "skin"], "{told}");

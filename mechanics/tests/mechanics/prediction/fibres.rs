@@ -59,7 +59,7 @@ fn largest_difference(a: &[Vector], b: &[Vector]) -> f64 {
 #[test]
 fn fibres_as_stiff_as_what_lies_across_them_change_nothing() {
     let plain = material(6.2, 0.49);
-    for law in [FibreLaw::Engineering, FibreLaw::Paper002] {
+    for law in [FibreLaw::Engineering, FibreLaw::Kim2012] {
         let fibre = fibred((6.2, 6.2, 0.49, law)).unwrap();
         for (shape, element) in ELEMENTS {
             let answer = |upper| {
@@ -164,7 +164,7 @@ fn mass_tensor_forces(scene: &Scene, (along, across, nu, _): Stated, u: &[Vector
 
 #[test]
 fn the_mass_tensor_with_fibres_is_the_plain_finite_element_and_balances_its_own_forces() {
-    let stated = (15.0, 12.0, 0.43, FibreLaw::Paper002);
+    let stated = (15.0, 12.0, 0.43, FibreLaw::Kim2012);
     let (mut case, plan) = bent(
         fibred(stated).unwrap(),
         Vector::new(1.0, 0.5, 0.2),
@@ -196,7 +196,7 @@ fn the_mass_tensor_with_fibres_is_the_plain_finite_element_and_balances_its_own_
 
 #[test]
 fn own_iterations_bring_tissue_with_fibres_to_the_rest_that_the_fast_solver_finds() {
-    let stated = (15.0, 12.0, 0.43, FibreLaw::Paper002);
+    let stated = (15.0, 12.0, 0.43, FibreLaw::Kim2012);
     let by = Vector::new(1.0, 0.5, 0.2);
     let (mut case, plan) =
         bent(fibred(stated).unwrap(), by, CellShape::Tet4, Rotation3::identity());

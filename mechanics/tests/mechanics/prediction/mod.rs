@@ -29,4 +29,4 @@ mod slab_table;
 mod sliding;
 mod stress;
 mod suspicious;
-mod unheld;
+mod unconstrained;

@@ -34,7 +34,7 @@ pub fn system_of(
     let numbering = DofMap::new(mesh, &held);
     let matrix = tissue.assemble(&numbering, &Unobserved).unwrap().unwrap();
     let positions = numbering.by_row(&mesh.nodes);
-    System { layout: numbering.layout, matrix, partly_held: Vec::new(), positions }
+    System { layout: numbering.layout, matrix, partly_constrained: Vec::new(), positions }
 }
 
 fn clamped_block() -> System {

@@ -61,7 +61,7 @@ impl Stopwatch for Clock {
         self.0.elapsed().as_secs_f64()
     }
 
-    fn forget_peak(&self) {}
+    fn reset_peak(&self) {}
 
     fn peak_mb(&self) -> Option<f64> {
         None
@@ -76,7 +76,7 @@ impl Stopwatch for Hasty {
         f64::from(self.0.fetch_add(1, std::sync::atomic::Ordering::Relaxed))
     }
 
-    fn forget_peak(&self) {}
+    fn reset_peak(&self) {}
 
     fn peak_mb(&self) -> Option<f64> {
         None

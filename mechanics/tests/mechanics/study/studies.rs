@@ -32,7 +32,7 @@ impl Stopwatch for Still {
     fn seconds(&self) -> f64 {
         0.0
     }
-    fn forget_peak(&self) {}
+    fn reset_peak(&self) {}
     fn peak_mb(&self) -> Option<f64> {
         None
     }
@@ -313,7 +313,7 @@ impl Stopwatch for Ticking {
     fn seconds(&self) -> f64 {
         self.0.fetch_add(1, Ordering::Relaxed) as f64
     }
-    fn forget_peak(&self) {}
+    fn reset_peak(&self) {}
     fn peak_mb(&self) -> Option<f64> {
         Some(7.0)
     }

@@ -4,7 +4,7 @@ use mechanics::mesh::closest_point::Feature;
 use mechanics::mesh::{SearchError, SurfaceSearch, TriangleSurface, Vector, area_sampling};
 use mechanics::validation::{Statistics, StatisticsError};
 
-use crate::surfaces::{Noise, distance_by_trying, map, sphere, square};
+use crate::surfaces::{Noise, brute_force_distance, map, sphere, square};
 
 #[test]
 fn the_nearest_point_is_the_one_that_trying_all_triangles_finds() {
@@ -16,7 +16,7 @@ fn the_nearest_point_is_the_one_that_trying_all_triangles_finds() {
     for _ in 0..500 {
         let point = random.vector() * 60.0;
         let closest = search.closest(&point);
-        let tried = distance_by_trying(&surface, &point);
+        let tried = brute_force_distance(&surface, &point);
         assert!((closest.distance - tried).abs() < 1e-10, "{point} {closest:?} {tried}");
         let corners = surface.corners(closest.triangle);
         let weights = closest.barycentric;
@@ -25,8 +25,8 @@ fn the_nearest_point_is_the_one_that_trying_all_triangles_finds() {
         assert!((weights.iter().sum::<f64>() - 1.0).abs() < 1e-12);
         assert!(weights.iter().all(|&weight| weight >= -1e-12));
         assert_eq!(search.closest(&point), closest);
-        assert_eq!(search.nearer_than(&point, closest.distance * 0.999), None);
-        assert_eq!(search.nearer_than(&point, closest.distance * 1.001), Some(closest));
+        assert_eq!(search.closest_within(&point, closest.distance * 0.999), None);
+        assert_eq!(search.closest_within(&point, closest.distance * 1.001), Some(closest));
     }
 }
 

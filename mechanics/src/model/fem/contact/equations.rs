@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use crate::boundary::Hold;
 use crate::boundary::contact::ContactRow;
-use crate::model::dofs::{DofMap, partly_held};
+use crate::model::dofs::{DofMap, partly_constrained};
 use crate::solver::PartlyHeld;
 use crate::solver::preconditioned::Equation;
 
@@ -12,14 +12,14 @@ use crate::solver::preconditioned::Equation;
 #[derive(Clone)]
 pub(in crate::model::fem) struct FreeUnknowns<'a> {
     numbering: &'a DofMap,
-    partly_held: BTreeMap<usize, PartlyHeld>,
+    partly_constrained: BTreeMap<usize, PartlyHeld>,
 }
 
 impl<'a> FreeUnknowns<'a> {
     pub fn new(holds: &[Hold], numbering: &'a DofMap) -> Self {
-        let partly = partly_held(holds, numbering);
-        let partly_held = partly.into_iter().map(|partly| (partly.row, partly)).collect();
-        FreeUnknowns { numbering, partly_held }
+        let partly = partly_constrained(holds, numbering);
+        let partly_constrained = partly.into_iter().map(|partly| (partly.row, partly)).collect();
+        FreeUnknowns { numbering, partly_constrained }
     }
 
     /// What a row takes of free unknowns, along the axes of their nodes; nothing where both sides are held.
@@ -30,7 +30,7 @@ impl<'a> FreeUnknowns<'a> {
             if place >= self.numbering.layout.free {
                 continue;
             }
-            let partly = self.partly_held.get(&place);
+            let partly = self.partly_constrained.get(&place);
             let own = partly.map_or(*along, |partly| partly.axes.transpose() * along);
             let is_free = |k: usize| partly.is_none_or(|partly| !partly.held[k]);
             let free = (0..3).filter(|&k| is_free(k) && own[k] != 0.0);

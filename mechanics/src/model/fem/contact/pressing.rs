@@ -123,7 +123,7 @@ impl Pressing<'_> {
         relative_residual: f64,
         progress: &dyn Progress,
     ) -> Result<Correction, ModelError> {
-        let less = self.system.taken_away(residual);
+        let less = self.system.negated(residual);
         let values = vec![0.0; self.rows.len()];
         let wanted =
             ConstraintTarget { rows: &self.rows, values: &values, less: &less, relative_residual };

@@ -10,7 +10,7 @@ use super::two_level::{AtCorners, EnrichedCells, OfEdges};
 use crate::element::MAX_NODES;
 use crate::mesh::{CellShape, Vector};
 use crate::model::fem::assembly::Tissue;
-use crate::model::fem::displacement_pressure::{PressureCells, beside_pressure};
+use crate::model::fem::displacement_pressure::{PressureCells, without_pressure_part};
 use crate::model::fem::linear_system::LinearSystem;
 use crate::model::problem::InvertedCell;
 
@@ -65,7 +65,7 @@ impl<'a> Cells<'a> {
                     values: numbers.map(|number| self.pressures[number as usize]),
                     mu: tensor.pressure_part().mu,
                 });
-                let own = if pressures.is_some() { beside_pressure(tensor) } else { tensor };
+                let own = if pressures.is_some() { without_pressure_part(tensor) } else { tensor };
                 Simplex::new(mesh, cell, own, pressures).map(Cell::Simplex)
             }
             CellShape::Hex8 | CellShape::Wedge6 => {

@@ -278,7 +278,7 @@ impl Cell {
     }
 
     /// What growth and muscles add to the second order along a path.
-    pub fn second_of_inner(&self, strained: &CellStrains, terms: &mut CellTerms) {
+    pub fn second_order_of_inner(&self, strained: &CellStrains, terms: &mut CellTerms) {
         if self.growth != 0.0 {
             self.add_growth(strained, &[self.growth], terms);
         }
@@ -289,7 +289,7 @@ impl Cell {
     }
 
     /// What they add to the third.
-    pub fn third_of_inner(&self, strained: &CellStrains, terms: &mut CellTerms) {
+    pub fn third_order_of_inner(&self, strained: &CellStrains, terms: &mut CellTerms) {
         let growth = self.growth;
         if growth != 0.0 {
             self.add_growth(strained, &[growth * growth, growth], terms);

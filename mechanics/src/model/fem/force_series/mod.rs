@@ -81,7 +81,7 @@ impl<'a> ForceSeries<'a> {
     pub fn second_along(&self, first: LinearState) -> Result<Forces, InvertedCell> {
         let of_cell = |cell: &Cell, strained: &CellStrains| {
             let mut terms = cell.second(strained, [0, 0]);
-            cell.second_of_inner(strained, &mut terms);
+            cell.second_order_of_inner(strained, &mut terms);
             vec![terms]
         };
         let mut sum = self.sum(&[first], 1, &of_cell)?.remove(0);
@@ -116,7 +116,7 @@ impl<'a> ForceSeries<'a> {
         let of_cell = |cell: &Cell, strained: &CellStrains| {
             let (mut all, cross) = (cell.third(strained), cell.second(strained, [0, 1]));
             all.add(&cross, 2.0);
-            cell.third_of_inner(strained, &mut all);
+            cell.third_order_of_inner(strained, &mut all);
             vec![all]
         };
         let mut sums = self.sum(&[first, second], 1, &of_cell)?;

@@ -20,7 +20,7 @@ const CURE: &str = "name in `fixed` what stays, or allow it with `allow_unfixed`
 
 /// Parts that go along as one with a plan.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct GoesAlong {
+pub struct RigidlyCarried {
     /// Of parts with much of the skin: what is refused.
     pub refused: Vec<String>,
     /// Of the others.
@@ -28,11 +28,11 @@ pub struct GoesAlong {
 }
 
 /// What goes along as one when each segment makes its movement.
-pub fn goes_along(
+pub fn rigidly_carried(
     parts: &[ConnectedPart],
     movement: impl Fn(u32) -> RigidMovement + Copy,
-) -> GoesAlong {
-    let mut found = GoesAlong::default();
+) -> RigidlyCarried {
+    let mut found = RigidlyCarried::default();
     for part in parts {
         let Some(carried) = part.carried(movement) else { continue };
         let (which, farthest) = (part_of(part, parts.len()), carried.farthest);
@@ -77,7 +77,7 @@ fn left_free(part: &ConnectedPart, stays: impl Fn(u32) -> bool) -> Option<Freedo
 
 impl Check<'_> {
     /// Refuses a plan that carries tissue along as one, and warns of a case that may come to that.
-    pub(super) fn unheld(
+    pub(super) fn unconstrained(
         &mut self,
         plan: &Plan,
         segments: &[PlannedSegment],
@@ -86,7 +86,7 @@ impl Check<'_> {
         if self.case.allow_unfixed {
             return;
         }
-        let found = goes_along(parts, |segment| segments[segment as usize].movement);
+        let found = rigidly_carried(parts, |segment| segments[segment as usize].movement);
         self.warnings.extend(found.told);
         let is_refused = !found.refused.is_empty();
         for detail in found.refused {

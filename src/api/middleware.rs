@@ -32,13 +32,17 @@ const LARGEST_HEAD: usize = 16 << 10;
 
 /// What the outermost layer needs to know.
 #[derive(Clone)]
-pub struct GuardState {
+pub struct MiddlewareState {
     pub service: Service,
     pub declared: Arc<Declared>,
 }
 
 /// The outermost layer: names the request, logs it, and writes the bodies of errors.
-pub async fn surround(State(door): State<GuardState>, request: Request, next: Next) -> Response {
+pub async fn surround(
+    State(door): State<MiddlewareState>,
+    request: Request,
+    next: Next,
+) -> Response {
     let started = Instant::now();
     let id = request_id(request.headers());
     let method = request.method().clone();
@@ -125,7 +129,7 @@ struct Entry {
 
 /// Lets a request in whose head is sound, whose caller is known and has requests left; whose it is, and what was declared
 /// of its route, stands beside it.
-async fn admit(door: &GuardState, request: &mut Request) -> ApiResult<Admission> {
+async fn admit(door: &MiddlewareState, request: &mut Request) -> ApiResult<Admission> {
     check_head(request)?;
     check_named_once(request)?;
     if let Some(hosts) = &door.service.hosts {
@@ -226,7 +230,7 @@ pub async fn accepts_json(request: Request, next: Next) -> Response {
 
 /// Whether the client takes a media type (RFC 9110, section 12.5.1).
 pub fn check_accept(headers: &HeaderMap, offered: &str) -> Result<(), ApiError> {
-    if liking(headers, offered).1 > 0.0 {
+    if preference(headers, offered).1 > 0.0 {
         return Ok(());
     }
     let detail = format!("the answer is {offered}, which the header Accept does not allow");
@@ -237,7 +241,7 @@ pub fn check_accept(headers: &HeaderMap, offered: &str) -> Result<(), ApiError> 
 pub fn preferred(headers: &HeaderMap, offered: &[&str]) -> Result<usize, ApiError> {
     let mut best: Option<(usize, f32, u8)> = None;
     for (number, offer) in offered.iter().enumerate() {
-        let (precision, quality) = liking(headers, offer);
+        let (precision, quality) = preference(headers, offer);
         let better = |(_, most, precisest)| (quality, precision) > (most, precisest);
         if quality > 0.0 && best.is_none_or(better) {
             best = Some((number, quality, precision));
@@ -248,7 +252,7 @@ pub fn preferred(headers: &HeaderMap, offered: &[&str]) -> Result<usize, ApiErro
 }
 
 /// How precisely a client names a media type, and how well it likes it, from 0 to 1.
-fn liking(headers: &HeaderMap, offered: &str) -> (u8, f32) {
+fn preference(headers: &HeaderMap, offered: &str) -> (u8, f32) {
     let values = headers.get_all(header::ACCEPT).iter().filter_map(|value| value.to_str().ok());
     let mut ranges = values
         .flat_map(|value| value.split(','))
@@ -263,7 +267,7 @@ fn liking(headers: &HeaderMap, offered: &str) -> (u8, f32) {
         let quality = parts.find_map(|parameter| parameter.strip_prefix("q=")?.parse().ok());
         (precision_of(&name, offered), quality.unwrap_or(1.0))
     });
-    likings.fold((0, 0.0), |best, liking| if liking.0 > best.0 { liking } else { best })
+    likings.fold((0, 0.0), |best, preference| if preference.0 > best.0 { preference } else { best })
 }
 
 /// How precisely a range names what is offered; 0 when it does not.

@@ -7,7 +7,8 @@ use mechanics::boundary::NodeSelection;
 use mechanics::mesh::{CellShape, Cells, Vector, VolumeMesh, Warning, sample::block};
 use mechanics::plan::{PlannedSegment, RigidMovement};
 use mechanics::prediction::{
-    Case, CaseSegment, Load, Plan, Prescribed, Scene, Settings, Sliding, SlidingNormal, goes_along,
+    Case, CaseSegment, Load, Plan, Prescribed, Scene, Settings, Sliding, SlidingNormal,
+    rigidly_carried,
 };
 use mechanics::progress::Unobserved;
 use mechanics::response::{Columns, ResponseError, build};
@@ -277,7 +278,7 @@ fn a_response_knows_which_plans_carry_the_tissue_along() {
     case.sliding = vec![wall("z_min", None)];
     let both = build(&at_rest(&case, &exact()), &[], &Unobserved).unwrap();
     let is_refused = |columns: &Columns, movements: &[RigidMovement]| {
-        let found = goes_along(&columns.parts, |segment| movements[segment as usize]);
+        let found = rigidly_carried(&columns.parts, |segment| movements[segment as usize]);
         !found.refused.is_empty()
     };
     assert!(is_refused(&both, &[shifted(FIVE), shifted(FIVE)]));
