@@ -120,7 +120,7 @@ fn measure_plan(entry: &Entry, question: &Question, summary: &mut Summary) {
         summary.without_truth += 1;
         return println!("{of} | no truth | | | | | |");
     };
-    if truth_is_another(entry, question, &truth) {
+    if has_other_truth(entry, question, &truth) {
         summary.with_two += 1;
         return println!("{of} | two equilibria | | | | | |");
     }
@@ -135,8 +135,8 @@ fn measure_plan(entry: &Entry, question: &Question, summary: &mut Summary) {
         .expect("linear elements have an answer");
     let cpu_s = process::cpu_seconds() - begin;
     let off = mean_error(&scene, &found.prediction.displacement, &truth);
-    let hindsight = hindsight(entry, question, &scene, &truth);
-    let adequate = hindsight.iter().filter(|model| model.error_mm <= *accepted_mm);
+    let solve_every_model = solve_every_model(entry, question, &scene, &truth);
+    let adequate = solve_every_model.iter().filter(|model| model.error_mm <= *accepted_mm);
     let cheapest = adequate.min_by(|a, b| a.cpu_s.total_cmp(&b.cpu_s));
     let told = found.considered.iter().find(|other| other.rung == found.rung);
     let told = told.and_then(|own| Some(own.error.as_ref()?.skin_mm)).unwrap_or(f64::NAN);
@@ -157,7 +157,7 @@ fn measure_plan(entry: &Entry, question: &Question, summary: &mut Summary) {
 }
 
 /// Whether a path to nearly the same plan ends elsewhere; so does one that ends nowhere.
-fn truth_is_another(entry: &Entry, question: &Question, found: &[Vector]) -> bool {
+fn has_other_truth(entry: &Entry, question: &Question, found: &[Vector]) -> bool {
     truth(entry, &question.nearly).is_none_or(|nearly| {
         found.iter().zip(&nearly).any(|(u, v)| (u - v / NEARLY).norm() > ANOTHER)
     })
@@ -181,7 +181,7 @@ fn at_finite_strain(case: &Case, plan: &Plan, estimate: bool) -> Option<Predicti
 }
 
 /// Every model, from its own solution.
-fn hindsight(
+fn solve_every_model(
     entry: &Entry,
     question: &Question,
     scene: &Scene,

@@ -1,5 +1,5 @@
-//! A fair counting semaphore: permits go round robin between tenants, and within a tenant in the order of its
-//! requests. A tenant that sends a hundred requests holds up nobody but itself.
+//! A fair counting semaphore: permits go round robin between tenants, and within a tenant in the order of its requests.
+//! A tenant that sends a hundred requests delays only itself.
 
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -19,7 +19,7 @@ struct Queue {
     free: usize,
     /// Most that wait in one line.
     most: usize,
-    /// Lines in which somebody waits, in the order of their next turns.
+    /// Nonempty queues in the order of their next turns.
     lines: VecDeque<Line>,
 }
 
@@ -39,7 +39,7 @@ struct Slot {
     semaphore: Option<FairSemaphore>,
 }
 
-/// As many wait in this line already as may.
+/// The queue is full.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Full {
     pub most: usize,
@@ -93,7 +93,7 @@ impl FairSemaphore {
         Permit { _slot: Arc::new(Slot { semaphore: Some(self.clone()) }) }
     }
 
-    /// Gives a free place to the next who still waits.
+    /// Gives a free permit to the next waiting request.
     fn pass_on(&self) {
         loop {
             let mut queue = self.lock();
@@ -105,7 +105,7 @@ impl FairSemaphore {
             };
             drop(queue);
             let Err(permit) = next.send(self.taken()) else { return };
-            // Whoever waited has gone: the place is not given back, but to the next.
+            // The waiting request is gone: the permit goes to the next one.
             if let Some(mut slot) = Arc::into_inner(permit._slot) {
                 slot.semaphore = None;
             }
@@ -169,7 +169,7 @@ mod tests {
 
     use super::*;
 
-    /// One who has asked for a turn.
+    /// A request that waits for a permit.
     fn asked<'a>(
         semaphore: &'a FairSemaphore,
         line: &'a str,

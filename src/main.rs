@@ -3,7 +3,7 @@ use std::process::{ExitCode, exit};
 
 use facies::command::{read, run};
 
-/// What a shell tells of a program that wrote to a pipe that nobody reads any more: 128 and SIGPIPE.
+/// Exit status of a program that wrote to a closed pipe: 128 and SIGPIPE.
 const NOBODY_READS: i32 = 141;
 
 fn main() -> ExitCode {

@@ -78,7 +78,7 @@ pub fn render() -> String {
     EXPORTER.get().map(PrometheusHandle::render).unwrap_or_default()
 }
 
-/// Gives up memory of samples that were rendered; to be called now and then.
+/// Frees the memory of rendered samples; to be called now and then.
 pub fn release_memory() {
     if let Some(exporter) = EXPORTER.get() {
         exporter.run_upkeep();
@@ -139,7 +139,7 @@ pub fn spans_lost(cause: &'static str, spans: u64) {
     counter!(SPANS_LOST, "cause" => cause).increment(spans);
 }
 
-/// What this process takes.
+/// Memory of this process.
 pub fn process_memory(bytes: u64) {
     gauge!(RESIDENT).set(bytes as f64);
 }

@@ -1,4 +1,4 @@
-//! Predicts how a face will look after the bones under it are moved: meshes, tissue, equations, solvers, comparisons.
+//! Prediction of a face after the bones under it are moved: meshes, tissue, equations, solvers, comparisons.
 //!
 //! The path of one prediction: [`format`] reads meshes and images; a [`prediction::Case`] says what of them is
 //! tissue, which nodes are [held](boundary) by bone and of what [material] the tissue is, a [`prediction::Plan`]

@@ -1,4 +1,4 @@
-//! Progress of a long computation: where it is, and whether it is to stop.
+//! Progress and cancellation of a long computation.
 
 /// What the work is at; the caller takes the time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -50,7 +50,7 @@ impl Phase {
     }
 }
 
-/// Told by the numerics, kept by the caller. Called from the solving thread, often, so it must be quick.
+/// Observer of a computation. Called often, from the solving thread, so it must be quick.
 pub trait Progress: Sync {
     fn phase(&self, phase: Phase);
 
@@ -60,17 +60,17 @@ pub trait Progress: Sync {
     /// A part of the work is done, of so many that are alike.
     fn step(&self, _done: usize, _of: usize) {}
 
-    /// The work stops by itself once it has taken so many seconds; who waits longer waits in vain.
+    /// The work stops by itself after so many seconds.
     fn allowed(&self, _wall_s: f64) {}
 
     /// True when the work is to end at its next check with a `cancelled` error.
     fn is_cancelled(&self) -> bool;
 }
 
-/// Progress nobody follows, of work that nobody stops.
+/// No observer: progress is ignored and nothing is cancelled.
 pub struct Unobserved;
 
-/// Work inside an iteration of other work: it ends with that, and tells nothing of its own.
+/// Work inside an iteration of other work: cancelled with it, without progress of its own.
 pub struct Inner<'a>(pub &'a dyn Progress);
 
 impl Progress for Unobserved {

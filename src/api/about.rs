@@ -1,4 +1,4 @@
-//! Description of the service: where to begin, its limits, its methods, its description.
+//! Description of the service: its entry point, limits, methods and OpenAPI description.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;

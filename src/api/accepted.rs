@@ -1,4 +1,4 @@
-//! Acceptance of a job: what its kind has found, checked with its meshes, becomes a row of the queue.
+//! Acceptance of a job: its input, checked with its meshes, becomes a row of the queue.
 
 use std::collections::BTreeMap;
 

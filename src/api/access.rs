@@ -25,7 +25,7 @@ pub enum Access {
 }
 
 impl Access {
-    /// For what changes nothing.
+    /// For routes that change nothing.
     pub const fn reads(scope: Scope) -> Access {
         Access::Key { scope, audit: Audit::Unnoted }
     }

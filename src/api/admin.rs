@@ -1,5 +1,5 @@
-//! The listener for those who run the service: what it counts, whether the process lives, and what concerns more than one
-//! tenant. It has an address of its own, which clients do not reach.
+//! Admin listener for operators: metrics, liveness, and what concerns more than one tenant. It has an address of its
+//! own, which clients do not reach.
 
 use std::net::SocketAddr;
 use std::sync::Arc;
@@ -40,16 +40,16 @@ use crate::worker::process::memory::usage;
 
 const PROMETHEUS: &str = "text/plain; version=0.0.4; charset=utf-8";
 
-/// What the listener needs to know.
+/// Shared state of the admin listener.
 #[derive(Clone)]
 struct AdminListener {
     store: Store,
-    /// Who is let in to more than metrics.
+    /// Key for all routes except metrics.
     key: Option<Arc<Secret>>,
     is_loopback: bool,
-    /// Who is believed, where there is no key and everything is answered on loopback.
+    /// Trusted hosts, where there is no key and everything is answered on loopback.
     hosts: Option<Arc<Hosts>>,
-    /// How long a client may stand still.
+    /// How long a client may stall.
     patience: Duration,
 }
 
@@ -132,7 +132,7 @@ impl AdminRoutes {
         access: Access,
         handler: impl Handler<T, AdminListener>,
     ) -> AdminRoutes {
-        // A method that no router knows is answered by nobody.
+        // A method that the router does not know gets no route.
         if let Ok(filter) = MethodFilter::try_from(method.clone()) {
             self.router = self.router.route(path, on(filter, handler));
             self.declared.add(path, method, access);
@@ -141,14 +141,14 @@ impl AdminRoutes {
     }
 }
 
-/// What the layer around the routes needs to know.
+/// Shared state of the middleware.
 #[derive(Clone)]
 struct AdminGuardState {
     admin: AdminListener,
     declared: Arc<Declared>,
 }
 
-/// Lets in who has the key, or who is on this machine where there is none; notes what was changed.
+/// Requires the key, or a local client where there is none; audits changes.
 async fn middleware(State(door): State<AdminGuardState>, request: Request, next: Next) -> Response {
     let id = uuid::Uuid::now_v7().to_string();
     if let Err(error) = door.admin.is_meant(&request) {
@@ -175,7 +175,7 @@ async fn middleware(State(door): State<AdminGuardState>, request: Request, next:
     named(response, &id)
 }
 
-/// The answer to what those who run the service do, which is noted at once.
+/// Answer to a change by an operator, which is audited at once.
 async fn noted(store: &Store, audited: AuditedAction, request: Request, next: Next) -> Response {
     let erases = request.method() == Method::DELETE;
     let intent = store.audit_intent(audited);
@@ -192,7 +192,7 @@ async fn noted(store: &Store, audited: AuditedAction, request: Request, next: Ne
     }
 }
 
-/// A document, read as those of clients are, so that what is wrong with it is told with its place.
+/// A document, read like those of clients, so that each error is reported with its place.
 fn document<T: DeserializeOwned>(headers: &HeaderMap, body: &Bytes) -> ApiResult<T> {
     body::require_json(headers)?;
     Ok(strict::parse(body, &Limits::default())?)
@@ -241,7 +241,7 @@ impl AdminListener {
 struct TenantDocument {
     #[serde(default, skip_deserializing)]
     name: String,
-    /// Days for which what nobody changes is kept; absent: until it is erased.
+    /// Days for which unchanged resources are kept; absent: until they are erased.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     retention_days: Option<i64>,
 }

@@ -17,7 +17,7 @@ pub fn router() -> Resources {
     Resources::new().reads(Scope::Admin, routes!(list)).json_only()
 }
 
-/// What somebody did.
+/// An audited action.
 #[derive(Serialize, ToSchema)]
 pub struct AuditView {
     pub number: i64,
@@ -31,7 +31,8 @@ pub struct AuditView {
     pub action: String,
     /// The id of what it was done to; empty where there is none.
     pub object: String,
-    /// The HTTP status; `done` or `failed` where there was no request; `unknown` where nobody lived to tell.
+    /// The HTTP status; `done` or `failed` where there was no request; `unknown` where the process died before the
+    /// outcome was stored.
     pub outcome: String,
     /// The id of the request.
     pub request: String,

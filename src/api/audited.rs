@@ -1,4 +1,4 @@
-//! What callers do that changes something goes into the audit log, with how it ended; also what a key did not allow.
+//! Audit of requests: changes by callers, with their outcome, and attempts that a key did not allow.
 
 use axum::extract::{MatchedPath, Request};
 use axum::http::{StatusCode, header};
@@ -37,9 +37,9 @@ pub fn audited_admin_action(request: &Request, id: &str) -> Option<AuditedAction
     })
 }
 
-/// Carries a request out that may change something. It is noted before it does, and then it runs to its end, also where
-/// its client goes away meanwhile; as long as it has changed nothing it ends with its client. How it was answered is noted
-/// as well, but not where its body never came.
+/// Runs a request that may change something. It is audited before its first change, and then runs to its end, even if
+/// its client disconnects; until then it ends with its client. Its status is audited as well, but not where its body
+/// never came.
 pub async fn carry_out(
     intent: AuditIntent,
     coming: BodyState,
@@ -69,13 +69,12 @@ pub async fn erased(store: Store, run: impl Future<Output = Response>) -> Respon
     response
 }
 
-/// Whether an answer to what changed nothing is noted: not where the service could not give one, or was not told in time
-/// what was wanted.
+/// Whether the answer to a request without changes is audited: not server errors, nor bodies that came too late.
 fn is_told(status: StatusCode) -> bool {
     !status.is_server_error() && status != StatusCode::REQUEST_TIMEOUT
 }
 
-/// Who waits for an answer; dropped when it has come, or when he goes away.
+/// A waiting client; dropped when it has its answer, or disconnects.
 struct Client {
     intent: AuditIntent,
     task: AbortHandle,

@@ -1,4 +1,4 @@
-//! Bodies of requests: read within bounds of size and of time.
+//! Request bodies, read within bounds of size and of time.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -70,7 +70,7 @@ impl Unread {
         self.coming.clone()
     }
 
-    /// Reads and forgets what is left, within bounds.
+    /// Reads and drops what is left, within bounds.
     pub async fn drain(self) {
         let mut frames = self.frames.lock().await;
         let mut drained = 0;
@@ -147,8 +147,8 @@ async fn whole(service: &Service, request: Request, most: usize) -> ApiResult<Sp
     spool.finish().await
 }
 
-/// Checks what a request says of its body. What is announced is counted as it comes: who announces much and sends nothing
-/// keeps nobody out.
+/// Checks what a request says of its body. Announced bytes count only as they arrive, so that a client which announces
+/// much and sends nothing blocks nobody.
 fn begun(service: &Service, headers: &HeaderMap, most: usize) -> ApiResult<Arc<ByteReservation>> {
     check_encoding(headers)?;
     let announced = announced(headers).unwrap_or(0);
@@ -310,7 +310,7 @@ fn broken_off(count: usize) -> ApiError {
     ApiError::new(ErrorCode::MalformedRequest, detail)
 }
 
-/// The body of a request of those who run the service, which may stand still for so long and no longer.
+/// Body of a request to the admin listener, which may stall for so long.
 pub fn moving(body: Body, idle: Duration) -> Body {
     let frames = body.into_data_stream();
     let frames = futures::stream::unfold(Some(frames), move |frames| async move {

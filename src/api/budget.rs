@@ -1,5 +1,5 @@
-//! A budget of bytes in flight, for each client, for each tenant and for the process: bodies that come or are worked on, and
-//! copies of files that are sent. They lie on the disk of the data folder, which so many bytes cannot fill unseen.
+//! Budget of bytes in flight, for each client, for each tenant and for the process: request bodies and copies of files
+//! that are sent. They are in files of the data folder, whose disk they must not fill.
 
 use std::collections::HashMap;
 use std::hash::Hash;
@@ -129,7 +129,7 @@ impl ByteReservation {
         Ok(())
     }
 
-    /// Whether it could hold so many at this moment, so that nobody sends what is certain to be refused.
+    /// Refuses bytes beyond the budget at this moment, before a client sends them.
     pub fn check_available(&self, bytes: u64) -> ApiResult<()> {
         let held = *self.lock();
         let used = self.budget.lock();

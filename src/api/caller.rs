@@ -48,8 +48,7 @@ impl Caller {
             .into())
     }
 
-    /// Whom bounds for each client are counted for: with a key the one who has it, without keys the address that the
-    /// request comes from.
+    /// Identity for limits on each client: the key, or without keys the address of the request.
     pub fn client(&self, extensions: &Extensions) -> Client {
         if &*self.key != NO_KEY {
             return Client::named(&self.key);
@@ -59,8 +58,8 @@ impl Caller {
     }
 }
 
-/// The service scoped to the caller's tenant: what handlers work with. A request that came around the guard, or to a
-/// route of which nothing was declared, is nobody's.
+/// The service scoped to the caller's tenant, for handlers. A request that bypassed the middleware, or whose route has
+/// no declared scope, is refused.
 impl FromRequestParts<Service> for Service {
     type Rejection = ApiError;
 
@@ -140,7 +139,7 @@ async fn known(service: &Service, given: &str, case: Option<String>) -> ApiResul
     Ok(Identified { caller, foreseen })
 }
 
-/// The refusal of one who is not known.
+/// The refusal of an unknown caller.
 pub fn unauthorized(detail: &str) -> ApiError {
     let error = ApiError::new(ErrorCode::Unauthorized, detail);
     error.header(header::WWW_AUTHENTICATE, HeaderValue::from_static("Bearer"))

@@ -1,4 +1,4 @@
-//! A case on its way in: its document, the meshes that came with it, and whether they make sense together.
+//! Draft of a posted case: its document, the meshes that came with it, and their consistency.
 
 use std::collections::BTreeMap;
 
@@ -47,7 +47,7 @@ pub(super) struct Draft {
 
 /// What was found of a case before it is kept.
 pub(super) enum Checked {
-    /// What holds its nodes; `None` where only a plan can tell.
+    /// Boundary conditions of its nodes; `None` where only a plan determines them.
     Whole(Box<Option<CheckDocument>>),
     /// For each mesh or image that the meshing names the hash of its content.
     ToMesh { contents: BTreeMap<String, String> },

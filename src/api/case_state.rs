@@ -1,4 +1,4 @@
-//! State of a case: whole, being meshed, or without a mesh because its meshing failed.
+//! State of a case: complete, being meshed, or without a mesh because its meshing failed.
 
 use serde::Serialize;
 use serde_json::{Value, json};

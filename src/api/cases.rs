@@ -1,4 +1,4 @@
-//! Cases: a patient's meshes and what they mean. One request may bring the case and all its meshes.
+//! Cases: a patient's meshes with their meaning. One request may bring the case and all its meshes.
 
 use std::collections::BTreeMap;
 
@@ -19,7 +19,7 @@ use super::meshes::document_of;
 use super::middleware::check_accept;
 use super::paging::Page;
 use super::parameters::{Id, Parameters};
-use super::prefer::{wait_for_end, wanted_wait, with_wait};
+use super::prefer::{requested_wait, wait_for_end, with_wait};
 use super::resources::Resources;
 use super::{Service, accepted, body, case_state, conditional, job_input, json, time, with_header};
 use crate::jobs::PredictInput;
@@ -141,7 +141,7 @@ async fn create(
     Parameters(parameters): Parameters<CreateParameters>,
     request: Request,
 ) -> ApiResult {
-    let wait = wanted_wait(request.headers(), service.limits.wait_s);
+    let wait = requested_wait(request.headers(), service.limits.wait_s);
     let place = request.extensions().get::<Option<TraceParent>>().cloned().flatten();
     let kind = body::content_type(request.headers());
     let headers = request.headers().clone();
@@ -261,7 +261,7 @@ async fn list(service: Service, Parameters(parameters): Parameters<ListParameter
     )
 )]
 async fn show(service: Service, Id(id): Id, headers: HeaderMap) -> ApiResult {
-    let wait = wanted_wait(&headers, service.limits.wait_s);
+    let wait = requested_wait(&headers, service.limits.wait_s);
     let row = row_when_meshed(&service, &id, wait).await?;
     let version = current_tag(&row)?;
     if conditional::is_known(&headers, &version) {

@@ -1,4 +1,4 @@
-//! Whom bounds for each client are counted for.
+//! Identity of a client, for the limits on each client.
 
 /// A client by the id of its key or by its address.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]

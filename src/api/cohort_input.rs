@@ -1,4 +1,4 @@
-//! From the document of a cohort to a job: the comparisons read that it names.
+//! Conversion of a cohort document to a job: the comparisons that it names, read.
 
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -1,4 +1,4 @@
-//! Stored cohorts: operated cases of a tenant, what may be learned from whom, and which models are stale.
+//! Stored cohorts: operated cases of a tenant, consent for learning, and stale models.
 
 use axum::extract::Request;
 use axum::http::{HeaderMap, StatusCode, header};
@@ -80,7 +80,7 @@ pub struct CohortModelView {
     pub left: Vec<String>,
 }
 
-/// How a model stands to its cohort.
+/// Whether a model is up to date with its cohort.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ToSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum ModelState {

@@ -94,7 +94,7 @@ pub fn file(
         return Ok(not_modified(tag));
     }
     let total = file.bytes;
-    let range = match wanted_range(headers, tag) {
+    let range = match requested_range(headers, tag) {
         Some(text) => single_range(&text, total)?,
         None => None,
     };
@@ -121,7 +121,7 @@ fn set(response: &mut Response, name: header::HeaderName, value: &str) {
 }
 
 /// The Range header, unless If-Range says that it was meant for another version.
-fn wanted_range(headers: &HeaderMap, tag: &str) -> Option<String> {
+fn requested_range(headers: &HeaderMap, tag: &str) -> Option<String> {
     let range = headers.get(header::RANGE)?.to_str().ok()?;
     let meant = headers.get(header::IF_RANGE);
     let applies = meant.is_none_or(|meant| *meant == entity_tag(tag));

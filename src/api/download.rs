@@ -1,4 +1,4 @@
-//! Files on their way out: read piece by piece, so that a client that takes its time costs no memory of the file's size.
+//! Streaming of files: read piece by piece, so that a slow client costs no memory of the file's size.
 
 use std::fs::File;
 use std::io::{Seek as _, SeekFrom, Write as _};

@@ -1,4 +1,4 @@
-//! Pictures and reports of jobs, drawn when they are first asked for and kept in memory like those of checks.
+//! Pictures and reports of jobs, drawn at the first request and cached in memory like those of checks.
 
 use std::collections::BTreeMap;
 
@@ -91,7 +91,7 @@ async fn drawn(service: &Service, job: &JobRow, wanted: DrawingRequest) -> ApiRe
     let bytes = Bytes::from(permit.compute(draw).await?.map_err(accepted::refusal)?);
     let (case, cache_key) = (job.case_id.as_deref(), wanted.cache_key());
     service.pictures.keep_job_picture(&job.id, case, &cache_key, bytes.clone());
-    // Whoever erased it meanwhile found nothing to give up.
+    // If it was erased meanwhile, the picture was not in the cache yet.
     if service.store.job_status(&job.id).await?.is_none() {
         service.pictures.forget(&job.id);
         return Err(no_such_job());

@@ -1,4 +1,4 @@
-//! Errors as answers: a status, a code and a sentence (RFC 9457).
+//! Error responses: a status, a code and a sentence (RFC 9457).
 
 use axum::http::{HeaderName, HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response};
@@ -51,7 +51,7 @@ impl ApiError {
         ApiError::new(ErrorCode::StorageFull, "the disk of the service is full")
     }
 
-    /// An error of ours, told in the log only.
+    /// An internal error, reported in the log only.
     pub fn internal(reason: impl std::fmt::Display) -> Self {
         tracing::error!(%reason, "internal error");
         ApiError::new(ErrorCode::Internal, "the log has the details under the request's id")

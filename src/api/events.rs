@@ -42,7 +42,7 @@ pub fn router() -> Resources {
 /// The events of a job, from the first or from the one after `Last-Event-ID`, until the job has ended. `event` is
 /// `state` when a job is accepted or an attempt begins, `progress` where its work stands, and `end`; `id` counts from 1
 /// without gaps; `data` is a `JobEvent`. The last thousand events of a job are kept. A stream that breaks is resumed
-/// with the id that was read last; when all was told, the answer is 204 and there is no need to come back.
+/// with the id that was read last; when there are no more events, the answer is 204 and there is no need to reconnect.
 #[utoipa::path(
     get, path = "/v1/jobs/{id}/events", operation_id = "follow_job", tag = "jobs",
     params(
@@ -88,7 +88,7 @@ async fn follow(
     Ok(stream.into_response())
 }
 
-/// 0 where everything is to be told.
+/// 0 for all events.
 fn last_id(headers: &HeaderMap) -> ApiResult<i64> {
     let Some(value) = headers.get(LAST_ID) else { return Ok(0) };
     let number = value.to_str().ok().and_then(|text| text.parse().ok());
@@ -98,7 +98,7 @@ fn last_id(headers: &HeaderMap) -> ApiResult<i64> {
         .ok_or_else(|| ApiError::invalid_parameter("Last-Event-ID", detail))
 }
 
-/// What a stream has told and has yet to tell.
+/// Position of a stream among the events of its job.
 struct EventStream {
     place: StreamPlace,
     changes: Changes,

@@ -1,5 +1,5 @@
-//! Responses of a case, looked up together with the key of the request that applies a plan to one: two questions to a database
-//! that other processes share would take twice as long, and such a request asks nothing else.
+//! Prefetched responses of a case: looked up together with the idempotency key of the request that applies a plan,
+//! because two queries to a shared database would take twice as long.
 
 use std::time::{Duration, Instant};
 

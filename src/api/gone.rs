@@ -1,4 +1,4 @@
-//! What was erased answers 410 and not 404, whichever handler does not find it.
+//! Status 410 instead of 404 for what was erased, whichever handler does not find it.
 
 use axum::extract::rejection::RawPathParamsRejection;
 use axum::extract::{RawPathParams, Request, State};

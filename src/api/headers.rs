@@ -1,5 +1,5 @@
-//! Headers that tell browsers what an answer may do: nothing, but for the pages of the documentation, of the clients and
-//! for planners, which run their own scripts (W3C Content Security Policy 3).
+//! Security headers of answers: nothing is allowed to browsers, except on the pages of the documentation, of the
+//! clients and for planners, which run their own scripts (W3C Content Security Policy 3).
 
 use axum::extract::Request;
 use axum::http::{HeaderName, HeaderValue, header};

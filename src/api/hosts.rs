@@ -1,6 +1,6 @@
-//! Hosts and origins that are believed where no key is asked for: those of this machine, and those that settings name. A
-//! page of another site reaches a loopback address through the browser of whoever opened it, by a form, or under a name of
-//! its own that it lets resolve to 127.0.0.1 (DNS rebinding).
+//! Trusted hosts and origins where no key is required: those of this machine, and those that settings name. A page of
+//! another site reaches a loopback address through the browser of its reader, by a form, or under a name of its own
+//! that it lets resolve to 127.0.0.1 (DNS rebinding).
 
 use std::net::IpAddr;
 

@@ -19,14 +19,14 @@ pub struct NewId {
     pub id: String,
     /// Whether an earlier request may have made it already.
     pub is_known: bool,
-    /// Whether that request was told of something that was there before it.
+    /// Whether that request got an existing resource.
     pub was_found: bool,
     /// The hash of the key, where the request has one.
     key: Option<String>,
 }
 
 impl NewId {
-    /// Remembers that this request makes nothing and is told of what is there: sent again, it is told of the same.
+    /// Records that this request got an existing resource: a repetition gets the same.
     pub async fn found(&self, service: &Service, resource: &str) -> ApiResult<()> {
         if let Some(key) = &self.key {
             service.store.remember_found(key, resource).await?;

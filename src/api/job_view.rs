@@ -1,4 +1,4 @@
-//! A row of the queue as statusInfo.
+//! Status document of a job (statusInfo) from its row of the queue.
 
 use super::error::{ApiError, ApiResult};
 use super::time;

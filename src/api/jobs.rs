@@ -1,4 +1,4 @@
-//! Jobs: accepted, looked at, waited for, dismissed.
+//! Jobs: created, read, awaited, dismissed.
 
 use axum::extract::Request;
 use axum::http::{HeaderMap, StatusCode, header};
@@ -14,7 +14,7 @@ use super::idempotency::KeyedRequest;
 use super::job_view::status_info;
 use super::paging::Page;
 use super::parameters::{Id, Parameters, id, no_such_job};
-use super::prefer::{RETRY_AFTER_S, wait_for_end, wanted_wait, with_wait};
+use super::prefer::{RETRY_AFTER_S, requested_wait, wait_for_end, with_wait};
 use super::resources::Resources;
 
 use crate::schema::job_change::JobChangeDocument;
@@ -66,10 +66,10 @@ struct ListParameters {
     limit: Option<u32>,
 }
 
-/// Accepts a job. The same inputs, whoever sends them, are the same job, which gets the tags of each; a job that was dismissed, or
-/// failed by its budget or through no fault of its own, is accepted anew. With `Prefer: wait=n` the answer
-/// comes when the job has ended, at the latest after n seconds (at most 30). One that keeps meshes (`keep`) stores what it
-/// makes, which a key has to allow (`write`).
+/// Accepts a job. The same inputs, from any client of the tenant, are the same job, which gets the tags of each
+/// request; a job that was dismissed, or failed by its budget or through no fault of its own, is accepted again. With
+/// `Prefer: wait=n` the answer comes when the job has ended, at the latest after n seconds (at most 30). One that keeps
+/// meshes (`keep`) stores what it makes, which a key has to allow (`write`).
 #[utoipa::path(
     post, path = "/v1/jobs", operation_id = "create_job", tag = "jobs",
     params(
@@ -90,7 +90,7 @@ struct ListParameters {
     )
 )]
 async fn create(service: Service, caller: Caller, request: Request) -> ApiResult {
-    let wait = wanted_wait(request.headers(), service.limits.wait_s);
+    let wait = requested_wait(request.headers(), service.limits.wait_s);
     let headers = request.headers().clone();
     let place = request.extensions().get::<Option<TraceParent>>().cloned().flatten();
     let bytes = body::json(&service, request).await?;
@@ -177,7 +177,7 @@ fn answer(status: StatusCode, job: &JobRow, deduplicated: bool, wait: Option<u32
     )
 )]
 async fn show(service: Service, Id(id): Id, headers: HeaderMap) -> ApiResult {
-    let wait = wanted_wait(&headers, service.limits.wait_s);
+    let wait = requested_wait(&headers, service.limits.wait_s);
     let job = wait_for_end(&service, &id, wait.unwrap_or(0)).await?;
     let answer = answer(StatusCode::OK, &job.ok_or_else(no_such_job)?, false, wait)?;
     conditional::document(&headers, answer).await
@@ -214,7 +214,7 @@ async fn change(service: Service, Id(id): Id, request: Request) -> ApiResult {
     conditional::document(&HeaderMap::new(), answer).await
 }
 
-/// The hash of the state of a job, as a look at it tells.
+/// The hash of the state of a job, as a GET shows it.
 fn state_tag(job: &JobRow) -> ApiResult<String> {
     let state = serde_json::to_vec(&status_info(job, false)?).map_err(ApiError::internal)?;
     Ok(sha256_hex(&state))

@@ -33,7 +33,7 @@ pub struct KeyView {
     pub scopes: Vec<Scope>,
     /// RFC 3339, UTC.
     pub created: String,
-    /// When it ends by itself.
+    /// When it expires.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub expires: Option<String>,

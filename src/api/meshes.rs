@@ -72,8 +72,7 @@ impl UploadParameters {
 }
 
 /// Stores a mesh: VTU, VTP, VTK legacy, Gmsh, STL, PLY or OBJ, or an image: NRRD, NIfTI, MetaImage or the files of a
-/// DICOM series in one zip archive; told apart by content.
-/// Bytes that were stored before are not stored again.
+/// DICOM series in one zip archive; recognised by content. Bytes that were stored before are not stored again.
 #[utoipa::path(
     post, path = "/v1/meshes", operation_id = "upload_mesh", tag = "meshes", params(UploadParameters),
     request_body(description = "the file", content(
@@ -237,8 +236,8 @@ impl From<ContentFormat> for ExportFormat {
     }
 }
 
-/// The mesh as a file, written anew from what was understood of the upload, in its unit and frame; a volume mesh in
-/// RAS is written in LPS and marked so, because 3D Slicer reads no other frame from a VTU file that meshio reads.
+/// The mesh as a file, written from the parsed content of the upload, in its unit and frame; a volume mesh in RAS is
+/// written in LPS and marked so, because 3D Slicer reads no other frame from a VTU file that meshio reads.
 #[utoipa::path(
     get, path = "/v1/meshes/{id}/content", operation_id = "download_mesh", tag = "meshes",
     params(("id" = uuid::Uuid, Path, description = "the mesh"), ContentParameters),

@@ -194,7 +194,7 @@ impl Entry {
     }
 }
 
-/// The answer to what a key does not allow, noted without waiting for anybody who writes.
+/// Answer to a forbidden request, audited without waiting for writers.
 async fn refused(error: ApiError, intent: &AuditIntent) -> Response {
     let response = error.into_response();
     match intent.end(intent.object(), response.status().as_str(), true).await {

@@ -1,5 +1,5 @@
-//! The description as generators of clients read it best: names, types and required members that follow
-//! from the code, but that the derived schemas do not say or say in a way that loses the type.
+//! Corrections of the OpenAPI description for generators of clients: names, types and required members that follow from
+//! the code and that the derived schemas lack or blur.
 
 use serde_json::{Map, Value, json};
 

@@ -1,4 +1,4 @@
-//! Pages of other origins that browsers let in (CORS); none unless a setting names them.
+//! Cross-origin requests (CORS): none are allowed unless a setting names their origins.
 
 use std::time::Duration;
 

@@ -1,5 +1,4 @@
-//! The least pace of clients: bytes that have to move while the service waits for a client, in windows of time, so that
-//! what came quickly at first is no excuse for what comes later.
+//! Minimum transfer rate of clients, in windows of time: bytes that moved fast at first do not excuse a later stall.
 
 use std::io;
 use std::pin::Pin;

@@ -1,4 +1,5 @@
-//! The page for planners: the bundle that `web/build` makes of `web/`, within the program, so that it needs no other host.
+//! Web page for planners: the bundle that `web/build` makes of `web/`, within the program, so that it needs no other
+//! host.
 
 use axum::http::{HeaderMap, header};
 use axum::response::{Html, IntoResponse, Response};

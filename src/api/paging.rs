@@ -55,7 +55,7 @@ impl Page {
         Ok(Page { after, limit: limit as usize })
     }
 
-    /// One row more than the page holds tells whether there is another page.
+    /// One row more than the page holds shows whether there is another page.
     pub fn rows(&self) -> i64 {
         self.limit as i64 + 1
     }

@@ -9,7 +9,7 @@ use super::error::{ApiError, ApiResult};
 use crate::schema::ErrorCode;
 use crate::schema::key::is_key_id;
 
-/// The query, in which nothing unknown stands: a misspelt parameter would be a silent default.
+/// The query, without unknown parameters: a misspelt one would be a silent default.
 pub struct Parameters<T>(pub T);
 
 impl<T: DeserializeOwned, S: Sync> FromRequestParts<S> for Parameters<T> {
@@ -41,7 +41,7 @@ impl<S: Send + Sync> FromRequestParts<S> for Id {
     }
 }
 
-/// The id of a key: what stands between the two `_` of it. What is no such id names no key.
+/// The id of a key: the part between its two `_`.
 pub struct KeyId(pub String);
 
 impl<S: Send + Sync> FromRequestParts<S> for KeyId {

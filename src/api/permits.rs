@@ -1,4 +1,4 @@
-//! Permits of tenants for computation that takes a processor for long, first in first out within a tenant and round robin between them.
+//! Permits of tenants for long computations, first in first out within a tenant and round robin between them.
 
 use tokio::sync::oneshot;
 
@@ -43,7 +43,7 @@ impl Permit {
         let patient = move || {
             let _permit = permit.0;
             lower_priority();
-            // Nobody waits any more where the client has gone.
+            // The client has disconnected.
             let _ = done.send(work());
         };
         let thread = std::thread::Builder::new().name("parser".to_owned()).spawn(patient);

@@ -1,4 +1,4 @@
-//! Pages that are read and nothing else, in the colours of the page for planners and without a script.
+//! Static pages without a script, in the colours of the page for planners.
 
 /// Its colours, light and dark.
 const PALETTE: &str = include_str!("../../web/dist/assets/palette.css");

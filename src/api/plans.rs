@@ -1,4 +1,4 @@
-//! Plans that are kept with their case. A plan may as well stand in the job that carries it out.
+//! Plans stored with their case. A plan may as well be part of the job that uses it.
 
 use axum::extract::Request;
 use axum::http::{HeaderMap, StatusCode, header};

@@ -21,7 +21,7 @@ const LOOK: Duration = Duration::from_secs(1);
 pub const RETRY_AFTER_S: u32 = 1;
 
 /// The seconds that a client asks for, at most `cap`; `None` when it does not ask or asks for nonsense.
-pub fn wanted_wait(headers: &HeaderMap, cap: u32) -> Option<u32> {
+pub fn requested_wait(headers: &HeaderMap, cap: u32) -> Option<u32> {
     headers
         .get_all("prefer")
         .iter()
@@ -50,7 +50,7 @@ pub async fn wait_for_end(service: &Service, id: &str, seconds: u32) -> ApiResul
     loop {
         changes.mark_seen();
         let over = has_left || Instant::now() >= until || *stopping.borrow();
-        // Only who has waited long enough asks for all of it.
+        // Only after the wait is the whole row read.
         if over || store.job_status(id).await?.is_none_or(JobStatus::is_terminal) {
             return Ok(store.job(id).await?);
         }
@@ -70,7 +70,7 @@ pub(super) async fn successful(
     id: &str,
     headers: &HeaderMap,
 ) -> ApiResult<JobRow> {
-    let wait = wanted_wait(headers, service.limits.wait_s).unwrap_or(0);
+    let wait = requested_wait(headers, service.limits.wait_s).unwrap_or(0);
     let job = wait_for_end(service, id, wait).await?.ok_or_else(no_such_job)?;
     match job.status {
         JobStatus::Successful => Ok(job),
@@ -107,7 +107,7 @@ mod tests {
         let wait = |value: &str| {
             let mut headers = HeaderMap::new();
             headers.insert("prefer", value.parse().unwrap());
-            wanted_wait(&headers, 30)
+            requested_wait(&headers, 30)
         };
         assert_eq!(wait("wait=5"), Some(5));
         assert_eq!(wait("respond-async, wait=7"), Some(7));
@@ -116,6 +116,6 @@ mod tests {
         assert_eq!(wait("wait=99999999999999"), Some(30));
         assert_eq!(wait("wait=-1"), None);
         assert_eq!(wait("respond-async"), None);
-        assert_eq!(wanted_wait(&HeaderMap::new(), 30), None);
+        assert_eq!(requested_wait(&HeaderMap::new(), 30), None);
     }
 }

@@ -1,4 +1,4 @@
-//! Rate limit: how many requests a client may send in a minute, and headers that tell it how many are left
+//! Rate limit: requests of a client in a minute, and headers with the number that is left
 //! (draft-ietf-httpapi-ratelimit-headers-10).
 //!
 //! A bucket holds a minute's worth of requests and fills evenly, so that short bursts pass and long ones
@@ -37,12 +37,12 @@ pub struct RateAllowance {
 }
 
 impl Rates {
-    /// 0 means that nobody is counted.
+    /// 0 means no limit.
     pub fn new(per_minute: u32) -> Self {
         Rates { per_minute, full: Mutex::default() }
     }
 
-    /// Takes one request out of the bucket of a client; `None` where nobody is counted.
+    /// Takes one request out of the bucket of a client; `None` without a limit.
     pub fn take(&self, client: Client) -> Result<Option<RateAllowance>, ApiError> {
         self.take_at(client, Instant::now())
     }
@@ -80,7 +80,7 @@ impl Rates {
 }
 
 impl RateAllowance {
-    /// Writes what is left into the answer.
+    /// Writes the headers of the rate limit into the answer.
     pub fn tell(&self, response: &mut Response) {
         let policy = format!("\"requests\";q={};w={}", self.per_minute, WINDOW.as_secs());
         let left = format!("\"requests\";r={};t={}", self.requests, self.reset_s);

@@ -70,7 +70,7 @@ struct ReportParameters {
     /// Default: what the header Accept likes best, else `json`.
     #[param(inline)]
     format: Option<ReportFormat>,
-    /// Judges the study anew against the study of this job. Default: the baseline of its spec.
+    /// Judges the study again, against the study of this job. Default: the baseline of its spec.
     #[param(format = Uuid)]
     baseline: Option<String>,
 }

@@ -1,4 +1,4 @@
-//! Routes of the service, none without what it takes.
+//! Routes of the service, each with its scope and audit class.
 
 use axum::http::Method;
 use axum::middleware::from_fn;

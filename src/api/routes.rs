@@ -1,4 +1,4 @@
-//! All resources of the service with their descriptions and what each takes.
+//! All resources of the service with their descriptions, scopes and audit classes.
 
 use super::resources::Resources;
 

@@ -1,4 +1,4 @@
-//! The router of the service: the resources, and what surrounds each request.
+//! Router of the service: the resources and the middleware around them.
 
 use super::resources::Resources;
 use super::routes::resources;

@@ -1,5 +1,5 @@
-//! Connections of clients, none of which is kept for longer than it moves: a client that sends no request, half of one or
-//! takes nothing of its answer costs a descriptor, and the memory of the answer, for as long as `patience` only.
+//! HTTP server loop: connections are closed when they stall. A client that sends no request, half of one or takes
+//! nothing of its answer costs a descriptor, and the memory of the answer, for `patience` only.
 
 use std::net::SocketAddr;
 use std::pin::pin;

@@ -1,4 +1,4 @@
-//! What every request may use, scoped to the tenant of its caller.
+//! Shared state of request handlers, scoped to the tenant of the caller.
 
 use super::budget::{Budget, ByteLimits, ByteReservation, Owner};
 use super::client::Client;
@@ -37,12 +37,12 @@ pub struct Service {
     checking: FairSemaphore,
     listing: FairSemaphore,
     budget: Budget,
-    /// Who asks, for what is counted for each client.
+    /// The client, for limits on each client.
     client: Client,
     /// Of a request that may change something.
     intent: Option<AuditIntent>,
     pub(super) rates: Arc<super::rate::Rates>,
-    /// Who is believed, where no key is asked for.
+    /// Trusted hosts, where no key is required.
     pub(super) hosts: Option<Arc<Hosts>>,
     pub streams: super::streams::Streams,
 }
@@ -59,7 +59,7 @@ pub fn limits(config: &Config) -> Limits {
         client_bodies_bytes: config.client_bodies_bytes.max(config.upload_bytes as u64),
         ..Limits::default()
     };
-    // Who has no slots does not know the memory of those of other processes, unless it is told.
+    // A process without slots knows the slot memory of others only from its settings.
     if config.workers > 0 || config.slot_memory_bytes.is_some() {
         limits.slot_memory_mb = slot_bytes(config) as f64 / 1e6;
     }
@@ -76,7 +76,7 @@ impl Service {
             responses: Responses::new(store.clone(), config.response_cache_bytes),
             pictures: Pictures::default(),
             limits: Arc::new(limits.clone()),
-            store: store.with_most_waiting(limits.waiting_requests),
+            store: store.with_waiting_limit(limits.waiting_requests),
             library,
             streams: super::streams::Streams::new(limits.event_streams),
             parsing: FairSemaphore::new("parse", PARSED_AT_ONCE, waiting),
@@ -116,13 +116,14 @@ impl Service {
         self.parsing.acquire(self.store.tenant()).await
     }
 
-    /// The turn of this request to check a job or a case, which needs meshes that are parsed already, or small ones.
+    /// Permit of this request to check a job or a case, which needs meshes that are parsed already, or small ones.
     pub(super) async fn check_permit(&self) -> ApiResult<Permit> {
         self.checking.acquire(self.store.tenant()).await
     }
 
-    /// The turn of this request to list jobs, whose places are counted among all that wait: those who list without a pause
-    /// leave the database and the processors to others. Where a database answers late, who waits is told to come back.
+    /// Permit of this request to list jobs, whose positions are counted over the whole queue: frequent lists must not
+    /// take the database and the processors from others. Where the database answers late, the client gets
+    /// `Retry-After`.
     pub(super) async fn list_permit(&self) -> ApiResult<Permit> {
         let permit = self.listing.acquire(self.store.tenant());
         tokio::time::timeout(LIST_PATIENCE, permit)
@@ -130,7 +131,7 @@ impl Service {
             .unwrap_or_else(|_| Err(ApiError::unavailable()))
     }
 
-    /// Until the client of a request has gone for which something was changed. Any other ends with its client.
+    /// Waits until the client of a request with changes disconnects; any other request ends with its client.
     pub(super) async fn client_disconnected(&self) {
         match &self.intent {
             Some(intent) => intent.left().await,

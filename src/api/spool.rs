@@ -1,5 +1,5 @@
-//! Bodies of requests on their way in: small ones in memory, others in a file without a name in the data folder, which is
-//! gone when nobody has it open any more. Their hash is taken while they come.
+//! Spooled request bodies: small ones in memory, others in an unnamed file in the data folder, which is gone when it is
+//! closed. Their hash is computed as they arrive.
 
 use std::fs::File;
 use std::io::{Read as _, Seek as _, Write as _};

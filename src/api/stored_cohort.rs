@@ -1,4 +1,4 @@
-//! A stored cohort that a job names: its members as they are, each of which may be used so.
+//! A stored cohort that a job names: its present members, each with consent for this use.
 
 use std::collections::BTreeMap;
 

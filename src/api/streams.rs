@@ -1,4 +1,4 @@
-//! Streams of events that are open: some for each client, and none any more when the process is to stop.
+//! Open event streams: a limited number for each client, and none when the process is to stop.
 
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, PoisonError};

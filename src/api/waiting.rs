@@ -1,5 +1,5 @@
-//! Jobs on a case whose mesh is being made: accepted with what can be checked without it, and claimed once it is there. Their
-//! rows lack the case, which the claim puts in.
+//! Jobs on a case whose mesh is being made: accepted with the checks that need no mesh, and claimed once it is there.
+//! Their rows lack the case, which the claim puts in.
 
 use serde_json::{Value, json};
 

@@ -197,7 +197,7 @@ pub fn run(arguments: &Arguments) -> Result<(), AdminError> {
 async fn open(settings: &Settings) -> Result<Store, AdminError> {
     let given = settings.given()?;
     let config = Config::without_listener(|name| given.get(name))?;
-    Ok(Store::connect(&config.places).await?.with_most_keys(config.most_keys))
+    Ok(Store::connect(&config.places).await?.with_key_limit(config.most_keys))
 }
 
 async fn key(command: &KeyCommand) -> Result<(), AdminError> {
@@ -271,7 +271,7 @@ fn no_key(id: &str) -> AdminError {
     AdminError::Refused(format!("the tenant has no key {id:?} that is in force"))
 }
 
-/// Who does what is done on the command line.
+/// Actor of changes on the command line, for the audit log.
 const COMMAND: &str = "command";
 
 async fn audit(store: &Store, mut after: i64) -> Result<(), AdminError> {

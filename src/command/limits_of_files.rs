@@ -2,8 +2,8 @@
 
 use tokio::signal::unix::{SignalKind, signal};
 
-/// Makes such a write an error of that write, as one on a full disk is, and not the end of the process: whoever listens
-/// to the signal is not ended by it. What listens stays when the runtime that it needs is gone.
+/// Turns such a write into an error of that write, as on a full disk, and not the end of the process: a signal with a
+/// listener does not kill. What listens stays when the runtime that it needs is gone.
 pub fn ignore_file_size_signal() -> std::io::Result<()> {
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
     let _inside = runtime.enter();

@@ -1,4 +1,4 @@
-//! `facies optimise`: the plan that brings the skin nearest to where it is wanted.
+//! `facies optimise`: the plan that brings the skin nearest to its targets.
 
 use std::path::PathBuf;
 

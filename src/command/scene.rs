@@ -1,4 +1,4 @@
-//! The arguments that say what is to be predicted: a file with the documents, or a mesh and a plan.
+//! Arguments of a prediction: a file with the documents, or a mesh and a plan.
 
 use std::path::{Path, PathBuf};
 

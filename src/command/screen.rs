@@ -16,7 +16,7 @@ use crate::schema::predict::planned::ContactMapDocument;
 use crate::schema::predict::result::FileDocument;
 use mechanics::progress::{Phase, Progress};
 
-/// Where nobody watches a terminal, a long phase is told so often.
+/// Interval of progress lines of a long phase without a terminal.
 const LINE_EVERY: Duration = Duration::from_secs(10);
 
 /// The phase and the residual on standard error: one line that changes on a terminal, a line for each phase elsewhere.

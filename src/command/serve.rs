@@ -29,7 +29,7 @@ const CHAIN_EVERY: Duration = Duration::from_secs(2);
 const WIPE_EVERY: Duration = Duration::from_secs(2);
 /// How long the store may take to be closed.
 const LAST_WORDS: Duration = Duration::from_secs(2);
-/// Between two looks for bytes that nothing refers to.
+/// Between two garbage collections.
 const SWEEP_EVERY: Duration = Duration::from_secs(3600);
 
 #[derive(Debug, thiserror::Error)]
@@ -84,13 +84,13 @@ pub fn run(arguments: &Arguments) -> Result<(), ServeError> {
     if let Err(error) = runtime.block_on(closing) {
         tracing::warn!(%error, "the database was not closed");
     }
-    // What still computes for a request that nobody waits for ends with the process.
+    // Computations for abandoned requests end with the process.
     runtime.shutdown_background();
     Ok(())
 }
 
-/// Closes the store, so that its files hold nothing that was erased. Who is cut off in the middle of a request is not
-/// waited for long.
+/// Closes the store, so that its files hold nothing that was erased. Interrupted requests delay this by seconds at
+/// most.
 pub async fn close(store: &Store) {
     if tokio::time::timeout(LAST_WORDS, store.close()).await.is_err() {
         tracing::warn!("the database was not closed in time");
@@ -104,7 +104,7 @@ pub async fn close(store: &Store) {
 /// A server that listens and whose workers work.
 pub struct Server {
     pub address: SocketAddr,
-    /// Where those who run the service look.
+    /// Address of the admin listener.
     pub admin: Option<SocketAddr>,
     listener: TcpListener,
     service: Service,
@@ -163,14 +163,14 @@ impl Server {
 pub async fn open(config: &Config) -> Result<Store, ServeError> {
     metrics::start()?;
     traces::start(config.traces.as_deref())?;
-    let store = Store::connect(&config.places).await?.with_most_keys(config.most_keys);
+    let store = Store::connect(&config.places).await?.with_key_limit(config.most_keys);
     start_garbage_collection(&store).await?;
     start_audit_chaining(&store);
     start_wiping(&store);
     Ok(store)
 }
 
-/// Listens for those who run the service, where the settings say so.
+/// Starts the admin listener, where a setting names its address.
 pub async fn listen_for_admin(
     config: &Config,
     store: &Store,
@@ -180,10 +180,10 @@ pub async fn listen_for_admin(
     Ok(Some(listening.map_err(|source| ServeError::Listen { address, source })?))
 }
 
-/// Says where the admin listener is, for programs that started this one with port 0.
+/// Prints the address of the admin listener, for programs that started this one with port 0.
 pub fn tell_admin(admin: Option<SocketAddr>) {
     if let Some(address) = admin {
-        // Whoever started this program may have stopped reading.
+        // An error: the parent no longer reads.
         let _ = writeln!(std::io::stdout(), "metrics on http://{address}/metrics");
     }
 }
@@ -206,7 +206,7 @@ pub fn start_workers(
     Ok(Workers::start(store, config, &work, runtime)?)
 }
 
-/// What the processes of the slots keep to. Meshes that they keep take a quarter of their memory at most.
+/// Limits of the processes of slots. Cached meshes take a quarter of their memory at most.
 fn slot_settings(config: &Config, limits: &Limits) -> Settings {
     let memory_bytes = slot_bytes(config);
     let share = config.mesh_cache_bytes / config.workers.max(1);
@@ -218,7 +218,7 @@ fn slot_settings(config: &Config, limits: &Limits) -> Settings {
     }
 }
 
-/// Sweeps what dead processes left, at once and then every hour.
+/// Collects garbage of dead processes, at once and then every hour.
 async fn start_garbage_collection(store: &Store) -> Result<(), StoreError> {
     match collect_garbage_at_start(store).await {
         // What is stored is served all the same, and can be erased.
@@ -241,13 +241,13 @@ async fn collect_garbage_at_start(store: &Store) -> Result<(), StoreError> {
     Ok(())
 }
 
-/// Brings what was erased out of the files of an embedded database, soon after.
+/// Wipes erased data from the files of an embedded database, soon after.
 fn start_wiping(store: &Store) {
     let store = store.clone();
     tokio::spawn(async move {
         while store.is_open_after(WIPE_EVERY).await {
             match store.wipe().await {
-                // Who closed it meanwhile wipes it last.
+                // A store that is being closed is wiped there.
                 Err(error) if !store.is_closing() => {
                     tracing::warn!(%error, "what was erased is in the log of the database still");
                 }
@@ -257,7 +257,7 @@ fn start_wiping(store: &Store) {
     });
 }
 
-/// Takes what was done into the chain of the audit log, soon after: what is in it cannot be changed unseen.
+/// Extends the chain of the audit log by ended actions: changes of chained rows show.
 fn start_audit_chaining(store: &Store) {
     let store = store.clone();
     tokio::spawn(async move {

@@ -1,4 +1,4 @@
-//! `facies study`: methods side by side, how long each takes and how far each is from the truth.
+//! `facies study`: comparison of methods, time and error of each.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};

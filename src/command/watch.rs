@@ -1,5 +1,4 @@
-//! The budget of a job on the command line, kept from beside the work: what a worker does to the process of a slot,
-//! this process does to itself.
+//! Watchdog of a job's budget on the command line: it does to this process what a worker does to the process of a slot.
 //!
 //! The work looks at its budget of time between iterations, and bounds the memory of its solver by an estimate. What
 //! neither notices, a factorisation or a structure that grows beyond its estimate, is ended here.

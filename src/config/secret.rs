@@ -1,4 +1,4 @@
-//! Secrets that no log shows, and why settings are refused.
+//! Secrets that no log shows, and errors of settings.
 
 use std::net::SocketAddr;
 use std::path::PathBuf;
@@ -12,7 +12,7 @@ impl Secret {
         Secret(text)
     }
 
-    /// The text itself, for those who have to know it.
+    /// The secret itself.
     pub fn reveal(&self) -> &str {
         &self.0
     }

@@ -146,7 +146,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_bucket_and_a_folder_are_told_apart() {
+    fn a_bucket_and_a_folder_are_distinguished() {
         let bucket = |bucket: &str, prefix: &str| BlobLocation::Bucket {
             bucket: bucket.into(),
             prefix: prefix.into(),

@@ -57,7 +57,7 @@ impl<'a> Observed<'a> {
         }
     }
 
-    /// Why work that was told to stop was told so.
+    /// Reason of a cancellation: the caller, or the budget.
     pub fn stopped(&self) -> JobError {
         if self.inner.is_cancelled() { JobError::Cancelled } else { self.over_budget() }
     }

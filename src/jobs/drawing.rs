@@ -1,4 +1,4 @@
-//! The pictures and reports of a job that has ended, drawn from what it was made of and what it wrote.
+//! Pictures and reports of a finished job, drawn from its input and its files.
 
 use std::sync::Arc;
 

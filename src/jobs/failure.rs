@@ -1,4 +1,4 @@
-//! Failures of jobs, in the words of the API.
+//! Failures of jobs, with the codes of the API.
 
 use serde_json::{Map, Value, json};
 
@@ -15,7 +15,7 @@ use mechanics::prediction::{InvertedCell, ModelError, SolverError};
 use mechanics::study::StudyError;
 use mechanics::validation::StatisticsError;
 
-/// Residuals of a diverged solver that are told; a history has one for each iteration.
+/// Residuals of a diverged solver that are reported; a history has one for each iteration.
 const TOLD_RESIDUALS: usize = 200;
 
 #[derive(Debug, thiserror::Error)]
@@ -161,7 +161,7 @@ fn class_of(error: &AnatomyError) -> ErrorClass {
     }
 }
 
-/// What is told of an equilibrium that was not found.
+/// Error document of an equilibrium that was not found.
 fn no_equilibrium(error: &ModelError) -> Value {
     match error {
         ModelError::Inverted(InvertedCell { cell }) => json!({ "element": cell }),

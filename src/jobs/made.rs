@@ -1,4 +1,4 @@
-//! What goes wrong with patients that the program makes itself.
+//! Errors of patients that the program makes itself.
 
 use super::clock::Observed;
 use super::failure::JobError;

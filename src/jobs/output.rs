@@ -8,7 +8,7 @@ use crate::schema::predict::result::{FileDocument, ResultDocument};
 use crate::schema::{Limits, WarningDocument};
 use mechanics::mesh::Frame;
 
-/// What a job made.
+/// Output of a job.
 #[derive(Clone, Debug)]
 pub struct JobOutput {
     /// The content of `result.json`.

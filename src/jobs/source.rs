@@ -1,4 +1,4 @@
-//! Source of the meshes of a job: the service keeps them by content, the command line reads files.
+//! Source of the meshes of a job: content-addressed in the service, files on the command line.
 
 use std::sync::Arc;
 

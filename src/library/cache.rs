@@ -1,10 +1,10 @@
-//! Cache of what was read, by the hash of its stored bytes; the least recently used is given up first (LRU).
+//! Cache of parsed blobs by their hash, least recently used out first (LRU).
 
 use std::collections::HashMap;
 
 use crate::jobs::StoredShape;
 
-/// What takes memory.
+/// Values with a size in memory.
 pub trait InMemory {
     /// About how much, in bytes.
     fn size(&self) -> usize;

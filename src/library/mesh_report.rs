@@ -18,7 +18,7 @@ const HEAD_VOXELS: usize = 16;
 /// Segmentation programs make no more regions.
 const MOST_REGIONS: usize = 500;
 
-/// What a mesh file holds, in the units of the file.
+/// Content of a mesh file, in the units of the file.
 pub fn mesh_report(read: &ReadMesh) -> MeshReport {
     let mut warnings: Vec<Warning> = read.warnings.clone();
     let (kind, (low, high), nodes, triangles) = match &read.mesh {

@@ -20,7 +20,7 @@ use mechanics::mesh::Frame;
 /// The result file that holds the predicted skin with its node numbers.
 const PREDICTED_SKIN: &str = "skin.vtp";
 
-/// What is known of a stored mesh beside its bytes.
+/// Description of a stored mesh beside its bytes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct MeshCard {
     /// The hash of the stored bytes.
@@ -93,7 +93,7 @@ impl Library {
         self.cache().insert(blob, mesh);
     }
 
-    /// Gives up a mesh that was deleted.
+    /// Drops a deleted mesh from the cache.
     pub fn forget(&self, blob: &str) {
         self.cache().forget(blob);
     }

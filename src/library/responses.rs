@@ -1,5 +1,4 @@
-//! The plan responses of the service: which one answers for a case as it is now, and its columns, kept in
-//! memory while there is room.
+//! Plan responses of the service: the one that is valid for the present case, and its columns, cached in memory.
 
 use std::collections::{BTreeMap, HashMap};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -21,7 +20,7 @@ use mechanics::mesh::{TriangleSurface, Vector};
 use mechanics::prediction::{Skin, skin_overlap};
 use mechanics::response::{Amounts, COLUMNS_PER_SEGMENT, Linearity, QuadraticForm, Response};
 
-/// Jobs whose verdict is remembered; beyond that all are judged anew.
+/// Jobs with a cached verdict; beyond that all are checked again.
 const MOST_VERDICTS: usize = 10_000;
 
 /// Why no response answers.

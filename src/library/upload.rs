@@ -1,4 +1,4 @@
-//! Conversion of uploaded bytes to a mesh that can be stored: read, checked, reported, and written anew by our own
+//! Conversion of uploaded bytes to a mesh that can be stored: read, checked, reported, and written again by our own
 //! writer, so that headers and comments, which often name the patient, stay behind.
 
 use bytes::Bytes;
@@ -21,7 +21,7 @@ use mechanics::format::{
 };
 use mechanics::mesh::{Frame, TriangleSurface, VolumeMesh};
 
-/// What an upload says about its bytes.
+/// Statements of an upload about its bytes.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Statement {
     pub units: Option<LengthUnit>,
@@ -86,7 +86,7 @@ pub fn upload_made(mesh: &MadeMesh) -> Result<Upload, Problem> {
     validate_upload(ReadBytes { read, bytes, sha256, told }, &statement, false)
 }
 
-/// What was read as a mesh that can be stored.
+/// Checks a parsed mesh and converts it for the store.
 fn validate_upload(
     received: ReadBytes,
     statement: &Statement,
@@ -223,7 +223,7 @@ pub fn export(mesh: &StoredMesh, format: ExportFormat) -> Result<Vec<u8>, Proble
     written.map_err(not_written)
 }
 
-/// What a stored mesh can be fetched as.
+/// Formats of a stored mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ExportFormat {
     Vtu,

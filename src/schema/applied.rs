@@ -1,4 +1,4 @@
-//! A plan applied to a response: what is asked, and what is answered.
+//! A plan applied to a response: request and answer.
 
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
@@ -35,7 +35,7 @@ pub struct AppliedDocument {
     pub not_measured: Vec<String>,
 }
 
-/// What is told beside the displacement, in headers where the body is binary.
+/// Estimates and warnings beside the displacement, in headers where the body is binary.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct AppliedSummary {
     /// The largest displacement of a skin node.
@@ -79,7 +79,7 @@ fn first_order() -> u8 {
 }
 
 impl AppliedSummary {
-    /// `beyond` of a response of second order; `nonlinearity` of the movements, told where nothing else acts.
+    /// `beyond` of a response of second order; `nonlinearity` of the movements, reported where nothing else acts.
     pub fn new(displacement: &[Vector], beyond: Option<BeyondLinear>, linear: &LinearPart) -> Self {
         let LinearPart { nonlinearity, acts_inside } = *linear;
         let squared = displacement.iter().map(Vector::norm_squared).fold(0.0, f64::max);

@@ -41,7 +41,7 @@ macro_rules! job_kinds {
         }
 
         impl JobKind {
-            /// Every kind, in the order in which they are told.
+            /// Every kind, in the order of lists.
             pub const ALL: &[JobKind] = &[$(JobKind::$kind,)+];
 
             fn row(self) -> Row {
@@ -129,7 +129,7 @@ impl JobKind {
     }
 }
 
-/// The body of `POST /v1/jobs`, told apart by `kind`.
+/// The body of `POST /v1/jobs`, distinguished by `kind`.
 #[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
 #[serde(untagged)]
 pub enum JobDocument {

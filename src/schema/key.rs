@@ -1,4 +1,4 @@
-//! Keys as they are written and what they allow.
+//! Format and scopes of keys.
 
 use std::collections::BTreeSet;
 
@@ -104,12 +104,12 @@ pub struct KeyDocument {
 #[serde(deny_unknown_fields)]
 pub struct RotationDocument {
     /// How many hours the old key can still be used.
-    #[serde(default = "usual_overlap")]
+    #[serde(default = "default_overlap_s")]
     #[schema(default = 24, minimum = 0, maximum = 8760)]
     pub overlap_h: i64,
 }
 
-fn usual_overlap() -> i64 {
+fn default_overlap_s() -> i64 {
     24
 }
 
@@ -162,7 +162,7 @@ fn is_hexadecimal(text: &str, bytes: usize) -> bool {
 /// What names of tenants are.
 pub const TENANT_NAMES: &str = "a tenant has 1 to 64 of a to z, 0 to 9, - and .";
 
-/// For how long what nobody changes may be kept before it is erased.
+/// Bounds of the retention of unchanged resources.
 pub const RETENTION_DAYS: std::ops::RangeInclusive<i64> = 1..=36_500;
 
 /// Whether a name is one of [`TENANT_NAMES`].

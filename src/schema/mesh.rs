@@ -1,4 +1,4 @@
-//! An uploaded mesh or image: what the file holds and what a reader of it must know.
+//! Report of an uploaded mesh or image: its content and warnings.
 
 use std::collections::BTreeMap;
 

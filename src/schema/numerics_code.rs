@@ -1,4 +1,4 @@
-//! The codes of what the numerics say. They have words of their own, which are those of the codes.
+//! Error codes of the numerics.
 
 use super::code::ErrorCode;
 use mechanics::anatomy::{AnatomyError, SkinScanError};

@@ -1,4 +1,4 @@
-//! Repair of distorted cells: how far nodes may go, and what came of it.
+//! Repair of distorted cells: bounds of the moves of nodes, and report.
 
 use std::sync::Arc;
 

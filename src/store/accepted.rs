@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use super::database::{Transaction, is_reference, query};
 use super::events::record;
-use super::job_tags::put_on;
+use super::job_tags::insert_tags;
 use super::membership::learn;
 use super::{Store, StoreError};
 use crate::schema::engine::EngineDocument;
@@ -39,7 +39,7 @@ pub struct NewJob {
     pub waits_for: Option<String>,
 }
 
-/// What became of a job that was to be accepted.
+/// Outcome of the acceptance of a job.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Enqueued {
     Accepted,
@@ -52,7 +52,7 @@ pub enum Enqueued {
     NotMeshed,
 }
 
-/// What was dismissed, lost, or stopped by its budget may be asked for anew.
+/// A dismissed, lost or over-budget job may be accepted again.
 const KNOWN: &str = "SELECT id, status = 'dismissed' OR \
      status = 'failed' AND COALESCE(error_class, '') IN ('budget', 'infrastructure') \
      FROM jobs WHERE spec_hash = $1 AND tenant = $2";
@@ -111,7 +111,7 @@ impl Store {
         }
     }
 
-    /// What no two jobs have in common: hash of the inputs and ids of the cases, with which the job is erased.
+    /// Unique key of a job: hash of the inputs and ids of the cases, with which the job is erased.
     fn key(&self, job: &NewJob) -> String {
         let cases: BTreeSet<&String> = job.case_id.iter().chain(&job.shared_cases).collect();
         let mut key: String = cases.into_iter().map(|case| format!("{case} ")).collect();
@@ -184,7 +184,7 @@ impl Store {
         if inserted == 0 {
             return Ok(false);
         }
-        put_on(transaction, &job.id, &job.tags).await?;
+        insert_tags(transaction, &job.id, &job.tags).await?;
         for case in &job.shared_cases {
             query("INSERT INTO job_cases (job_id, case_id) VALUES ($1, $2) ON CONFLICT DO NOTHING")
                 .bind(&job.id)

@@ -1,5 +1,5 @@
-//! The audit log: what was asked for that changes something. Rows are added, never changed; each carries a hash of
-//! itself and of the hash before it, so that a row that was changed, taken out or put in shows.
+//! Audit log of requests that change something. Rows are added, never changed; each carries a hash of itself and of the
+//! hash before it, so that a row that was changed, removed or inserted shows.
 
 use super::audited_action::AuditedAction;
 use super::database::{Row, query};
@@ -18,7 +18,7 @@ pub struct AuditRow {
     pub hash: String,
 }
 
-/// What a look at the whole log found.
+/// Result of the check of the whole log.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Chain {
     /// So many rows, and the hash of the last one: kept elsewhere, it shows whether the log was written anew.
@@ -35,7 +35,7 @@ const AFTER: &str = "SELECT number, at, tenant, actor, action, object, outcome, 
 const AT_ONCE: i64 = 1000;
 
 impl AuditRow {
-    /// Fields are told apart by a byte that none of them has.
+    /// Fields are distinguished by a byte that none of them has.
     pub(super) fn hash_after(&self, previous: &str) -> String {
         let AuditedAction { tenant, actor, action, object, request } = &self.audited;
         let (number, at) = (self.number.to_string(), self.at.to_string());

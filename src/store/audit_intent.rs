@@ -1,5 +1,4 @@
-//! A request on its way into the audit log: noted before it changes something for the first time, and as long as nothing
-//! was changed its client may leave.
+//! Audit intent of a request: recorded before its first change. Until then its client may disconnect and end it.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
@@ -11,7 +10,7 @@ use super::database::BeforeWriting;
 use super::open_actions::OpenAction;
 use super::{Store, StoreError};
 
-/// What a request may do, and how far it is.
+/// The audit intent of one request, and its stage.
 #[derive(Clone)]
 pub struct AuditIntent(Arc<Inner>);
 
@@ -19,7 +18,7 @@ struct Inner {
     store: Store,
     audited: AuditedAction,
     stage: Mutex<Stage>,
-    /// Of several that want to write first, one notes it.
+    /// Serialises first writes, so that the intent is recorded once.
     alone: tokio::sync::Mutex<()>,
     has_left: watch::Sender<bool>,
 }
@@ -46,8 +45,8 @@ impl Store {
         }))
     }
 
-    /// The same store scoped to a tenant that asks: it takes its turns with other tenants when it writes, after what
-    /// it does was noted, where it is to be.
+    /// The same store scoped to the tenant of a request: it takes turns with other tenants when it writes, after the
+    /// intent was recorded, if there is one.
     pub fn asked_by(&self, tenant: &str, intent: Option<&AuditIntent>) -> Store {
         let database = self.database.in_line(tenant);
         let database = match intent {
@@ -65,7 +64,7 @@ impl BeforeWriting for AuditIntent {
 }
 
 impl AuditIntent {
-    /// Notes that it begins, unless that was noted.
+    /// Records the intent, once.
     pub async fn begin(&self) -> Result<(), StoreError> {
         let _alone = self.0.alone.lock().await;
         if !matches!(*self.0.lock(), Stage::NothingDone) {
@@ -88,7 +87,7 @@ impl AuditIntent {
         }
     }
 
-    /// The client has gone. False where something was begun, which goes on.
+    /// Marks that the client disconnected. False where a change was begun, which goes on.
     pub fn leave(&self) -> bool {
         self.0.has_left.send_replace(true);
         let mut stage = self.0.lock();
@@ -99,9 +98,9 @@ impl AuditIntent {
         may_leave
     }
 
-    /// Until the client has gone.
+    /// Waits until the client disconnects.
     pub async fn left(&self) {
-        // Nobody drops the sender before this.
+        // The sender lives as long as `self`.
         let _ = self.0.has_left.subscribe().wait_for(|left| *left).await;
     }
 
@@ -139,7 +138,7 @@ impl Inner {
         }
     }
 
-    /// Whether somebody is there for whom it is begun. From now on it is.
+    /// Claims the right to record the intent; false where the client has disconnected or it was recorded.
     fn claim_intent(&self) -> bool {
         let mut stage = self.lock();
         let is_wanted = matches!(*stage, Stage::NothingDone);

@@ -1,8 +1,8 @@
-//! An audited action: something that is done and noted in the audit log.
+//! An audited action: a change that is recorded in the audit log.
 
 use super::database::Row;
 
-/// What somebody does.
+/// An action of a caller or an operator.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct AuditedAction {
     pub tenant: String,

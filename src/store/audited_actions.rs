@@ -1,5 +1,4 @@
-//! What is done that changes something: noted before it begins, and taken into the chain of the audit log once it has
-//! ended.
+//! Audited actions: recorded before they begin, and taken into the chain of the audit log once they have ended.
 
 use super::audit::AuditRow;
 use super::audited_action::AuditedAction;
@@ -8,10 +7,10 @@ use super::notes::{Acknowledgement, Note, StartCondition};
 use super::open_actions::{End, OpenAction};
 use super::{Store, StoreError};
 
-/// How an audited action ended of which nobody said so: whoever did it died, or lost the database for an hour.
+/// Outcome of an audited action without a reported one: its process died, or lost the database for an hour.
 const UNKNOWN: &str = "unknown";
 
-/// Whoever does it says every minute that he lives.
+/// Open actions whose last sign of life is older than a minute.
 const LIVED: &str =
     "SELECT id FROM deeds WHERE outcome IS NULL AND alive < (SELECT now_ms FROM clock) - 60000";
 const LIVE: &str = "UPDATE deeds SET alive = (SELECT now_ms FROM clock) WHERE id = $1";
@@ -35,8 +34,8 @@ const AT_ONCE: i64 = 100;
 const LINE: &str = "the audit log";
 
 impl Store {
-    /// Notes what is about to be done. Whoever cannot note it must not do it. The note reaches the disk no later than
-    /// what is done.
+    /// Records an action before it begins; without the record it must not begin. The record reaches the disk no later
+    /// than the change.
     pub async fn begin_action(&self, audited: &AuditedAction) -> Result<OpenAction, StoreError> {
         self.begin_wanted(audited, Box::new(|| true)).await
     }
@@ -95,7 +94,7 @@ impl Store {
         self.notes.note(&self.of_audit(), Note::End { id }, Box::new(|| true))
     }
 
-    /// Where the audit log is written: in a line of its own, and noted by nobody.
+    /// The database for the audit log: a queue of its own, and no audit of its writes.
     fn of_audit(&self) -> Database {
         self.database.in_line(LINE)
     }
@@ -129,7 +128,7 @@ impl Store {
     /// Takes the audited actions that have ended into the chain; returns how many.
     pub async fn chain_actions(&self) -> Result<usize, StoreError> {
         let mut chained = 0;
-        // Most often there is nothing, and nobody has to be kept from writing to see that.
+        // Most often there is nothing, which a read shows without blocking writers.
         while !query(ENDED).bind(1).fetch_all(self.database.reader()).await?.is_empty() {
             chained += self.chain_some().await?;
         }
@@ -166,7 +165,7 @@ impl Store {
     }
 }
 
-/// What became of a note.
+/// Waits for the acknowledgement of a row.
 async fn heard(told: Acknowledgement) -> Result<(), StoreError> {
     told.await.unwrap_or(Err(StoreError::Interrupted))
 }

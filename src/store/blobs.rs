@@ -77,7 +77,7 @@ impl Blobs {
         Ok(Blobs { objects })
     }
 
-    /// Stores bytes durably. Nobody else ever stores other bytes in the same place.
+    /// Stores bytes durably, at a place that never holds other bytes.
     pub async fn put(&self, place: &str, bytes: Bytes) -> Result<(), StoreError> {
         self.objects.put(&place.into(), PutPayload::from(bytes)).await?;
         Ok(())

@@ -23,7 +23,7 @@ pub struct NewCase {
     pub meshing: Option<NewJob>,
 }
 
-/// What became of a case that was to be stored.
+/// Outcome of storing a case.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AddedCase {
     Stored,
@@ -55,7 +55,7 @@ pub struct CaseMeshing {
     pub error: Option<String>,
 }
 
-/// What became of a change that names the version it knows.
+/// Outcome of a conditional change.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Change {
     Done,

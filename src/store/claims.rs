@@ -1,4 +1,4 @@
-//! Claims: which job a worker gets next.
+//! Claims: the choice of the next job for a worker.
 
 use std::time::Duration;
 
@@ -26,7 +26,7 @@ pub struct Claim {
 const IN_TURN: &str = "SELECT name FROM tenants WHERE EXISTS (SELECT 1 FROM jobs \
        WHERE jobs.tenant = tenants.name AND jobs.status = 'accepted' AND jobs.waits_for = '' AND jobs.numerics <= $1 \
        AND jobs.claimable_from <= (SELECT now_ms FROM clock)) ORDER BY served, name";
-/// The oldest of the most urgent jobs of a tenant. One whose row somebody else holds is left to him.
+/// The oldest of the most urgent jobs of a tenant, without rows that another transaction has locked.
 const CLAIM: &str = "UPDATE jobs SET status = 'running', attempt = attempt + 1, lease_token = $1, \
      lease_expires = (SELECT now_ms FROM clock) + $2, heartbeat = (SELECT now_ms FROM clock), \
      phase = NULL, iteration = NULL, residual = NULL, \
@@ -35,14 +35,14 @@ const CLAIM: &str = "UPDATE jobs SET status = 'running', attempt = attempt + 1, 
        AND claimable_from <= (SELECT now_ms FROM clock) ORDER BY priority, id LIMIT 1 \
        FOR UPDATE SKIP LOCKED) \
      AND status = 'accepted' RETURNING id, attempt, tenant, kind, case_id, document, created, started, traceparent";
-/// Who holds the row of the tenant serves it as well.
+/// Skipped while another worker, which has the row of the tenant locked, serves it.
 const SERVED: &str = "UPDATE tenants SET served = (SELECT MAX(served) FROM tenants) + 1 \
      WHERE name = (SELECT name FROM tenants WHERE name = $1 FOR UPDATE SKIP LOCKED)";
 
 impl Store {
-    /// Takes an accepted job, if there is one, of the tenant that has waited longest for its turn: the oldest of its most
-    /// urgent ones that this program may run (see [`super::engines`]). Two workers never take the same. Where everything
-    /// that a tenant has is held by somebody else, the turn goes to the next.
+    /// Takes an accepted job, if there is one, of the tenant that has waited longest for its turn: the oldest of its
+    /// most urgent ones that this program may run (see [`super::engines`]). Two workers never take the same. Where all
+    /// jobs of a tenant are locked by other workers, the next tenant is served.
     pub async fn claim(&self, lease: Duration) -> Result<Option<Claim>, StoreError> {
         let numerics = i64::from(EngineDocument::this().numerics);
         let tenants = query(IN_TURN).bind(numerics).fetch_all(self.database.reader()).await?;

@@ -1,4 +1,5 @@
-//! Cohorts: operated cases that a tenant learns from, those that left, and what was learned from which version.
+//! Cohorts: operated cases that a tenant learns from, members that left, and models with the version they were learned
+//! from.
 
 use super::cases::{AFTER_ALL, Change};
 use super::database::{Row, Transaction, is_duplicate, is_reference, query};
@@ -204,7 +205,7 @@ impl Store {
         rows.iter().map(row).collect()
     }
 
-    /// What was learned from a cohort, newest first.
+    /// Models learned from a cohort, newest first.
     pub async fn cohort_models(&self, id: &str) -> Result<Vec<CohortModelRow>, StoreError> {
         let rows = query(MODELS).bind(id).bind(self.tenant());
         let rows = rows.fetch_all(self.database.reader()).await?;

@@ -1,4 +1,4 @@
-//! Versions of the program: which may run which job while several work on one database.
+//! Versions of the program: which may run which job while several share one database.
 //!
 //! A job carries the revision of the numbers of the program that accepted it. A program with an earlier revision leaves it
 //! alone: it would put other numbers under a hash that promises later ones. One with the same or a later revision runs it,

@@ -1,5 +1,4 @@
-//! The events of a job: each visible state that it was in, written in the transaction that changed it, so
-//! that who reads them later misses none.
+//! Events of a job: each visible state, written in the transaction that changed it, so that a later reader misses none.
 
 use super::database::{Transaction, query};
 use super::{Store, StoreError};
@@ -19,7 +18,7 @@ pub struct EventRow {
     pub attempt: i64,
 }
 
-/// Nothing where the last event says the same. Whoever changes a job holds its row, so numbers are not taken twice.
+/// No row where the last event says the same. Every change locks the row of its job, so that numbers are unique.
 const RECORD: &str = "INSERT INTO job_events \
      (job_id, number, at, status, phase, progress, iteration, residual, attempt) \
      SELECT jobs.id, COALESCE(last.number, 0) + 1, jobs.updated, jobs.status, jobs.phase, \
@@ -87,7 +86,7 @@ impl Store {
     /// Writes down the state of a job that was accepted before events were.
     pub async fn record_job(&self, job: &str) -> Result<(), StoreError> {
         let mut transaction = self.database.begin().await?;
-        // Who changes a job holds its row, and so does who writes down its state.
+        // Every change of a job, and every event, locks its row.
         let lock = query("SELECT 1 FROM jobs WHERE id = $1 FOR UPDATE").bind(job);
         lock.fetch_optional(&mut transaction).await?;
         record(&mut transaction, job).await?;

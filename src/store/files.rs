@@ -1,5 +1,4 @@
-//! Blobs as files that are read piece by piece, however large they are: compared with their hash before the first piece is
-//! handed out.
+//! Streaming of blobs as files of any size: compared with their hash before the first piece is handed out.
 
 use std::fs::File;
 use std::io::{Read as _, Seek as _, Write as _};

@@ -1,5 +1,4 @@
-//! Consistency check of rows and bytes, after a restore from a backup or a fault of a disk, and what can be
-//! mended.
+//! Consistency check and repair of rows and bytes, after a restore from a backup or a fault of a disk.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -16,7 +15,7 @@ const REFERENCES: &str = "SELECT blob, 'mesh' AS kind, id FROM meshes \
      UNION ALL SELECT DISTINCT blob, 'job' AS kind, job_id FROM job_files \
      UNION ALL SELECT meshes.blob, 'job' AS kind, made_meshes.job_id FROM made_meshes \
        JOIN meshes ON meshes.id = made_meshes.mesh_id";
-/// Meshes that came with a case or from a job, and that nothing refers to any more: nobody can list them, and no erasure
+/// Meshes that came with a case or from a job, and that nothing refers to any more: they are on no list, and no erasure
 /// finds them.
 const UNREACHED: &str = "SELECT id, tenant FROM meshes WHERE standalone = 0 \
      AND NOT EXISTS (SELECT 1 FROM case_meshes WHERE mesh_id = meshes.id) \
@@ -33,7 +32,7 @@ const RUN_AGAIN: &str = "UPDATE jobs SET status = 'accepted', result = NULL, pro
      claimable_from = 0, finished = NULL, updated = (SELECT now_ms FROM clock) \
      WHERE id = $1 AND status = 'successful'";
 
-/// What does not fit together.
+/// Inconsistencies.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Findings {
     /// Places that hold bytes.
@@ -61,7 +60,7 @@ pub struct Dangling {
     pub jobs: Vec<String>,
 }
 
-/// What was mended.
+/// Repairs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Repaired {
     /// Bytes that were found again among those that no row knew.

@@ -1,4 +1,4 @@
-//! The store as all others see it: one database and one place for bytes, scoped to a tenant.
+//! Store handle: one database and one blob store, scoped to a tenant.
 
 use super::blobs::Blobs;
 use super::database::{Address, Database};
@@ -21,11 +21,11 @@ const MOST_KEYS: i64 = 100;
 /// Requests of a tenant that may wait to write.
 const MOST_WAITING: usize = 256;
 
-/// Whose everything is where nobody says otherwise.
+/// The tenant of all resources where none is stated.
 pub const DEFAULT_TENANT: &str = "default";
 
-/// The database, the blobs and the folder for files under way, scoped to one tenant: whoever asks for a case,
-/// a mesh or a job finds those of that tenant only.
+/// The database, the blobs and the folder for temporary files, scoped to one tenant: cases, meshes and jobs of other
+/// tenants are not found.
 #[derive(Clone)]
 pub struct Store {
     pub(super) tenant: Arc<str>,
@@ -34,7 +34,7 @@ pub struct Store {
     pub(super) folder: PathBuf,
     /// Whether other processes work on the same rows.
     pub(super) shared: bool,
-    /// Tells those who wait that a job has changed.
+    /// Notifies waiting requests of changed jobs.
     pub(super) wake: Wake,
     /// Beside an embedded database.
     pub(super) spare: Option<Arc<Spare>>,
@@ -76,7 +76,7 @@ impl Store {
             wake: Wake::new(database.server()),
             database,
             spare,
-            // Whoever was here before may have been killed.
+            // An earlier process may have been killed.
             holds_erased: Arc::new(AtomicBool::new(true)),
             last_written: Arc::default(),
             most_keys: MOST_KEYS,
@@ -89,12 +89,12 @@ impl Store {
     }
 
     /// The same store with another bound on the keys of a tenant.
-    pub fn with_most_keys(self, most_keys: u32) -> Store {
+    pub fn with_key_limit(self, most_keys: u32) -> Store {
         Store { most_keys: most_keys.into(), ..self }
     }
 
     /// The same store with another bound on the requests of a tenant that wait to write.
-    pub fn with_most_waiting(self, most_waiting: u32) -> Store {
+    pub fn with_waiting_limit(self, most_waiting: u32) -> Store {
         Store { most_waiting: most_waiting as usize, ..self }
     }
 
@@ -129,7 +129,7 @@ impl Store {
         self.folder.join("tmp").join(job).join(attempt.to_string())
     }
 
-    /// What tells that jobs have changed.
+    /// Receiver of changes of jobs.
     pub fn job_changes(&self) -> Changes {
         self.wake.changes()
     }
@@ -147,8 +147,8 @@ impl Store {
         }
     }
 
-    /// Gives up the room in reserve where the disk is full, for what is about to be erased; where there is none left, brings
-    /// the log of the database into its file.
+    /// Releases the reserved disk space where the disk is full, so that something can be erased; where none is left, it
+    /// checkpoints the log of the database.
     pub async fn release_reserve(&self) {
         let Some(spare) = &self.spare else { return };
         if !spare.release_reserve() {
@@ -156,8 +156,7 @@ impl Store {
         }
     }
 
-    /// Takes room in reserve again after something was erased, as much as there is, so that nobody else takes it who writes
-    /// to the same disk.
+    /// Reserves disk space again after something was erased, as much as there is, before other writers take it.
     pub async fn refill_reserve(&self) {
         let Some(spare) = &self.spare else { return };
         if spare.is_whole() {
@@ -178,13 +177,12 @@ impl Store {
         }
     }
 
-    /// Remembers that something was erased.
+    /// Marks that the files of the database may hold erased data.
     pub(super) fn mark_erased(&self) {
         self.holds_erased.store(true, Ordering::Relaxed);
     }
 
-    /// Brings what was erased out of the files of the database, where something was; false while somebody who reads or
-    /// writes stands in the way.
+    /// Wipes erased data from the files of the database; false while a reader or a writer prevents it.
     pub async fn wipe(&self) -> Result<bool, StoreError> {
         if !self.holds_erased.swap(false, Ordering::Relaxed) {
             return Ok(true);

@@ -10,7 +10,7 @@ const CLOCK: &str = "SELECT now_ms FROM clock";
 const WRITE: &str = "INSERT INTO unfinished_blobs (id, place, begun) VALUES ($1, '', 0)";
 const TAKE_BACK: &str = "DELETE FROM unfinished_blobs WHERE id = $1";
 
-/// Whoever asks more often is told what was found then.
+/// More frequent requests get the last result.
 const WRITTEN_EVERY: Duration = Duration::from_secs(1);
 
 impl Store {

@@ -1,5 +1,5 @@
-//! Requests that are sent again: the id of what the first of them made, or would have made. No answer is
-//! kept, only the id, so that an answer that got lost is given again as the resource is now.
+//! Idempotency keys: the id of what the first request made, or would have made. No answer is stored, only the id, so
+//! that a repeated request gets the resource as it is now.
 
 use super::database::{Row, query};
 use super::{Store, StoreError};
@@ -7,10 +7,10 @@ use super::{Store, StoreError};
 /// How long a key is remembered.
 const KEPT_MS: i64 = 24 * 3600 * 1000;
 
-/// What a key stands for.
+/// Meaning of a key.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Reserved {
-    /// Nobody used the key before; the id given is its own.
+    /// The key is new, and now refers to the given id.
     Fresh,
     /// The same request was sent before, and this is the id of what it makes, or of what it `found` to be there already.
     Again { id: String, found: bool },

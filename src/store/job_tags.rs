@@ -1,11 +1,11 @@
-//! Tags of jobs, by which clients find them again: with a job from the start, or put on and taken off at any time.
+//! Tags of jobs, for searches by clients: set with a job, added and removed at any time.
 
 use std::collections::BTreeSet;
 
 use super::database::{Transaction, query};
 use super::{Store, StoreError};
 
-/// What became of a request to change the tags of a job.
+/// Outcome of a change of tags.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Tagged {
     Done,
@@ -14,13 +14,13 @@ pub enum Tagged {
     NotFound,
 }
 
-/// Changes of one job wait for each other, so that their number is bounded whoever comes at the same time.
+/// Changes of one job are serialised, so that concurrent ones respect the limit on tags.
 const LOCK: &str = "SELECT 1 FROM jobs WHERE id = $1 AND tenant = $2 FOR UPDATE";
 const TAGS: &str = "SELECT tag FROM job_tags WHERE job_id = $1";
 const PUT_ON: &str = "INSERT INTO job_tags (job_id, tag) VALUES ($1, $2) ON CONFLICT DO NOTHING";
 const TAKE_OFF: &str = "DELETE FROM job_tags WHERE job_id = $1 AND tag = $2";
 
-pub(super) async fn put_on(
+pub(super) async fn insert_tags(
     transaction: &mut Transaction,
     job: &str,
     tags: &[String],
@@ -57,7 +57,7 @@ impl Store {
         for tag in remove {
             query(TAKE_OFF).bind(job).bind(tag).execute(&mut transaction).await?;
         }
-        put_on(&mut transaction, job, add).await?;
+        insert_tags(&mut transaction, job, add).await?;
         transaction.commit().await?;
         Ok(Tagged::Done)
     }

@@ -1,4 +1,4 @@
-//! Jobs as clients see them: looked at, listed, dismissed, removed.
+//! Jobs for clients: read, listed, dismissed, removed.
 
 use super::cases::AFTER_ALL;
 use super::database::{Row, query};
@@ -50,7 +50,7 @@ pub struct JobFilter {
     pub limit: i64,
 }
 
-/// What became of a request to dismiss or remove.
+/// Outcome of a dismissal or removal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Dismissal {
     Dismissed,

@@ -1,5 +1,5 @@
-//! Leases: jobs as those see them who work on them. A claim makes a lease with a token of its own; every later write names
-//! the token, so that a worker which was thought dead and comes back changes nothing.
+//! Leases: the worker's side of jobs. A claim makes a lease with a token of its own; every later write names the token,
+//! so that a worker which was thought dead and comes back changes nothing.
 
 use std::time::Duration;
 
@@ -305,7 +305,7 @@ impl Store {
     }
 }
 
-/// What kind of thing went wrong, as the document of an error says.
+/// Class of an error, as its document says.
 fn class_of(error: &str) -> Option<String> {
     #[derive(Deserialize)]
     struct Classed {

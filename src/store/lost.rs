@@ -1,4 +1,4 @@
-//! Jobs that failed through no fault of their own: listed for operators, and accepted again.
+//! Lost jobs, which failed through no fault of their own: listed for operators, and accepted again.
 
 use super::database::query;
 use super::events::record;

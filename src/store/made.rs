@@ -1,4 +1,4 @@
-//! Meshes that jobs made: stored with the result, and erased with the job or its case unless something else refers to
+//! Meshes made by jobs: stored with the result, and erased with the job or its case unless something else refers to
 //! them.
 //!
 //! Whoever locks jobs and meshes locks the jobs first: a publication and an erasure wait for each other, and not both.
@@ -30,7 +30,7 @@ const DELETE_UNUSED: &str = "DELETE FROM meshes WHERE id = $1 AND standalone = 0
      AND NOT EXISTS (SELECT 1 FROM made_meshes WHERE mesh_id = $1) RETURNING blob";
 
 impl MadeMesh {
-    /// Under which it is stored.
+    /// The id under which it is stored.
     pub fn id(&self) -> &str {
         self.known.as_ref().map_or(&self.mesh.id, |row| &row.id)
     }
@@ -42,7 +42,7 @@ impl MadeMesh {
 }
 
 impl Store {
-    /// Stores what a job made; an error asks to look anew where one of them came or went meanwhile.
+    /// Stores the meshes of a job; `Contended`, for a retry, where one of them was stored or erased meanwhile.
     pub(super) async fn insert_made(
         &self,
         transaction: &mut Transaction,

@@ -1,4 +1,4 @@
-//! Membership in cohorts: who leaves with what is erased, and what learns from whom.
+//! Membership in cohorts: removal with erased cases, and the models learned from a member.
 //!
 //! Whoever locks jobs and cohorts locks the jobs first.
 

@@ -29,7 +29,7 @@ pub struct MeshRow {
     pub created: i64,
 }
 
-/// What became of a request to delete.
+/// Outcome of a deletion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MeshDeletion {
     Deleted,

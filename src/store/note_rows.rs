@@ -1,4 +1,4 @@
-//! The rows of audited actions: one before an audited action begins, which is told how it ended.
+//! Rows of audited actions: inserted before the action begins, completed with its outcome.
 
 use super::StoreError;
 use super::audited_action::AuditedAction;
@@ -74,7 +74,7 @@ mod tests {
 
     /// As where the database crashed after it had taken an end and before anybody heard of it.
     #[tokio::test]
-    async fn an_end_that_is_told_again_is_in_the_log_once() {
+    async fn an_end_that_is_reported_again_is_in_the_log_once() {
         let folder = tempfile::TempDir::new().unwrap();
         let store = Store::open(folder.path()).await.unwrap();
         let audited = AuditedAction { action: "posted".into(), ..AuditedAction::default() };

@@ -1,5 +1,5 @@
-//! Notes of audited actions on their way into the database: all that wait are committed together, so that however many requests
-//! there are, they wait for one commit and not for one another.
+//! Group commit of audit rows: all that wait are committed together, so that requests wait for one commit and not for
+//! one another.
 
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -18,18 +18,18 @@ const AT_ONCE: usize = 100;
 /// Whether an audited action is still to be begun; asked once, and where the answer is yes it is.
 pub(super) type StartCondition = Box<dyn FnOnce() -> bool + Send + Sync>;
 
-/// What is to be noted.
+/// Rows to be written.
 pub(super) enum Note {
     Begin { id: String, audited: AuditedAction },
     End { id: String },
 }
 
-/// What is heard of a note. An audited action that nobody wanted to be begun any more leaves its teller without an answer.
+/// Acknowledgement of a row. An action whose start was cancelled meanwhile gets none.
 pub(super) type Acknowledgement = oneshot::Receiver<Result<(), StoreError>>;
 
 type Acknowledger = oneshot::Sender<Result<(), StoreError>>;
 
-/// A note that waits, and who hears of it.
+/// A waiting row, with its acknowledgement.
 struct Waiter {
     note: Note,
     is_wanted: StartCondition,
@@ -64,13 +64,13 @@ impl Notes {
         let (teller, told) = oneshot::channel();
         self.lock().notes.push_back(Waiter { note, is_wanted, teller });
         if let Some(writing) = self.writing() {
-            // Whoever asked may leave while the notes of others are written.
+            // A task of its own: its caller may disconnect while rows of others are written.
             tokio::spawn(writing.write(database.clone()));
         }
         told
     }
 
-    /// The one who writes from now on, unless there is one.
+    /// The writer of all waiting rows, unless there is one already.
     fn writing(&self) -> Option<Writing> {
         let is_written = std::mem::replace(&mut self.lock().is_written, true);
         (!is_written).then(|| Writing { notes: self.clone(), is_over: false })
@@ -90,10 +90,10 @@ impl Notes {
     }
 }
 
-/// The one who writes, until nothing waits.
+/// The writer of waiting rows, until none is left.
 struct Writing {
     notes: Notes,
-    /// Whether he has said that he is the one no more. The next may have begun since.
+    /// Whether it has given up its role. The next writer may have begun since.
     is_over: bool,
 }
 
@@ -103,13 +103,13 @@ impl Writing {
             let (notes, tellers): (Vec<Note>, Vec<Acknowledger>) = group.into_iter().unzip();
             let written = self.write_some(&database, &notes).await.map_err(Arc::new);
             for teller in tellers {
-                // Whoever asked may have left.
+                // An error: the caller has disconnected.
                 let _ = teller.send(written.clone().map_err(StoreError::OfMany));
             }
         }
     }
 
-    /// Those that are written next, without those that nobody wants any more.
+    /// The next rows to write, without cancelled ones.
     fn next(&mut self) -> Option<Vec<(Note, Acknowledger)>> {
         let mut waiting = self.notes.lock();
         let count = waiting.notes.len().min(AT_ONCE);

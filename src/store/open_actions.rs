@@ -1,5 +1,5 @@
-//! Audited actions of this process that are not told to the audit log to their end: those that go on, and those whose end the database
-//! has not taken for good.
+//! Audited actions of this process without a stored outcome: those that go on, and those whose outcome the database has
+//! not committed.
 
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -7,8 +7,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use super::StoreError;
 use super::audited_action::AuditedAction;
 
-/// Ends that may wait to be told, some megabytes. Where the database takes none for long, nothing more is answered that
-/// would have to be noted.
+/// Outcomes that may wait to be stored, some megabytes. Beyond that, requests that would need a record are refused.
 const MOST_ENDS: usize = 10_000;
 
 /// How an audited action ended, and what it was done to.
@@ -29,11 +28,11 @@ pub(super) struct Open {
     pub at: Option<i64>,
     /// Where it has ended.
     pub end: Option<End>,
-    /// Whether the database may have been told of its end already.
+    /// Whether its outcome may be in the database already.
     pub was_told: bool,
 }
 
-/// An audited action that was begun, to be told how it ended.
+/// An audited action without an outcome yet.
 pub struct OpenAction {
     pub(super) id: String,
     open_actions: OpenActions,
@@ -74,7 +73,7 @@ impl OpenActions {
         Ok(())
     }
 
-    /// An audited action whose end is about to be told; how it was before.
+    /// Marks an outcome as sent to the database; returns the earlier state.
     pub fn tell(&self, id: &str) -> Option<Open> {
         let mut open_actions = self.lock();
         let open = open_actions.get_mut(id)?;
@@ -100,7 +99,7 @@ impl OpenActions {
 }
 
 impl Drop for OpenAction {
-    /// Where nobody says how it ended, its row says so by itself after an hour.
+    /// An action dropped without an outcome becomes `unknown` after an hour.
     fn drop(&mut self) {
         if !self.ended {
             self.open_actions.forget(&self.id);

@@ -1,4 +1,4 @@
-//! The queue as those see it who watch the service.
+//! Queue statistics for operators.
 
 use super::database::query;
 use super::{Store, StoreError};

@@ -1,5 +1,5 @@
-//! Which bytes are there, and why. A row of `blobs` says where the bytes of a hash are; rows of meshes and of
-//! files of jobs refer to it by the hash.
+//! References to stored bytes. A row of `blobs` says where the bytes of a hash are; rows of meshes and of files of jobs
+//! refer to it by the hash.
 //!
 //! Any number of processes store, refer to and discard the same bytes at the same time, and any of them may
 //! stop at any point and go on much later. What holds all the same is that every row that refers to a hash
@@ -16,8 +16,8 @@
 //! What is written late to a place that was discarded must not stay there unseen: a place stands in `unfinished_blobs`
 //! from before its bytes are written until a row refers to them, so that the sweep finds what is left of those who died.
 //!
-//! None of this counts on a clock. The time of the announcement only keeps the sweep from making those start anew
-//! who are about to store.
+//! None of this counts on a clock. The time of the announcement only keeps the garbage collection away from writes in
+//! progress.
 
 use std::fs::File;
 
@@ -55,7 +55,7 @@ const REMEMBER: &str =
     "INSERT INTO discarded_blobs (place, discarded) VALUES ($1, (SELECT now_ms FROM clock))";
 const FORGET: &str = "DELETE FROM discarded_blobs WHERE place = $1";
 
-/// How often storing begins anew before the client is told to come back.
+/// Attempts to store before the client gets `Retry-After`.
 const TRIES: usize = 5;
 
 impl Store {
@@ -99,7 +99,7 @@ impl Store {
         Ok(())
     }
 
-    /// Does the same for those who began to store something longer ago than `patience`, in ms, and never came to an end.
+    /// The same for writes that began longer ago than `patience`, in ms, and were abandoned.
     pub(super) async fn finish_old(&self, patience: i64) -> Result<(), StoreError> {
         for row in query(LEFT).bind(patience).fetch_all(self.database.reader()).await? {
             let (id, place): (String, String) = (row.try_get(0)?, row.try_get(1)?);
@@ -179,7 +179,7 @@ impl Store {
         found.into_file(|| self.nameless_file()).await
     }
 
-    /// A file of this process that has no name, and is gone when nobody has it open any more.
+    /// An unnamed file of this process, removed when it is closed.
     pub fn nameless_file(&self) -> Result<File, StoreError> {
         Ok(tempfile::tempfile_in(self.folder.join("tmp"))?)
     }

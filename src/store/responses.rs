@@ -1,4 +1,4 @@
-//! Plan responses of a case: which there are, and what they were built for.
+//! Plan responses of a case, with the version that each was built for.
 
 use super::database::{Row, query};
 use super::keys::{KeyRow, key_row};
@@ -13,7 +13,7 @@ pub struct CaseResponses {
     pub jobs: Vec<String>,
 }
 
-/// What a response was built for.
+/// Case version that a response was built for.
 #[derive(Clone, Debug)]
 pub struct ResponseRow {
     /// The document of its job.

@@ -1,4 +1,4 @@
-//! Room in reserve beside the embedded database: a file that is given up where erasing, or starting, needs the space.
+//! Reserved disk space beside the embedded database: a file that is removed when erasing, or starting, needs the space.
 
 use std::fs::{File, OpenOptions};
 use std::path::{Path, PathBuf};
@@ -83,7 +83,7 @@ impl Spare {
     fn take(&self, bytes: u64) -> std::io::Result<()> {
         let file = OpenOptions::new().create(true).write(true).truncate(false).open(&self.file)?;
         let taken = match allocate(&file, bytes) {
-            // Such a file system promises no space; what cannot be written there is told when it is written.
+            // Such a file system promises no space; what cannot be written there is reported when it is written.
             Err(Errno::OPNOTSUPP) => file.set_len(bytes),
             allocated => allocated.map_err(Into::into),
         };

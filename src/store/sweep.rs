@@ -1,4 +1,4 @@
-//! Garbage collection of what nobody refers to: files of attempts that ended without a result, bytes without a row.
+//! Garbage collection: files of attempts that ended without a result, bytes without a row.
 
 use std::path::Path;
 use std::time::Duration;
@@ -14,7 +14,7 @@ const UNREFERENCED: &str = "SELECT sha256 FROM blobs \
 /// How long another process may take from announcing bytes to referring to them without being disturbed.
 pub(super) const PATIENCE: Duration = Duration::from_secs(3600);
 
-/// What a sweep removed.
+/// Result of a garbage collection.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Swept {
     pub blobs: usize,

@@ -1,4 +1,4 @@
-//! Tenants: those who share a deployment without knowing of each other.
+//! Tenants: isolated users of one deployment.
 
 use super::database::{Row, Transaction, query};
 use super::{DEFAULT_TENANT, Store, StoreError};
@@ -10,7 +10,7 @@ pub struct TenantRow {
     pub retention_days: Option<i64>,
 }
 
-/// Who is new, as who has had no job for long, is next; after one turn it comes behind all others.
+/// A new tenant, like one without a job for long, is served next; after one turn it comes behind all others.
 const ENTER: &str =
     "INSERT INTO tenants (name, served) VALUES ($1, 0) ON CONFLICT (name) DO NOTHING";
 const LIST: &str =
@@ -71,7 +71,7 @@ impl Store {
         Ok(rows.iter().map(tenant_row).collect::<Result<_, _>>()?)
     }
 
-    /// How long what nobody changes is kept; for ever where no number is given.
+    /// Sets the retention of unchanged resources; for ever where no number is given.
     pub async fn retain(&self, days: Option<i64>) -> Result<(), StoreError> {
         let mut transaction = self.database.begin().await?;
         self.enter(&mut transaction).await?;
@@ -80,8 +80,8 @@ impl Store {
         Ok(())
     }
 
-    /// Erases what nobody has changed for longer than its tenant keeps it: cases with all that belongs to them, other
-    /// jobs that have ended, meshes that nothing refers to. Returns how many.
+    /// Erases what is older than its tenant's retention since its last change: cases with all that belongs to them,
+    /// other ended jobs, unreferenced meshes. Returns how many.
     pub async fn erase_old(&self) -> Result<usize, StoreError> {
         let mut erased = 0;
         self.release_reserve().await;

@@ -1,5 +1,4 @@
-//! Tombstones, what remains of what was erased: its id and when, so that a client is told that it is gone and not that it
-//! never was.
+//! Tombstones of erased resources: id and time, so that a client gets 410 and not 404.
 
 use super::database::{Transaction, query};
 use super::{Store, StoreError};

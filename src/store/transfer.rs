@@ -1,5 +1,5 @@
-//! A whole deployment as files, to be moved to another engine or kept as a backup: a file of rows for each
-//! table, a file for each blob, and a manifest, which is written last and read first.
+//! Export and import of a whole deployment, for another engine or as a backup: a file of rows for each table, a file
+//! for each blob, and a manifest, which is written last and read first.
 //!
 //! Where bytes are is a deployment's own affair: places are left out, and made anew by the import.
 

@@ -1,5 +1,5 @@
-//! Cases whose mesh a job makes, and the jobs that wait for it: completed, or failed with it, in the transaction in which
-//! that job ends.
+//! Cases whose mesh a job makes, and the jobs that wait for it: completed, or failed with it, in the transaction in
+//! which that job ends.
 
 use serde_json::{Value, json};
 

@@ -1,6 +1,6 @@
-//! Who waits for a job is woken when it changes. Processes that share a database tell each other which jobs have (NOTIFY),
-//! so that nobody who waits for one sleeps to the end of his second. It only wakes: who missed a word, because a connection
-//! broke or a proxy swallowed it, finds the change when he looks the next time.
+//! Notification of changed jobs to requests that wait for one. Processes that share a database notify each other
+//! (NOTIFY), so that nobody waits for the poll of each second. A notification that was lost with a connection or in a
+//! proxy costs no more than that second: the next poll finds the change.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -12,18 +12,18 @@ use tokio::sync::mpsc::{UnboundedReceiver, UnboundedSender, unbounded_channel};
 use super::StoreError;
 
 const CHANNEL: &str = "facies_jobs";
-/// Between two words to the others, each of which names what changed meanwhile.
+/// Between two notifications of the other processes, each of which names all jobs changed meanwhile.
 const PAUSE: Duration = Duration::from_millis(10);
-/// Before a lost connection is made again.
+/// Before a lost connection is restored.
 const RECOVERY: Duration = Duration::from_secs(1);
-/// Jobs named in one word: ids of 36 characters, of which PostgreSQL takes less than 8000 at a time.
+/// Jobs named in one notification: ids of 36 characters, of which PostgreSQL takes less than 8000 at a time.
 const NAMED_AT_ONCE: usize = 100;
-/// Words that one who waits may be behind. Who is further behind looks at his job.
+/// Changes that a waiting request may lag behind. One that lags further reads its job.
 const BACKLOG: usize = 1024;
-/// In place of the id of a job: some have changed, and nobody says which.
+/// In place of the id of a job: some have changed, without names.
 const ANY: &str = "";
 
-/// Where changes of jobs are told.
+/// Sender of changes of jobs.
 #[derive(Clone)]
 pub(super) struct Wake {
     here: broadcast::Sender<Arc<str>>,
@@ -31,18 +31,18 @@ pub(super) struct Wake {
     there: Option<UnboundedSender<Arc<str>>>,
 }
 
-/// Where they are heard.
+/// Receiver of changes of jobs.
 pub struct Changes(broadcast::Receiver<Arc<str>>);
 
 impl Wake {
-    /// Tells and listens to other processes until the last of it is gone, where the database is one that many share.
+    /// Exchanges notifications with the other processes on a shared database, until its last clone is dropped.
     pub fn new(server: Option<&PgPool>) -> Wake {
         let here = broadcast::Sender::new(BACKLOG);
         let Some(pool) = server else { return Wake { here, there: None } };
         let (there, changed) = unbounded_channel();
         let others = PeerProcesses {
             pool: pool.clone(),
-            // What this process signs its words with, so that it does not wake itself.
+            // Sender of this process's notifications, so that it ignores its own.
             name: uuid::Uuid::now_v7().to_string(),
         };
         tokio::spawn(others.exchange(changed, here.clone()));
@@ -52,7 +52,7 @@ impl Wake {
     pub fn tell(&self, job: &str) {
         let job: Arc<str> = job.into();
         if let Some(there) = &self.there {
-            // Nobody is told any more where the pool is closed.
+            // An error: the pool is closed.
             let _ = there.send(job.clone());
         }
         // An error: nobody waits.
@@ -65,7 +65,7 @@ impl Wake {
 }
 
 impl Changes {
-    /// Forgets what was told so far.
+    /// Forgets the changes so far.
     pub fn mark_seen(&mut self) {
         self.0 = self.0.resubscribe();
     }
@@ -131,7 +131,7 @@ impl PeerProcesses {
         }
     }
 
-    /// Wakes those who wait here whenever another process says so, until the connection breaks.
+    /// Passes notifications of other processes on to the requests of this one, until the connection breaks.
     async fn receive(&self, here: &broadcast::Sender<Arc<str>>) -> Result<(), sqlx::Error> {
         let mut listener = PgListener::connect_with(&self.pool).await?;
         listener.listen(CHANNEL).await?;

@@ -1,5 +1,5 @@
-//! Lines to standard error that hold up nobody who writes them. Where a pipe is full because nobody reads it, one line waits
-//! for a moment; it and those after it are dropped, and counted, until there is room again.
+//! Non-blocking log lines on standard error. Where a pipe is full because nobody reads it, one line waits for a moment;
+//! it and those after it are dropped, and counted, until there is room again.
 
 use std::io::{self, Write};
 use std::sync::{Mutex, PoisonError};

@@ -1,5 +1,5 @@
-//! Export of ended spans to the collector: a bounded queue and a thread of its own, so that a collector that is slow, silent
-//! or gone holds nobody up. Spans that do not reach it are counted.
+//! Export of ended spans to the collector: a bounded queue and a thread of its own, so that a slow, silent or missing
+//! collector blocks nobody. Spans that do not reach it are counted.
 
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Arc, OnceLock};
@@ -57,7 +57,7 @@ pub fn start(collector: Option<&str>) -> Result<(), TracesError> {
     Ok(())
 }
 
-/// What makes spans; none where traces are off.
+/// The tracer; none where traces are off.
 pub(super) fn tracer() -> Option<&'static SdkTracer> {
     TRACES.get().map(|(_, tracer)| tracer)
 }

@@ -104,7 +104,7 @@ impl Request {
         self.span.as_ref().map(TraceParent::of)
     }
 
-    /// A request whose client leaves before the answer has no status.
+    /// A request whose client disconnects before the answer has no status.
     pub fn answered(self, status: u16) {
         let Some(mut span) = self.span else { return };
         span.set_attribute(KeyValue::new("http.response.status_code", i64::from(status)));
@@ -149,7 +149,7 @@ impl Attempt {
         self.trace_id.as_deref()
     }
 
-    /// A phase begins, and the one before it has ended; one that is told twice goes on.
+    /// A phase begins, and the one before it has ended; one that is reported twice goes on.
     pub fn phase(&self, name: &'static str) {
         let (Some(mut spans), Some(tracer)) = (self.lock(), export::tracer()) else { return };
         let goes_on = spans.phase.as_ref().is_some_and(|(running, _)| *running == name);

@@ -31,7 +31,7 @@ const POINTS: [&str; 13] = [
 ];
 const WAIT: Duration = Duration::from_millis(5);
 
-/// What happens at a fail point.
+/// Action of a fail point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Action {
     /// SIGKILL for the own process.
@@ -44,9 +44,9 @@ enum Action {
     Allocate,
     /// Calls itself until the stack is full.
     Overflow,
-    /// Never comes back, and asks nobody whether to stop.
+    /// Never returns and checks no cancellation.
     Hang,
-    /// Waits until the work is told to stop, then goes on.
+    /// Waits until the work is cancelled, then goes on.
     Hold,
     /// An error of the storage; only before and after a publication.
     Error,

@@ -1,5 +1,5 @@
-//! Signs of life: one thread renews the leases of this process, over connections and an async runtime of
-//! its own, so that neither a solver nor a busy server keeps it from doing so.
+//! Heartbeat: one thread renews the leases of this process, over connections and an async runtime of its own, so that
+//! neither a solver nor a busy server delays it.
 
 use std::collections::HashMap;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -15,10 +15,10 @@ use crate::store::{Lease, Point, Store, StoreError};
 use crate::traces;
 use mechanics::progress::{Phase, Progress};
 
-/// How long a job that was dismissed may run on before its solver is told.
+/// How long a dismissed job may run on before its solver is cancelled.
 const LOOK: Duration = Duration::from_millis(500);
 
-/// A job that this process works on: what its solver tells, and what it is told.
+/// A running job of this process: the progress of its solver, and its cancellation.
 pub struct RunningJob {
     pub lease: Lease,
     pub trace: traces::Attempt,
@@ -133,7 +133,7 @@ impl Heartbeat {
             let store = match runtime.block_on(store.again()) {
                 Ok(store) => store,
                 Err(error) => {
-                    // Nobody listens any more when the process is about to end.
+                    // An error: the process is about to end.
                     let _ = connected.send(Err(error));
                     return;
                 }
@@ -215,7 +215,7 @@ impl Pulse {
         }
     }
 
-    /// Tells those who watch how many jobs wait, and how long the first of them has.
+    /// Updates the metrics of the queue: its length and the age of its first job.
     async fn count(&self, store: &Store) {
         match store.queue().await {
             Ok(queue) => metrics::queue(queue.waiting, queue.running, queue.oldest_ms),

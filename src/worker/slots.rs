@@ -1,4 +1,5 @@
-//! Worker threads: claim a job, have it worked on, publish. Each slot is a thread; numerics run elsewhere.
+//! Worker threads: each claims a job, has it computed, and publishes the result. Each slot is a thread; numerics run
+//! elsewhere.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
@@ -26,7 +27,7 @@ use mechanics::progress::Progress;
 
 /// How long an idle worker waits before it looks for jobs that another process has accepted.
 const IDLE: Duration = Duration::from_secs(1);
-/// How long a solver that was told to stop may take before the process ends without it.
+/// How long a solver that was cancelled may take before the process ends without it.
 const LAST_WORDS: Duration = Duration::from_secs(2);
 /// How long a slot that is not ready sleeps at most before it looks whether to stop.
 const UNREADY: Duration = Duration::from_millis(100);

@@ -1,4 +1,4 @@
-//! The work of a slot as the rest of the worker sees it: what goes in, what comes out, how it fails.
+//! Interface between a slot and the rest of the worker: input, output and failures of an attempt.
 
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -8,7 +8,7 @@ use super::process::protocol::{Effort, MeshFile};
 use crate::store::{Claim, StoreError};
 use mechanics::progress::Progress;
 
-/// What an attempt made: the manifest, and files in the folder it was given.
+/// Result of an attempt: the manifest, and files in its folder.
 pub struct Finished {
     /// JSON.
     pub result: String,
@@ -33,13 +33,13 @@ pub struct FinishedMesh {
 /// Why an attempt made nothing.
 #[derive(Debug)]
 pub enum Failure {
-    /// It was told to stop.
+    /// It was cancelled.
     Cancelled,
     /// The job's own fault, never tried again: JSON with `type` and `detail`.
     Permanent(serde_json::Value),
     /// The storage's fault: tried again.
     Storage(String),
-    /// What computed it died, and how: tried again.
+    /// Its process died; the reason. Tried again.
     Lost(String),
 }
 

@@ -84,7 +84,7 @@ async fn a_service_that_is_killed_while_it_meshes_loses_neither_the_case_nor_wha
         let (case, meshing) =
             (case["id"].clone(), case["meshing"]["job"].as_str().unwrap().to_owned());
         let asked = json!({"kind": "predict", "case": case, "plan": {"loads": [{"gravity_m_per_s2": [0, 0, -9]}]}});
-        let posted = ask_to_accept(&server, &asked).await;
+        let posted = post_job(&server, &asked).await;
         let folder = if fault.ends_with("hold") {
             until("it meshes", async || {
                 (state(&server, &meshing).await["phase"] == "mesh").then_some(())
@@ -116,7 +116,7 @@ async fn a_worker_that_dies_before_or_after_it_publishes_publishes_once() {
     for (fault, attempt) in [("publish:before:1:kill", 2), ("publish:after:1:kill", 1)] {
         let server = faulty(fault, &["--workers", "1"]);
         let case = server.case(&SMALL).await;
-        let posted = ask_to_accept(&server, &spec(&case, 1.0)).await;
+        let posted = post_job(&server, &spec(&case, 1.0)).await;
         let folder = server.dies();
         let server = Server::start_in(folder, &[]);
         let jobs = ask(server.get("/v1/jobs")).await.json();
@@ -129,7 +129,7 @@ async fn a_worker_that_dies_before_or_after_it_publishes_publishes_once() {
 }
 
 /// The id of a job, unless the server died before it could tell.
-async fn ask_to_accept(server: &Server, spec: &Value) -> Option<String> {
+async fn post_job(server: &Server, spec: &Value) -> Option<String> {
     let answer = server.post("/v1/jobs").json(spec).send().await.ok()?;
     let job: Value = answer.json().await.ok()?;
     job["id"].as_str().map(str::to_owned)

@@ -125,7 +125,7 @@ fn stress_and_a_material_of_the_literature_are_asked_for_by_arguments() {
 }
 
 #[test]
-fn what_is_held_is_told_before_anything_is_solved() {
+fn what_is_held_is_reported_before_anything_is_solved() {
     let case = block().join("case.json");
     let out = tempfile::tempdir().unwrap();
     let done = facies(&["check", "--case", path(&case), "--out", path(out.path())]);
@@ -142,7 +142,7 @@ fn what_is_held_is_told_before_anything_is_solved() {
 }
 
 #[test]
-fn a_segment_on_the_set_of_another_bone_is_told_by_the_check() {
+fn a_segment_on_the_set_of_another_bone_is_reported_by_the_check() {
     let folder = tempfile::tempdir().unwrap();
     let read = fs::read_to_string(block().join("case.json")).unwrap();
     let mut documents: serde_json::Value = serde_json::from_str(&read).unwrap();
@@ -421,7 +421,7 @@ fn a_face_that_nothing_holds_a_case_without_a_plan_and_constants_of_no_unit_end_
 }
 
 #[test]
-fn what_looks_like_a_mistake_is_told_by_check_and_by_predict() {
+fn what_looks_like_a_mistake_is_reported_by_check_and_by_predict() {
     let folder = documents(|file| {
         file["plan"]["segments"][0]["translation_mm"] = serde_json::json!([-0.005, 0, 0]);
         file["case"]["sliding"] = serde_json::json!([{"nodes": {"node_set": "y_min"}}]);

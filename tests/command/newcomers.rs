@@ -105,7 +105,7 @@ fn a_plan_that_was_found_without_a_server_is_one_that_predict_takes() {
 }
 
 #[test]
-fn a_mistake_in_a_spec_of_the_command_line_is_told_with_its_file_and_place() {
+fn a_mistake_in_a_spec_of_the_command_line_is_reported_with_its_file_and_place() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("targets.json");
     fs::write(&file, r#"{"targets":{},"bounds":{}}"#).unwrap();
@@ -250,7 +250,7 @@ fn nodes_are_selected_by_the_value_of_an_array() {
 }
 
 #[test]
-fn progress_is_told_on_standard_error_and_the_result_on_standard_output() {
+fn progress_is_reported_on_standard_error_and_the_result_on_standard_output() {
     let out = tempfile::tempdir().unwrap();
     let case = block().join("case.json");
     let done = facies(&["predict", "--case", path(&case), "--output", path(out.path())]);

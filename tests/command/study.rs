@@ -95,7 +95,7 @@ fn a_study_is_not_worse_than_itself_and_worse_than_one_with_half_its_errors() {
 }
 
 #[test]
-fn rows_that_are_kept_are_judged_anew_and_not_solved_again() {
+fn rows_that_are_kept_are_judged_again_and_not_solved_again() {
     let folder = tempfile::tempdir().unwrap();
     let kept = folder.path().join("kept");
     let keep =

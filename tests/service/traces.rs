@@ -108,7 +108,7 @@ async fn a_client_that_does_not_sample_is_followed() {
 
 /// The collector answers on a thread of its own, as above.
 #[tokio::test(flavor = "multi_thread")]
-async fn what_has_ended_is_told_before_the_process_ends() {
+async fn what_has_ended_is_reported_before_the_process_ends() {
     let mut collector = Collector::start().await;
     // Without workers the end takes milliseconds, and spans wait a second for others.
     let server = Server::start_with(&["--traces", &collector.address, "--workers", "0"]);

@@ -13,7 +13,7 @@ use crate::osteotomy::labelling::{FoundSegment, Labelled, label_given};
 use crate::osteotomy::teeth::{ENAMEL_HU, MUCOSA_MM, Teeth};
 use crate::osteotomy::{BoneLabels, Owner};
 
-/// Bone that is pushed into other bone is told of from so much on, in mm³.
+/// Bone that is pushed into other bone is reported from so much on, in mm³.
 const OVERLAP: f64 = 100.0;
 
 /// A scan and its bone with a segment moved.
@@ -80,7 +80,7 @@ pub fn close(
     Ok(Closed { image, bone: PartedBone { labelled, surfaces, teeth }, farthest, warning })
 }
 
-/// What was told of the bone of the scan is still told.
+/// Keeps the report on the bone of the scan.
 fn with_scan_report(moved: Labelled, scanned: Labelled) -> Labelled {
     let segments = moved.segments.into_iter().zip(scanned.segments);
     let segments = segments.map(|(now, was)| FoundSegment { left: was.left, ..now });

@@ -1,4 +1,4 @@
-//! A segment of bone that is moved before anything is meshed.
+//! Rigid movement of a bone segment before meshing.
 
 use crate::registration::RigidTransform;
 

@@ -34,7 +34,7 @@ pub(super) fn face(
     })
 }
 
-/// The parts of the face that given landmarks bound; those far from the skin are told of.
+/// The parts of the face that given landmarks bound; those far from the skin are reported.
 fn with(given: &GivenLandmarks, mesh: &VolumeMesh, skin: &[u32], axes: FaceAxes) -> Face {
     let (plane, at) = given.on_mid_plane(axes);
     Face {

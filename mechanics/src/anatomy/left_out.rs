@@ -1,4 +1,4 @@
-//! Tissue that no mesh holds because it hangs together with the rest nowhere.
+//! Disconnected tissue: parts that do not hang together with the body and are in no mesh.
 
 use crate::domain::LeftOut;
 use crate::mesh::{Vector, Warning};

@@ -188,7 +188,7 @@ pub fn build(
 }
 
 /// Cuts at which nothing is parted: planes beside the bone, or between bones that do not touch. A line of pieces is one cut, which
-/// may begin and end beyond the bone: it is told where all of it does.
+/// may begin and end beyond the bone: it is reported where all of it does.
 fn missed(bone: &Labelled, osteotomy: &Osteotomy) -> Vec<Warning> {
     let mut cuts: Vec<(&str, usize, bool)> = Vec::new();
     for (number, cut) in osteotomy.cuts().iter().enumerate() {

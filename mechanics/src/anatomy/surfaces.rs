@@ -1,4 +1,4 @@
-//! Bone between surfaces, parted into segments, and what of the surfaces was mended.
+//! Bone between surfaces, divided into segments, and the repairs of these surfaces.
 //!
 //! Cuts part the depth of bone on a grid ([`BoneDepths`]) as they part the values of a scan: where bones touch, the way through
 //! the deeper bone wins. Clipping triangles instead would need surfaces without open edges, which those of real heads have.
@@ -10,9 +10,9 @@ use crate::osteotomy::Osteotomy;
 use crate::osteotomy::bone_image::BoneImage;
 use crate::osteotomy::labelling::label_given;
 
-/// Volumes that differ by more, as a share, are told: a doubled surface has twice the volume of its body.
+/// Volumes that differ by more, as a share, are reported: a doubled surface has twice the volume of its body.
 const SAME_VOLUME: f64 = 0.02;
-/// Bone is told of that lies outside the skin with more of it, as a share, and farther, in mm.
+/// Bone is reported that lies outside the skin with more of it, as a share, and farther, in mm.
 const OUTSIDE: f64 = 0.03;
 const OFF_SKIN_MM: f64 = 2.0;
 /// More of the inside than this is told to be uncertain.

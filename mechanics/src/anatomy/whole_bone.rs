@@ -1,4 +1,5 @@
-//! Bone made whole before it is parted: what is thinner than voxels show is closed, and what bone encloses is bone.
+//! Closing of bone before it is divided into segments: gaps thinner than the voxels resolve are closed, and cavities
+//! inside bone become bone.
 
 use super::loose::replaced;
 use crate::image::holes::filled;

@@ -1,4 +1,4 @@
-//! Connected parts of a mesh, and whether all that holds one moves as one rigid body: such a part goes along and is not
+//! Rigidly moving parts: connected parts of a mesh whose constraints all move as one rigid body. Such a part is not
 //! deformed, so that a prediction says nothing about it.
 //!
 //! A node x is held along n at the value v. A rigid movement satisfies that where n . ((R - I) x + t) = v, which is
@@ -37,7 +37,7 @@ const INDEPENDENT: f64 = 1e-12;
 pub type Form = SMatrix<f64, NUMBERS, NUMBERS>;
 type Numbers = SVector<f64, NUMBERS>;
 
-/// What holds nodes.
+/// Constraints of nodes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Holder {
     /// Fixed nodes and walls that stay.
@@ -61,7 +61,7 @@ pub struct HeldRows {
     square: f64,
 }
 
-/// What hangs together by nodes, and what holds it.
+/// A part connected by nodes, with its constraints.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ConnectedPart {
     pub nodes: usize,
@@ -294,7 +294,7 @@ impl ConnectedPart {
         &mut self.held[place]
     }
 
-    /// Whether a prediction is about it.
+    /// Whether the part has a notable share of the skin.
     pub fn has_much_skin(&self) -> bool {
         self.skin_share >= MUCH_SKIN
     }
@@ -327,7 +327,7 @@ impl ConnectedPart {
         Freedom::of(&gram, &self.centre(), self.size())
     }
 
-    /// The rigid movement with which all that holds the part goes along, if there is one and the part does not stay.
+    /// The common rigid movement of all constraints of the part, if there is one and the part does not stay.
     pub fn carried(&self, movement: impl Fn(u32) -> RigidMovement) -> Option<RigidPart> {
         let targets: Vec<Option<Numbers>> =
             self.held.iter().map(|rows| self.target(rows.holder, &movement)).collect();

@@ -12,7 +12,7 @@ use crate::plan::RigidMovement;
 /// Two displacements of one node that differ by more than this, in mm, contradict each other.
 const CONTRADICTION: f64 = 1e-9;
 
-/// What holds a node, strongest first.
+/// Class of a node's boundary condition, strongest first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum NodeClass {
     Prescribed,

@@ -1,4 +1,4 @@
-//! Rigid body motions that nothing holds: the null space of the held directions, in words.
+//! Unconstrained rigid body motions: the null space of the constrained directions, in words.
 //!
 //! A held direction n at the place x forbids n . (t + w x (x - c)) / s of a small motion with the translation t and
 //! the turn w about the centre c; s is a length that makes both alike. The sum of the squares of these rows is a 6 x 6
@@ -36,7 +36,7 @@ pub struct Axis {
 }
 
 impl Freedom {
-    /// What the rows of a Gram matrix leave free; they are (n, (x - c) / s x n).
+    /// The null space of the rows of a Gram matrix; they are (n, (x - c) / s x n).
     pub fn of(gram: &Matrix6<f64>, centre: &Vector, scale: f64) -> Freedom {
         let free = null_space(gram);
         if free.is_empty() {

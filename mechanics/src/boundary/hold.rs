@@ -1,4 +1,4 @@
-//! The directions in which one node is held, and where to.
+//! Dirichlet boundary condition of one node: its constrained directions and their displacements.
 
 use nalgebra::Matrix3;
 

@@ -36,7 +36,7 @@ pub enum SelectionError {
     Empty,
 }
 
-/// What selections are asked of.
+/// The mesh in which nodes are selected.
 pub struct Selector<'a> {
     pub mesh: &'a VolumeMesh,
     pub surfaces: &'a BTreeMap<String, Arc<TriangleSurface>>,

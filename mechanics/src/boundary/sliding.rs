@@ -1,4 +1,4 @@
-//! Directions across which sliding nodes are held: the normals of the faces they lie on.
+//! Constrained directions of sliding nodes: the normals of the faces they lie on.
 
 use crate::mesh::volume::BoundaryFace;
 use crate::mesh::{Vector, VolumeMesh};

@@ -23,7 +23,7 @@ const SAME_PLACE: f64 = 1e-6;
 /// The golden ratio.
 const GOLDEN: f64 = 1.618_033_988_749_895;
 
-/// What a number is in.
+/// Unit of a measure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unit {
     Degrees,
@@ -31,7 +31,7 @@ pub enum Unit {
     Ratio,
 }
 
-/// What moves the landmarks of a measure.
+/// Tissue of the landmarks of a measure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Tissue {
     Bone,
@@ -50,7 +50,7 @@ pub struct Measure {
 /// Landmarks in mm by their names.
 pub struct Landmarks<'a>(pub &'a BTreeMap<String, Vector>);
 
-/// Every measure, in the order in which they are told.
+/// Every measure, in the order in which they are reported.
 pub const MEASURES: [Measure; 20] = [
     bone("sna", Unit::Degrees, "Riedel 1952", |l| l.angle("S", "N", "A")),
     bone("snb", Unit::Degrees, "Riedel 1952", |l| l.angle("S", "N", "B")),

@@ -1,4 +1,4 @@
-//! Axes whose steps are factors: every power of ten is as long as the others.
+//! Logarithmic axes: every power of ten has the same length.
 
 /// A range of positive numbers on a stretch of the picture.
 #[derive(Clone, Copy, Debug)]
@@ -15,7 +15,7 @@ pub struct LogAxis {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tick {
     pub value: f64,
-    /// Whether it is told; the others are fine lines.
+    /// Whether it is reported; the others are fine lines.
     pub labelled: bool,
 }
 

@@ -7,7 +7,7 @@ use super::legend::Scale;
 use super::svg::svg;
 use super::symbol::Symbol;
 
-/// What the picture shows. Values are not negative.
+/// Content of the picture. Values are not negative.
 pub struct BoxesPicture<'a> {
     pub title: &'a str,
     pub subtitle: &'a str,

@@ -1,8 +1,8 @@
-//! Words beside marks: where there is room, near their mark, and never over each other.
+//! Labels beside marks: near their mark and never over each other.
 
 use super::drawing::{Rectangle, Style, estimated_width};
 
-/// What is taken already.
+/// Occupied areas.
 pub struct OccupiedAreas {
     inside: Rectangle,
     /// Words and marks: nothing may lie over them.

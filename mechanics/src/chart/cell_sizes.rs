@@ -5,7 +5,7 @@ use super::drawing::{Document, Paint, Rectangle, Style, wrapped};
 use super::svg::svg;
 use super::symbol::Symbol;
 
-/// What the picture shows.
+/// Content of the picture.
 pub struct CellSizesPicture<'a> {
     pub title: &'a str,
     pub subtitle: &'a str,
@@ -175,7 +175,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_mesh_is_drawn_within_the_picture_and_the_limit_is_told() {
+    fn every_mesh_is_drawn_within_the_picture_and_the_limit_is_reported() {
         let points = vec![[8.0, 3.9], [4.0, 4.2], [2.0, 4.28]];
         let series = [
             CellSizesSeries { name: "plain".to_owned(), points, fit: Some([4.31, 1.9]), fitted: 3 },

@@ -8,7 +8,7 @@ use super::raster::{ColouredSurface, Panel, PngError, Shot, draw_all};
 use super::svg::svg;
 use super::view::FaceDirection;
 
-/// What holds a node.
+/// Class of a node's boundary condition.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ClassKind {
     /// Moves with the segment of this name.
@@ -26,7 +26,7 @@ pub struct NodeClasses {
     pub count: usize,
 }
 
-/// What the picture shows: the boundary of the volume mesh, points in mm.
+/// Content of the picture: the boundary of the volume mesh, points in mm.
 pub struct ClassesPicture<'a> {
     pub title: &'a str,
     pub points: &'a [Vector],

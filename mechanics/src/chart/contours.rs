@@ -1,5 +1,5 @@
-//! Distance over two swept constants as filled contours, or over one as a curve: where the least lies, and what cannot
-//! be told from it.
+//! Filled contours of the distance over two swept constants, or a curve over one: the minimum, and the range that
+//! cannot be distinguished from it.
 
 use super::colour::{GRID, GROUND, INK, SERIES, hexadecimal, sequential};
 use super::contour_grid::{BANDS, ContourAxis, Grid, INSET, PLOT, labelled, position};
@@ -8,7 +8,7 @@ use super::legend::Scale;
 use super::raster::PngError;
 use super::svg::svg;
 
-/// What the picture shows. Distances in mm.
+/// Content of the picture. Distances in mm.
 pub struct ContourPicture<'a> {
     pub title: &'a str,
     pub subtitle: &'a str,

@@ -10,7 +10,7 @@ use super::svg::svg;
 use super::view::{Camera, FaceDirection};
 use super::views::ViewValues;
 
-/// What the picture shows. Points in mm; `before` and `after` correspond one to one.
+/// Content of the picture. Points in mm; `before` and `after` correspond one to one.
 pub struct DisplacementPicture<'a> {
     pub title: &'a str,
     pub subtitle: &'a str,

@@ -7,7 +7,7 @@ use super::drawing::{Document, Paint, Rectangle, Style, wrapped};
 use super::series::{MethodSeries, mark_data};
 use super::symbol::Symbol;
 
-/// What the picture shows.
+/// Content of the picture.
 pub struct EstimatesPicture<'a> {
     pub title: &'a str,
     pub subtitle: &'a str,

@@ -8,7 +8,7 @@ use super::raster::{ColouredSurface, Panel, PngError, Shot, draw_all};
 use super::svg::svg;
 use super::view::{Camera, Extent, FaceDirection};
 
-/// What the picture shows.
+/// Content of the picture.
 pub struct GapsPicture<'a> {
     pub title: &'a str,
     pub subtitle: &'a str,

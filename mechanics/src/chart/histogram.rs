@@ -5,7 +5,7 @@ use super::drawing::{Document, Rectangle, Style};
 use super::legend::Scale;
 use super::views::ViewValues;
 
-/// What the picture shows.
+/// Content of the picture.
 pub struct HistogramPicture<'a> {
     /// The values and the fixed range in mm; what lies beyond counts in the last bins.
     pub values: ViewValues<'a>,

@@ -1,5 +1,5 @@
-//! Speed against accuracy: wall time and error of each method on each mesh, both in factors; what none beats in
-//! both is joined by a line, and what gave no answer stands in a band of its own with its reason.
+//! Speed and accuracy: wall time and error of each method on each mesh on logarithmic axes. A line joins the Pareto
+//! front; runs without an answer are in a band of their own with the reason.
 
 use super::axis::{LogAxis, duration, numbers};
 use super::callout::OccupiedAreas;
@@ -9,7 +9,7 @@ use super::ladder_legend::Legend;
 use super::series::{MethodSeries, mark_data};
 use super::symbol::Symbol;
 
-/// What the picture shows.
+/// Content of the picture.
 pub struct LadderPicture<'a> {
     pub title: &'a str,
     pub subtitle: &'a str,

@@ -5,7 +5,7 @@ use super::drawing::{Document, Paint, Rectangle, Style};
 use super::svg::svg;
 use super::symbol::Symbol;
 
-/// What the picture shows.
+/// Content of the picture.
 pub struct LearningPicture<'a> {
     pub title: &'a str,
     /// Names and errors in mm of what is not learned.

@@ -141,7 +141,7 @@ fn point_normals(surface: &ColouredSurface) -> Vec<Vector> {
     normals
 }
 
-/// For each point the share of skylight that its neighbours leave it, in [0.55, 1].
+/// Ambient occlusion: for each point the share of skylight that its neighbours leave it, in [0.55, 1].
 fn sky_visibility(surface: &ColouredSurface, normals: &[Vector]) -> Vec<f64> {
     let mut rise = vec![(0.0, 0.0); surface.points.len()];
     for triangle in surface.triangles {

@@ -1,4 +1,4 @@
-//! The models of a study as series of its charts: one symbol each, whichever of them a chart shows.
+//! Series of a study's charts: one symbol for each model, the same in every chart.
 
 use super::drawing::{Document, Style};
 use super::symbol::Symbol;

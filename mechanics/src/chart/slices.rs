@@ -9,7 +9,7 @@ use super::raster::{ColouredSurface, Panel, PngError, Shot, draw_all};
 use super::svg::svg;
 use super::view::{Camera, Extent, FaceDirection};
 
-/// What the picture shows. Points in mm.
+/// Content of the picture. Points in mm.
 pub struct SlicesPicture<'a> {
     pub title: &'a str,
     /// A line of numbers below the title.

@@ -1,11 +1,11 @@
-//! What each method does as something is turned up: one row for each method, one panel for each axis, one small
-//! cell for each value. A wrong answer without a warning is what the eye must find first.
+//! Map of failures: the outcome of each method as a parameter grows; one row for each method, one panel for each axis,
+//! one small cell for each value. A wrong answer without a warning is what the eye must find first.
 
 use super::colour::{INK, SERIES};
 use super::drawing::{Document, Rectangle, Style, wrapped};
 use super::svg::svg;
 
-/// What a method did.
+/// Outcome of a method.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mark {
     Good,

@@ -5,7 +5,7 @@ use super::Vector;
 /// Which way a face looks and which way its head points; neither has to have length 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FaceDirection {
-    /// Out of the face, towards somebody in front of it.
+    /// Out of the face, towards a viewer in front of it.
     pub front: Vector,
     pub up: Vector,
 }
@@ -93,7 +93,7 @@ impl Extent {
     }
 }
 
-/// Share of a surface that an outlook has to see, in projection.
+/// Share of a surface that has to be visible from a direction, in projection.
 const LEAST_SEEN: f64 = 0.05;
 
 impl FaceDirection {

@@ -8,7 +8,7 @@ use super::raster::{ColouredSurface, Image, PngError, Shot, draw};
 use super::view::{Camera, FaceDirection};
 use rayon::prelude::*;
 
-/// What the picture shows. Points in mm; all rows have the same triangles.
+/// Content of the picture. Points in mm; all rows have the same triangles.
 pub struct ViewsPicture<'a> {
     pub triangles: &'a [[u32; 3]],
     pub rows: &'a [ViewRow<'a>],

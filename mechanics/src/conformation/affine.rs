@@ -1,4 +1,4 @@
-//! Affine maps of space, and the one that brings pulled points nearest to their targets.
+//! Affine maps of space, and the least-squares map of attracted points to their targets.
 
 use nalgebra::{Matrix3, SMatrix, SVector};
 

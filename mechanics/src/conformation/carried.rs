@@ -1,4 +1,4 @@
-//! A template's mesh on a patient: nodes moved, sets and labels kept, directions turned with the tissue.
+//! A template's mesh on a patient: nodes moved, sets and labels kept, directions rotated with the tissue.
 
 use super::deformation::Deformation;
 use super::fibres::middle_of;

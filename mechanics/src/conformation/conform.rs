@@ -80,7 +80,7 @@ pub fn conform(
     if skin.is_none() && bone.is_none() && patient.landmarks.is_empty() {
         return Err(ConformationError::NothingToFit);
     }
-    landmark::refuse_far(patient.landmarks, template.mesh)?;
+    landmark::refuse_distant(patient.landmarks, template.mesh)?;
     let first = started(start, patient, skin.as_ref().or(bone.as_ref()))?;
     let affine = affinely(first, skin.as_ref(), patient.landmarks)?;
     if let Some(pair) = &skin {

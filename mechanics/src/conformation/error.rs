@@ -1,4 +1,4 @@
-//! What keeps a template from being brought to a patient.
+//! Errors of a conformation.
 
 use crate::mesh::SearchError;
 use crate::registration::AlignmentError;

@@ -51,7 +51,7 @@ pub(super) fn similarity(landmarks: &[Landmark]) -> Result<Affine, ConformationE
     if aligned.rms > MOST_LEFT * spread {
         refuse_permuted(landmarks, aligned.rms, spread)?;
     }
-    refuse_unlike(landmarks, &map, aligned.rms, spread)?;
+    refuse_misfitting(landmarks, &map, aligned.rms, spread)?;
     Ok(map)
 }
 
@@ -160,7 +160,7 @@ fn refuse_mirrored(aligned: &PointAlignment, spread: f64) -> Result<(), Conforma
 }
 
 /// Refuses a landmark of the template that lies farther from it than it is large.
-pub(super) fn refuse_far(
+pub(super) fn refuse_distant(
     landmarks: &[Landmark],
     mesh: &VolumeMesh,
 ) -> Result<(), ConformationError> {
@@ -179,7 +179,7 @@ pub(super) fn refuse_far(
     Ok(())
 }
 
-fn refuse_unlike(
+fn refuse_misfitting(
     landmarks: &[Landmark],
     map: &Affine,
     rms: f64,

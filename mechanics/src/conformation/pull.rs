@@ -1,4 +1,4 @@
-//! Pulls: what draws a point of the template to a point of the patient, along a normal and across it.
+//! Attraction of template points to patient points, along a normal and across it.
 
 use nalgebra::Matrix3;
 

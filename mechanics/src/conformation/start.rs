@@ -7,7 +7,7 @@ use super::landmark::spread;
 use super::matching::Target;
 use crate::mesh::{TriangleSurface, Vector, area_sampling};
 
-/// Points by which axes are found, and the four ways of joining them told apart.
+/// Points by which axes are found, and the four ways of joining them distinguished.
 const POINTS: usize = 400;
 
 /// How the template is first brought to the patient.

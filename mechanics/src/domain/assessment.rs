@@ -33,7 +33,7 @@ const UNEVEN: f64 = 1.25;
 /// Steps of the sequence R3: powers of the positive root of x (x³ - 1) = 1, inverted (Roberts, 2018).
 const STEPS: [f64; 3] = [0.819_172_513_396_164_5, 0.671_043_606_703_789_3, 0.549_700_477_901_970_3];
 
-/// What was found about a surface and done to it.
+/// Assessment of a surface, and its repairs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Assessment {
     /// What is left after mending.
@@ -117,7 +117,7 @@ pub(super) fn assess(
 
 /// How much of what is not outside is uncertain.
 fn uncertain(samples: &[Sample], level: f64) -> f64 {
-    let counted = not_outside(samples, BETWEEN.start * level);
+    let counted = interior_winding_numbers(samples, BETWEEN.start * level);
     let most = if level < WHOLE { UNEVEN * level } else { f64::INFINITY };
     let is_certain = |winding: &&f64| (BETWEEN.end * level..=most).contains(*winding);
     let certain = counted.iter().filter(is_certain).count();
@@ -140,7 +140,7 @@ fn between_sheets(samples: &[Sample]) -> f64 {
 }
 
 /// The winding numbers above `least` away from the surface, or all where those are few.
-fn not_outside(samples: &[Sample], least: f64) -> Vec<f64> {
+fn interior_winding_numbers(samples: &[Sample], least: f64) -> Vec<f64> {
     let inside = |counts: &dyn Fn(&Sample) -> bool| -> Vec<f64> {
         let all = samples.iter().filter(|&sample| counts(sample)).map(|sample| sample.winding);
         all.filter(|&winding| winding > least).collect()
@@ -152,7 +152,7 @@ fn not_outside(samples: &[Sample], least: f64) -> Vec<f64> {
 
 /// 1 where the median of the winding numbers inside is near it or more.
 fn level(samples: &[Sample]) -> Option<f64> {
-    let mut found = not_outside(samples, OUTSIDE);
+    let mut found = interior_winding_numbers(samples, OUTSIDE);
     if found.len() < FEWEST {
         return None;
     }

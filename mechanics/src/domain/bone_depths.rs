@@ -1,4 +1,4 @@
-//! Bone on a grid: how deep each voxel lies in the surfaces of bone, for what parts bone voxel by voxel.
+//! Depth of each voxel in the surfaces of bone, for the division of bone voxel by voxel.
 
 use rayon::prelude::*;
 
@@ -15,7 +15,7 @@ const MOST_VOXELS: f64 = 1.5e6;
 const FINEST: f64 = 1.0;
 /// By how much edges grow until voxels are few enough.
 const COARSER: f64 = 1.02;
-/// Within so many edges of voxels from a surface depths are exact. Farther outside they are not told apart.
+/// Within so many edges of voxels from a surface depths are exact. Farther outside they are not distinguished.
 const NEAR: f64 = 2.0;
 
 /// Bone between surfaces on a grid.

@@ -1,4 +1,4 @@
-//! A closed surface by itself, such as that of a muscle, which tells its inside.
+//! Inside of a closed surface, such as that of a muscle.
 
 use super::assessment::Assessment;
 use super::shell::Shell;

@@ -6,7 +6,7 @@
 use super::flood::{Size, borders, flood, largest_piece, place, spread};
 use crate::image::distance::{Nearest, nearest_marked};
 
-/// What a voxel belongs to.
+/// Compartment of a voxel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Compartment {
     /// Air around the head, and what is not connected to the head.
@@ -31,7 +31,7 @@ impl Compartment {
     }
 }
 
-/// What a head is divided by. Lengths in mm.
+/// Parameters of the division of a head. Lengths in mm.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Division {
     pub size: Size,

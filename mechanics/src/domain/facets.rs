@@ -156,7 +156,7 @@ fn excess(edge: &[Side], turned: &[bool]) -> u32 {
     (2 * rising).abs_diff(edge.len()) as u32
 }
 
-/// Turns the whole patch where the larger part of its area was turned; returns its area in mm².
+/// Flips the whole patch where the larger part of its area was flipped; returns its area in mm².
 fn orient_by_majority(patch: &[u32], corners: &[Corners], turned: &mut [bool]) -> f64 {
     let area = |n: u32| corners[n as usize].area_vector().norm();
     let all: f64 = patch.iter().map(|&n| area(n)).sum();

@@ -198,7 +198,7 @@ impl ImageDomain {
         self.bone_outside
     }
 
-    /// What hangs together with the body nowhere, and was taken for air.
+    /// The parts that are disconnected from the body and count as air.
     pub fn left_out(&self) -> &LeftOut {
         &self.left_out
     }

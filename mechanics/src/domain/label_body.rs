@@ -20,7 +20,7 @@ const OPENING: f64 = 10.0;
 /// More voxels are refused.
 const MOST_VOXELS: usize = 1 << 25;
 
-/// What the voxels of a label are.
+/// Tissue class of a label.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LabelClass {
     Air,

@@ -1,4 +1,4 @@
-//! Tissue and bone of a scan that hang together with the body nowhere: a second body, a table, noise.
+//! Tissue and bone of a scan that are disconnected from the body: a second body, a table, noise.
 
 use super::compartments::Compartment;
 use super::flood::{largest_piece, piece_sizes, place};
@@ -9,7 +9,7 @@ const MM3_IN_ML: f64 = 1000.0;
 /// A body that is less than this share of all tissue and bone is none.
 const LEAST_KEPT: f64 = 1.0 / 3.0;
 
-/// What was taken for air because it hangs together with the body nowhere. Volumes in ml, with bone.
+/// Parts that are disconnected from the body and so count as air. Volumes in ml, with bone.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LeftOut {
     pub pieces: usize,
@@ -29,7 +29,7 @@ impl LeftOut {
     }
 }
 
-/// What a division leaves out.
+/// The parts that a division leaves out.
 pub(super) fn left_out(
     image: &ImageVolume,
     all: &[Compartment],

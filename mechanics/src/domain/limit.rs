@@ -1,4 +1,4 @@
-//! Limits of a body, where it is cut off on purpose: half-spaces and a region of interest.
+//! Limits at which a body is cut off on purpose: half-spaces and a region of interest.
 
 use crate::image::ImageVolume;
 use crate::mesh::Vector;

@@ -1,4 +1,4 @@
-//! Repair of a damaged surface before it bounds a body: triangles welded, thrown away and turned, each counted.
+//! Repair of a damaged surface before it bounds a body: triangles welded, removed and flipped, each counted.
 //!
 //! Turning has three steps. Triangles that share an edge with one other each are made to agree; a patch that so hangs
 //! together then goes by the larger part of its area. A patch that the rest of the surface sees from
@@ -27,7 +27,7 @@ const LEAST_FLATNESS: f64 = 0.3;
 /// A surface with a larger opening, in parts of its area, was cut off: a hole of a damaged one is a hundredth or two.
 pub(super) const MOST_OPEN: f64 = 0.03;
 
-/// What was done to a surface.
+/// Repairs of a surface.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Mending {
     /// Points at exactly the place of an earlier one.

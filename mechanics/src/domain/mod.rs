@@ -1,4 +1,4 @@
-//! The body that is to be meshed, as the sign of a function: tissue where it is positive.
+//! The body to be meshed as an implicit function: tissue where it is positive.
 //!
 //! A mesher asks for signs at the nodes of a lattice, for the places where lattice edges cross a boundary, and for the
 //! nearest point of a boundary. Everything else about scans and surfaces stays on this side.
@@ -54,7 +54,7 @@ pub use surface_error::{SurfaceDomainError, SurfaceName};
 
 use crate::mesh::Vector;
 
-/// What bounds the tissue at a place.
+/// Boundary of the tissue at a place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Boundary {
     /// The outer, visible surface.
@@ -67,7 +67,7 @@ pub enum Boundary {
     Cut,
 }
 
-/// What a ball holds.
+/// Content of a ball.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Coverage {
     /// Tissue alone.

@@ -4,7 +4,7 @@
 
 use crate::mesh::Vector;
 
-/// What is left of the segment when the root counts as found.
+/// Length of the segment at which the root counts as found.
 const TOLERANCE: f64 = 1e-4;
 /// Steps; every fourth halves the bracket, which brings any function to the tolerance.
 const MOST_STEPS: usize = 80;

@@ -24,7 +24,7 @@ const RAMP: f64 = 2.0;
 const FADES: f64 = 0.7;
 /// Holes of the scan whose border is shorter, in mm, are no border: what lies around them closes them.
 const SMALL_HOLE: f64 = 40.0;
-/// Bone this far outside the scanned skin is told of, in mm.
+/// Bone this far outside the scanned skin is reported, in mm.
 const OUTSIDE: f64 = 1.0;
 
 /// A surface of skin where it lies in the image: open where the camera saw no more, or closed. Lengths in mm.

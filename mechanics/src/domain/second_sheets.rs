@@ -1,4 +1,4 @@
-//! Pieces of a surface that stand there twice, one close beside the other, of which the smaller is left out.
+//! Duplicate sheets of a surface: of two pieces close beside each other the smaller one is left out.
 //!
 //! Where the sheets cross, the winding number would bound a body by whichever lies farther out, and that is neither of the two.
 
@@ -16,7 +16,7 @@ const LEAST_AREA: f64 = 0.01;
 /// Triangles of a piece that are looked at.
 const LOOKED_AT: usize = 400;
 
-/// What stands there twice.
+/// Duplicate sheets.
 #[derive(Clone, Debug, Default)]
 pub(super) struct SecondSheets {
     /// Triangles to be left out, ascending.

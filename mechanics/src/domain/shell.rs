@@ -1,4 +1,4 @@
-//! A closed surface, however damaged, that tells its inside: a tree of its triangles with the cells of its winding number.
+//! Inside of a closed surface, however damaged: a tree of its triangles with the cells of its winding number.
 
 use rayon::prelude::*;
 

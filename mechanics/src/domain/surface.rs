@@ -58,7 +58,7 @@ impl SurfaceDomain {
             assessments.push(of_bone);
         }
         let (containments, free) = contained(&skin, &shells)?;
-        refuse_doubtful(&assessments, of_skin.volume * free)?;
+        refuse_open(&assessments, of_skin.volume * free)?;
         let ends = cut_ends(skin.tree.facets(), skin.tree.bounds(), of_skin.level);
         let airways = AirwayMap::new(ends.bounds, ends.faces, |point| skin.value(point) > 0.0);
         let cut = ends.triangles;
@@ -145,7 +145,7 @@ impl SurfaceDomain {
 }
 
 /// Refuses a surface whose sheets or holes leave it open where the tissue ends.
-fn refuse_doubtful(found: &[Assessment], tissue: f64) -> Result<(), SurfaceDomainError> {
+fn refuse_open(found: &[Assessment], tissue: f64) -> Result<(), SurfaceDomainError> {
     let bones = (0..found.len()).map(SurfaceName::Bone);
     for (surface, found) in std::iter::once(SurfaceName::Skin).chain(bones).zip(found) {
         let in_holes = found.in_holes * found.volume / tissue;

@@ -14,7 +14,7 @@ pub(super) struct Level<'a> {
     pub level: f64,
 }
 
-/// What the grid knows about each voxel.
+/// State of each voxel of the grid.
 pub(super) struct Surroundings {
     /// In mm; infinite where one of the sides is missing.
     pub thickness: Vec<f32>,

@@ -1,4 +1,4 @@
-//! A tree of boxes over triangles that answers how near, how often around, and where hit.
+//! Bounding volume hierarchy of triangles for distances, winding numbers and line intersections.
 //!
 //! Winding numbers are those of Jacobson, Kavan, Sorkine-Hornung, Robust inside-outside segmentation using generalized
 //! winding numbers, ACM Transactions on Graphics 32 (2013): the solid angle of all triangles over 4 pi, 1 inside and 0

@@ -15,7 +15,7 @@ const DEPTH: usize = 6;
 /// A winding number that changes less within a cell than this counts as known there.
 const STEADY: f64 = 0.03;
 
-/// What is known of a ball.
+/// Bounds of the winding number in a ball.
 #[derive(Clone, Copy, Debug)]
 struct Ball {
     /// At its centre.

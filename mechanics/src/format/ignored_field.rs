@@ -1,5 +1,5 @@
-//! What a reader ignored, written beside a mesh as a field: the file has lost the arrays, and whoever
-//! asks it for one is still told why.
+//! Field that lists the arrays a reader ignored, written beside a mesh: the stored file lacks these arrays, and a
+//! request for one of them still gets the reason.
 //!
 //! One line for each array, `point` or `cell`, its name and the reason with tabs between them, and a
 //! last line `more` with the number of those that are not named.

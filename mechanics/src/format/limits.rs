@@ -18,8 +18,8 @@ pub struct ReadLimits {
     /// The same as a multiple of the whole file. No ratio is asked of a single array: a constant
     /// array of a good file reaches 1000:1.
     pub decoded_ratio: f64,
-    /// Files that decode to no more than this pass whatever their ratio: a small regular block
-    /// compresses far better than 10:1 and threatens nobody.
+    /// Files that decode to no more than this pass whatever their ratio: a small regular block compresses far better
+    /// than 10:1 and is harmless.
     pub decoded_floor_bytes: u64,
     /// The same for the voxels of an image: a label map of a whole head compresses a hundred times.
     pub image_floor_bytes: u64,
@@ -96,7 +96,7 @@ fn within(what: &'static str, declared: u64, limit: u64) -> Result<(), FormatErr
     Ok(())
 }
 
-/// What is left of the bytes that a file may decode to.
+/// Remaining budget of bytes that a file may decode to.
 pub(super) struct DecodeBudget {
     limit: u64,
     used: u64,

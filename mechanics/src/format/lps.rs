@@ -11,7 +11,7 @@ use crate::mesh::{Frame, Vector, VolumeMesh};
 /// A mesh in LPS where its frame is RAS; any other mesh as it is.
 pub struct VolumeInLps<'a> {
     pub mesh: Cow<'a, VolumeMesh>,
-    /// What the mesh is in now.
+    /// The present frame of the mesh.
     pub frame: Frame,
     is_turned: bool,
 }

@@ -1,4 +1,4 @@
-//! Bytes to mesh or image and back.
+//! File formats of meshes and images: readers and writers.
 //!
 //! Readers are written for hostile input: every count is compared with the bytes that are left
 //! and with [`ReadLimits`] before memory is taken, and [`read`] ends with one check of the whole

@@ -1,4 +1,4 @@
-//! The one check after any reader: what a file said becomes a mesh that the rest can trust.
+//! Check of parsed files: the one conversion, after any reader, to a valid mesh.
 
 use rayon::prelude::*;
 
@@ -17,7 +17,7 @@ use crate::mesh::{
 /// a far origin reaches 1e10.
 const LARGEST_COORDINATE: f64 = 1e15;
 
-/// What a reader found. With any cell it is a volume mesh, otherwise a surface.
+/// Content of a parsed file. With any cell it is a volume mesh, otherwise a surface.
 #[derive(Default)]
 pub(super) struct Parsed {
     pub points: Vec<Vector>,
@@ -262,7 +262,7 @@ fn orient(
                 format!("all {all} {} cells were inverted and are reordered", shape.name());
             warnings.push(Warning::new("cells-reordered", detail).with("count", all as f64));
         }
-    } else if invalid.count > 0 && may_be_repaired(shape, (invalid.count, reversed), all) {
+    } else if invalid.count > 0 && is_repairable(shape, (invalid.count, reversed), all) {
         let detail = format!(
             "{} of {all} {} cells are inverted or flat at a Gauss point: a case takes this mesh with `repair` only",
             invalid.count,
@@ -289,7 +289,7 @@ fn orient(
 
 /// Whether a repair may mend cells of a shape that no stiffness can be formed of: few, and none that is only numbered the other way
 /// round.
-fn may_be_repaired(shape: CellShape, (invalid, reversed): (u64, u64), all: u64) -> bool {
+fn is_repairable(shape: CellShape, (invalid, reversed): (u64, u64), all: u64) -> bool {
     let has_corners_to_spare = match shape {
         CellShape::Hex8 | CellShape::Wedge6 => true,
         CellShape::Tet4 => false,

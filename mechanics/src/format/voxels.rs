@@ -14,7 +14,7 @@ const PIECE: usize = 1 << 16;
 /// Bytes behind the last number that are counted.
 const MOST_COUNTED: u64 = 1 << 20;
 
-/// What a stored number means: slope times number plus intercept.
+/// Scaling of stored numbers: slope times number plus intercept.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Rescale {
     pub slope: f64,

@@ -41,7 +41,7 @@ impl Windows {
     }
 }
 
-/// What was found in each cell. A cell of which any point lies outside the image has no mean and no counts.
+/// Image values of each cell. A cell of which any point lies outside the image has no mean and no counts.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SampledCells {
     /// Points in each cell.

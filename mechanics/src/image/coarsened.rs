@@ -1,4 +1,4 @@
-//! An image with fewer voxels: means of blocks, for looks at a scan that need no detail.
+//! Downsampled images: means of blocks, for inspections of a scan that need no detail.
 
 use rayon::prelude::*;
 

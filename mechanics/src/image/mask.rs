@@ -35,7 +35,7 @@ impl Grid {
         [number % self.size[0], row % self.size[1], row / self.size[1]]
     }
 
-    /// What one voxel stands for, in mm³.
+    /// Volume of one voxel, in mm³.
     pub fn voxel_volume(&self) -> f64 {
         self.spacing.iter().product()
     }

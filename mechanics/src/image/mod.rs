@@ -1,5 +1,4 @@
-//! What a scanner saw: a scalar image on a regular grid, what it says about the cells of a mesh, and which of its voxels
-//! are what.
+//! Medical images: a scalar image on a regular grid, its values in the cells of a mesh, and its segmentation.
 
 pub mod cells;
 pub mod coarsened;

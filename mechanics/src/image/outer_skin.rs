@@ -1,4 +1,4 @@
-//! The head apart from what is around and within it: which air is outside, which is an airway, and the visible skin.
+//! Segmentation of the head: outer air, airways, and the visible skin.
 
 use super::mask::Mask;
 use super::morphology::{dilated, eroded};

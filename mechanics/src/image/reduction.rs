@@ -1,4 +1,4 @@
-//! A coarser image by the means of blocks of voxels, for what needs no finer one.
+//! Reduction of an image by the means of blocks of voxels.
 
 use rayon::prelude::*;
 

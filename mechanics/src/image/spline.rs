@@ -134,7 +134,8 @@ pub struct VoxelWeight {
     pub slope: [f64; 3],
 }
 
-/// The voxels that a place sees, with their weights, whose sum is one; those beyond the border are mirrored.
+/// The voxels that a spline value depends on, with their weights, whose sum is one; those beyond the border are
+/// mirrored.
 pub fn spline_weights(size: [usize; 3], place: [f64; 3], mut each: impl FnMut(VoxelWeight)) {
     let support: [Support; 3] = std::array::from_fn(|axis| Support::new(place[axis], size[axis]));
     let [x, y, z] = support.map(Support::weights);

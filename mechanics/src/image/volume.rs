@@ -193,7 +193,7 @@ impl ImageVolume {
         self.placement.steps.map(|step| step.normalize())
     }
 
-    /// What one voxel stands for, in mm³.
+    /// Volume of one voxel, in mm³.
     pub fn voxel_volume(&self) -> f64 {
         Matrix3::from_columns(&self.placement.steps).determinant().abs()
     }

@@ -25,7 +25,7 @@ pub struct ElasticTensor {
     pub fibre: Option<AlongFibre>,
 }
 
-/// What fibres add to lambda and mu.
+/// Contribution of fibres to lambda and mu.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AlongFibre {
     /// Of length 1.
@@ -157,14 +157,14 @@ impl ElasticTensor {
     }
 }
 
-/// C11 - lambda, C12 - lambda and C22 + C23 - 2 lambda with the fibre along the first axis.
+/// Entries without lambda: C11 - lambda, C12 - lambda and C22 + C23 - 2 lambda with the fibre along the first axis.
 struct WithoutLambda {
     along: f64,
     mixed: f64,
     across: f64,
 }
 
-/// What of C a pressure carries, and the shear modulus that belongs to it, in kPa.
+/// The part of C that a pressure carries, and the shear modulus that belongs to it, in kPa.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PressurePart {
     pub lambda: f64,

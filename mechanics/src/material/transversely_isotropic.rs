@@ -30,7 +30,7 @@ pub enum FibreLaw {
     Kim2012,
 }
 
-/// What fibres add to a tissue whose own constants are those across them.
+/// Constants of fibres, beside those of the tissue across them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fibre {
     /// E_f in kPa, in [1e-9, 1e9].

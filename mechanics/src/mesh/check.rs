@@ -1,5 +1,5 @@
-//! What is in an uploaded mesh and what is wrong with it: the report that a client reads before
-//! anything is computed. Lengths, areas and volumes are in mm if the nodes are.
+//! Mesh report: content and faults of an uploaded mesh, for the client, before anything is computed. Lengths, areas and
+//! volumes are in mm if the nodes are.
 
 use std::collections::BTreeMap;
 

@@ -1,4 +1,4 @@
-//! Arrays of a file that nothing reads, each with the reason, so that whoever asks for one by its name is told.
+//! Ignored arrays of a file, each with the reason, for requests that name one.
 
 use std::fmt;
 
@@ -8,7 +8,7 @@ const MOST_LISTED: usize = 100;
 /// As many names stand in a message.
 const MOST_NAMED: usize = 20;
 
-/// What an array has values for.
+/// Entities that an array has values for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ValuesOf {
     Points,
@@ -70,7 +70,7 @@ impl IgnoredArrays {
     }
 }
 
-/// What a case asks an array for.
+/// Purpose for which a case names an array.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ArrayUse {
     PointLabels,

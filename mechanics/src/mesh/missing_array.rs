@@ -56,11 +56,14 @@ impl VolumeMesh {
         let ignored = arrays.iter().find_map(|array| self.ignored.find(ValuesOf::Points, array));
         let why = ignored.map(|array| format!("; {array}")).unwrap_or_default();
         let known = listed(self.node_sets.keys());
-        format!("the mesh has no node set {name:?}; it has {known}{why}{}", self.other_ways(name))
+        format!(
+            "the mesh has no node set {name:?}; it has {known}{why}{}",
+            self.selection_hints(name)
+        )
     }
 
     /// How nodes are selected that are in no set of this name.
-    fn other_ways(&self, name: &str) -> String {
+    fn selection_hints(&self, name: &str) -> String {
         if let Some(labels) = self.node_labels.get(name) {
             let values: BTreeSet<i64> = labels.iter().copied().collect();
             let values = listed(values.iter().map(i64::to_string).collect::<Vec<_>>().iter());

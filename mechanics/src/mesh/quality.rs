@@ -55,7 +55,7 @@ pub struct DihedralAngles {
 }
 
 impl QualityReport {
-    /// What a reader must know although the mesh may be used.
+    /// Warnings about a usable mesh.
     pub fn warnings(&self) -> Vec<Warning> {
         let mut warnings = Vec::new();
         if self.inverted > 0 {

@@ -1,4 +1,4 @@
-//! Something that a reader of a result must know although the work went on.
+//! Warnings: facts that a reader of a result needs although the work went on.
 
 /// A stable code, one sentence, and the numbers behind it in the order in which they matter.
 #[derive(Clone, Debug, PartialEq)]

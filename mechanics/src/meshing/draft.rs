@@ -1,4 +1,4 @@
-//! A mesh in the making: tetrahedra over nodes that know the boundaries they lie on.
+//! Unfinished mesh: tetrahedra over nodes that know the boundaries they lie on.
 
 use super::boundary_set::BoundarySet;
 use super::shape::{determinant, worst_sine};

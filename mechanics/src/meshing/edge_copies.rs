@@ -15,13 +15,13 @@ pub(super) fn part(draft: &mut Draft) -> usize {
         if odd.is_empty() {
             break;
         }
-        cut += part_round(draft, &odd);
+        cut += split_disjoint(draft, &odd);
     }
     cut
 }
 
 /// Cuts edges that share no cell.
-fn part_round(draft: &mut Draft, odd: &[OddEdge]) -> usize {
+fn split_disjoint(draft: &mut Draft, odd: &[OddEdge]) -> usize {
     let of_nodes = draft.tetrahedra_of_nodes();
     let mut touched = vec![false; draft.tetrahedra.len()];
     let mut cut = 0;

@@ -1,5 +1,5 @@
-//! Surface fitted to the boundary of the body: its nodes are moved along their normals until as much volume lies between both on
-//! the one side as on the other.
+//! Volume-preserving fit of the surface to the boundary of the body: nodes move along their normals until as much
+//! volume lies between both on the one side as on the other.
 //!
 //! Triangles between points of a curved surface are its chords: a ball of radius R is short of volume by about h²/(4 R²) of it for
 //! edges h, and the boundary lies up to a sagitta away on one side alone. The distance of a smooth boundary from a triangle

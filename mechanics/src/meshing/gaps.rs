@@ -1,4 +1,4 @@
-//! Gaps and sheets of tissue thinner than a cell: lattice edges whose ends lie on one side, and on whose way the other is met.
+//! Gaps and sheets of tissue thinner than a cell: lattice edges with both ends on one side that cross the other.
 
 use super::error::MeshingError;
 use super::lattice::Lattice;
@@ -14,7 +14,7 @@ const APART: f64 = 3.0;
 /// A curved surface reaches across an edge by its square over eight radii: less than this part of it where the radius is
 /// longer than six edges.
 const DEEP: f64 = 0.02;
-/// So many gaps are told of.
+/// So many gaps are reported.
 const TOLD: usize = 20;
 
 /// A region where the other side is thinner than a cell.
@@ -42,7 +42,7 @@ struct EdgeCrossing {
     place: Vector,
 }
 
-/// What is looked at.
+/// Candidates of gaps.
 struct Search<'a> {
     lattice: &'a Lattice,
     leaves: &'a Leaves,

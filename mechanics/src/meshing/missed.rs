@@ -1,4 +1,4 @@
-//! Parts of the body between the nodes of a lattice edge that it does not know of: sheets of tissue and gaps thinner than a cell.
+//! Sheets and gaps thinner than a cell: changes of tissue between the nodes of a lattice edge.
 
 use super::grid::{Coordinates, Grid};
 use super::octree::OctreeCell;

@@ -22,7 +22,7 @@ pub(super) struct Fans {
     pub count: Vec<u8>,
 }
 
-/// What became of places where tissue touches itself.
+/// Result for places where tissue touches itself.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Pinched {
     /// Copies of nodes.

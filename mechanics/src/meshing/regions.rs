@@ -124,7 +124,8 @@ fn projected(
     })
 }
 
-/// For each node of faces between regions the place at which these lie as far beyond where the regions meet as within it.
+/// For each node of faces between regions the place at which these faces, as chords of the curved interface, enclose
+/// the right volume.
 fn chord_corrected(
     climb: &Climb,
     regions: &[u8],

@@ -48,7 +48,7 @@ impl TissueMesh {
     }
 }
 
-/// What the stages count before cells are made better.
+/// Counts of the stages before cells are improved.
 #[derive(Default)]
 struct Counts {
     leaves: usize,

@@ -141,7 +141,7 @@ impl<'a> Warp<'a> {
         worst_sine(&self.lattice.tetrahedra[tet as usize].map(|node| self.position[node as usize]))
     }
 
-    /// Puts nodes back until no tetrahedron with tissue in it is flat or turned over.
+    /// Undoes the warp of nodes until no tetrahedron with tissue is flat or inverted.
     fn undo_flat(&mut self) {
         loop {
             let all = 0..self.lattice.tetrahedra.len() as u32;
@@ -188,7 +188,7 @@ impl<'a> Warp<'a> {
         self.moved[node as usize] = 0.0;
     }
 
-    /// Puts a node back and on, away from the boundary, so that its cuts do not lie at its feet.
+    /// Moves a node back and away from the boundary, so that its cuts are not too near to it.
     pub fn release(&mut self, node: u32) {
         self.undo_warp(node);
         let Some(back) = self.position_away_from_cut(node) else { return };
@@ -210,7 +210,7 @@ impl<'a> Warp<'a> {
         }
     }
 
-    /// Where a node goes that lies too near to one of its cuts.
+    /// Position of a node that is too near to one of its cuts.
     fn position_away_from_cut(&self, node: u32) -> Option<Vector> {
         let here = self.position[node as usize];
         let of_node = self.cuts.of_node.row(node as usize).iter();

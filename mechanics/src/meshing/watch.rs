@@ -1,4 +1,4 @@
-//! Stages of meshing that tell where they are and end when asked to.
+//! Progress and cancellation of the stages of meshing.
 
 use rayon::prelude::*;
 

@@ -2,7 +2,7 @@
 
 use nalgebra::Matrix3;
 
-/// What is known of the cells of an answer.
+/// Stress and strain of the cells of a solution.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct CellStates {
     /// In cell order; empty where it was not asked for or the model has none.

@@ -1,4 +1,5 @@
-//! Holds and forces as what is known of a linear system: along the axes of the holds, by row, and back.
+//! Degrees of freedom: boundary conditions and forces as the known part of a linear system, along the axes of the
+//! constraints, by row, and back.
 
 use std::sync::Arc;
 
@@ -20,7 +21,7 @@ pub struct Constrained<'a> {
     pub numbering: &'a DofMap,
 }
 
-/// What a load case states, by row, along the axes of the rows.
+/// Prescribed displacements and forces of a load case, by row, along the axes of the rows.
 pub struct PrescribedValues {
     /// Zero where free.
     pub displacement: Vec<Lanes<f64, 3, 1>>,
@@ -54,7 +55,7 @@ impl Constrained<'_> {
         3 * self.numbering.layout.free - partly.map(Hold::count).sum::<usize>()
     }
 
-    /// The values of holds and forces of a load case.
+    /// The values of the constraints and forces of a load case.
     pub fn known(&self, case: &LoadCase) -> PrescribedValues {
         let rows = self.numbering.layout.place.len();
         let mut known =
@@ -101,8 +102,8 @@ impl Constrained<'_> {
         displacement
     }
 
-    /// What each hold exerts: the internal force less the acting one along its held axes, along the axes
-    /// of the coordinates.
+    /// Reaction force of each constraint: the internal force less the acting one along its constrained axes, along the
+    /// axes of the coordinates.
     pub fn reactions(&self, internal: &[Lanes<f64, 3, 1>], force: &Unknowns) -> Vec<Vector> {
         let reaction = |hold: &Hold| {
             let row = self.numbering.row(hold.node);
@@ -144,7 +145,7 @@ impl PrescribedValues {
         result
     }
 
-    /// What is known and what was solved for.
+    /// Prescribed and computed displacements together.
     pub fn total(&self, solved: &Unknowns) -> Vec<Lanes<f64, 3, 1>> {
         let mut total = self.displacement.clone();
         for (total, solved) in total.iter_mut().zip(solved) {
@@ -209,7 +210,7 @@ impl DofMap {
     }
 
     /// Adds the matrices of whole cells, given by their places in the order of the layout; false where it
-    /// was told to stop.
+    /// was cancelled.
     pub fn add_cells<M: AsRef<[Block]> + Send>(
         &self,
         matrix: &mut HalfMatrix<f64, 3>,
@@ -261,7 +262,7 @@ pub(crate) fn add_cell(matrix: &mut HalfMatrix<f64, 3>, rows: &[u32], blocks: &[
     }
 }
 
-/// The rows of held nodes that keep free unknowns.
+/// The rows of partly constrained nodes.
 pub fn partly_constrained(holds: &[Hold], numbering: &DofMap) -> Vec<PartlyHeld> {
     holds
         .iter()
@@ -275,7 +276,7 @@ pub fn partly_constrained(holds: &[Hold], numbering: &DofMap) -> Vec<PartlyHeld>
         .collect()
 }
 
-/// Writes the rows and columns of nodes with axes of their own in those axes: Q^T K Q.
+/// Rotates the rows and columns of partly constrained nodes into their own axes: Q^T K Q.
 pub fn rotate_into_local_axes(matrix: &mut HalfMatrix<f64, 3>, partly_constrained: &[PartlyHeld]) {
     if partly_constrained.is_empty() {
         return;

@@ -1,4 +1,4 @@
-//! Models: conditions, materials and mesh in, nodal displacement out.
+//! Models: boundary conditions, materials and mesh in, nodal displacement out.
 
 pub mod cell_state;
 pub mod dofs;

@@ -1,5 +1,4 @@
-//! A movement in parts, each brought to rest before the next one: a part that finds no rest is halved, the one after a part that
-//! does is twice as large.
+//! Adaptive load steps: a step without equilibrium is halved, the step after a successful one is twice as large.
 
 /// The least part of a movement that is tried.
 const LEAST: f64 = 1.0 / 64.0;

@@ -22,7 +22,7 @@ pub struct Equilibrium {
     pub reactions: Vec<Vector>,
     pub solver: SolveReport,
     pub states: CellStates,
-    /// What a reader must know of this model and of this answer.
+    /// Warnings about this model and this solution.
     pub warnings: Vec<Warning>,
 }
 

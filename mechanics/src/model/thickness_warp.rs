@@ -1,5 +1,5 @@
-//! Thickness-preserving warp: tissue rides on the nearest bone. Ulusoy et al. 2010 call it the conventional
-//! method (docs/methods.md#thickness-warp, docs/verification.md#v36).
+//! Thickness-preserving warp: tissue moves with the nearest bone. Ulusoy et al. 2010 call it the conventional method
+//! (docs/methods.md#thickness-warp, docs/verification.md#v36).
 //!
 //! b = the point of the bone under the tissue that is nearest to x, T = the movement of the bone there
 //! u(x) = T(x) - x, so that |T(x) - T(b)| = |x - b|: every point keeps its distance to its bone.
@@ -21,14 +21,14 @@ use crate::boundary::{Conditions, Hold, NodeClass};
 use crate::mesh::{SurfaceSearch, TriangleSurface, Vector, VolumeMesh, Warning};
 use crate::solver::SolveReport;
 
-/// What the user of a warp decides.
+/// Parameters of a warp.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ThicknessWarp {
     /// In mm; 0 follows the nearest bone alone.
     pub blend_radius: f64,
 }
 
-/// A jump across an edge above this many mm is told.
+/// A jump across an edge above this many mm is reported.
 const TOLD: f64 = 1e-6;
 
 /// Tissue and the bones that it lies on.
@@ -41,7 +41,7 @@ pub struct Warped<'a> {
     pub wanted_residual: f64,
 }
 
-/// What moves as one.
+/// A rigid body of bone.
 struct Bone {
     mover: Mover,
     /// Its points are the nodes of the mesh.
@@ -88,7 +88,7 @@ impl Warped<'_> {
         })
     }
 
-    /// For each node the displacement that holds it in all directions.
+    /// For each node its prescribed displacement, if it is fully constrained.
     fn fully_constrained(&self) -> Vec<Option<Vector>> {
         let mut held = vec![None; self.mesh.nodes.len()];
         for hold in self.conditions.holds.iter().filter(|hold| hold.count() == 3) {
@@ -174,7 +174,7 @@ impl Warped<'_> {
         Followed { displacement: sum / weights, bone }
     }
 
-    /// What a case may state and a warp has no use for.
+    /// Statements of a case that a warp ignores.
     fn ignored(&self) -> Option<Warning> {
         let partly = |class: NodeClass| {
             let of_class = |hold: &&Hold| self.conditions.classes[hold.node as usize] == class;

@@ -1,5 +1,5 @@
-//! The tissue of cells that muscles fill in part: the mixture of their shares by a stated rule, and how much of the volume depends
-//! on which rule is taken.
+//! Equivalent tissue of cells that muscles fill in part: the mixture of their shares by a stated rule, and the volume
+//! in which the choice of the rule matters.
 
 use crate::material::LinearElastic;
 use crate::material::mixture::{MixingRule, mixture};

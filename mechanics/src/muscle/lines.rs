@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use crate::mesh::{Vector, VolumeMesh};
 
-/// A muscle with fewer cells is of few cells, which is told.
+/// A muscle with fewer cells is of few cells, which is reported.
 pub const FEW_CELLS: usize = 20;
 
 /// The polylines of a muscle, in mm.

@@ -99,7 +99,7 @@ impl Linearised {
         &self.slope + &self.normal * step + step * damping
     }
 
-    /// The held unknown that most wants to go back into the room.
+    /// The unknown at a bound whose gradient points most strongly back inside.
     fn bound_to_release(
         &self,
         step: &DVector<f64>,

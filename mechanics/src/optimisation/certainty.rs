@@ -18,7 +18,7 @@ const BLIND: f64 = 1e-5;
 /// A parameter with less than this weight takes no part in a combination.
 const SMALL_WEIGHT: f64 = 1e-3;
 
-/// What the targets say about the parameters.
+/// Certainty of the parameters from the targets.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Certainty {
     /// The parameters that the targets determine: those that no bound stops, and those of tissue even so, since a bound of a

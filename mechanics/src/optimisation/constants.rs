@@ -1,4 +1,4 @@
-//! Constants of the tissue as parameters: where they stand in a scene, and what they do to its skin.
+//! Tissue constants as parameters: their places in a scene and the derivatives of its skin.
 //!
 //! Poisson's ratio nu is a parameter as it is, Young's modulus E by its logarithm: only ratios of moduli move skin that nothing
 //! but bone pulls at. The derivative of the skin is that of the plan at hand, by a difference of two full solutions.
@@ -89,7 +89,7 @@ impl ConstantBounds {
         Ok(())
     }
 
-    /// What the constant does to the skin of a plan, near the value of a scene.
+    /// Derivative of the skin of a plan by the constant, near the value of a scene.
     pub(super) fn column(
         &self,
         scene: &mut Scene,

@@ -1,5 +1,5 @@
-//! Inverse planning: the movements of bone segments that take the skin where it is wanted, and the growth and the constants of
-//! tissue that explain where it is.
+//! Inverse planning: the movements of bone segments that bring the skin to its targets, and the growth and tissue
+//! constants that explain a measured skin.
 //!
 //! minimise  sum ((u(q) - d) / sigma)²  over  lower <= q <= upper
 //!
@@ -61,7 +61,7 @@ pub struct Optimum {
     pub iterations: usize,
 }
 
-/// What is left of a target.
+/// Residual of a target.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Residual {
     /// Root of the mean over its points of the squared distance in the components that are not free, in mm.

@@ -1,5 +1,4 @@
-//! Input of inverse planning: segments, growth and constants with their bounds, targets on the skin, and why there may be no
-//! plan.
+//! Input of inverse planning: segments, growth and constants with their bounds, targets on the skin, and its errors.
 
 use crate::mesh::Vector;
 use crate::response::Response;
@@ -61,7 +60,7 @@ pub enum InnerBounds {
     Growth(f64, f64),
 }
 
-/// What a constant of the tissue does to the skin near the value that the response was solved with.
+/// Derivative of the skin by a tissue constant, near the value that the response was solved with.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ConstantColumn {
     /// The derivative of the displacement of each skin node, as [node][xyz] in mm.

@@ -23,7 +23,7 @@ const MOST_HALVINGS: usize = 6;
 /// A sum of squares of residuals over sigma that is larger by less is as good.
 const NEGLIGIBLE: f64 = 1e-6;
 
-/// What is looked for, and what by.
+/// Unknowns and targets of the search.
 #[derive(Clone, Copy)]
 pub struct Search<'a> {
     /// Of first order.
@@ -36,7 +36,7 @@ pub struct Search<'a> {
     pub constants: &'a [ConstantBounds],
 }
 
-/// What was found. Of `Optimum::constants`, Young's modulus is there by its natural logarithm.
+/// Result of the search. Of `Optimum::constants`, Young's modulus is there by its natural logarithm.
 #[derive(Clone, Debug)]
 pub struct SearchResult {
     pub optimum: Optimum,

@@ -1,4 +1,4 @@
-//! The parameters that are free, and how the numbers that the columns are multiplied by depend on them.
+//! Free parameters, and the factors of the columns as functions of them.
 //!
 //! For a segment a = (R - I, (R - I)(c - p) + t), R = Rz Ry Rx, c the centre of the response, p the pivot. With [v]
 //! the matrix of the cross product with v:
@@ -148,7 +148,7 @@ impl<'a> Unknowns<'a> {
         loads.map(is_all).position(|is_all| is_all)
     }
 
-    /// What the columns are multiplied by: twelve numbers of each segment, then what acts inside, then constants.
+    /// Factors of the columns: twelve numbers of each segment, then internal loads, then constants.
     pub fn coefficients(&self, unknowns: &DVector<f64>) -> DVector<f64> {
         let Question { response, constants, .. } = self.question;
         let values = self.values(unknowns);

@@ -1,4 +1,4 @@
-//! Labels of voxels: whose bone each is.
+//! Labels of voxels: the segment of each, or the skull.
 
 use nalgebra::Matrix3;
 
@@ -11,7 +11,7 @@ const SAWN: u8 = 2;
 const LOOSE: u8 = 3;
 const FIRST_SEGMENT: u8 = 4;
 
-/// Whose a piece of bone is.
+/// Owner of a piece of bone.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Owner {
     /// Of no segment: the skull and whatever else does not move.
@@ -24,7 +24,7 @@ pub enum Owner {
     Segment(usize),
 }
 
-/// For each voxel of an image whether it is bone, and whose; the first axis fastest.
+/// For each voxel of an image the owner of its bone, if any; the first axis fastest.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BoneLabels {
     size: [usize; 3],
@@ -68,7 +68,7 @@ impl BoneLabels {
         &self.labels
     }
 
-    /// Whose the bone of a voxel is; `None` where there is none.
+    /// Owner of the bone of a voxel; `None` where there is no bone.
     pub fn owner(&self, voxel: usize) -> Option<Owner> {
         match self.labels[voxel] {
             NO_BONE => None,

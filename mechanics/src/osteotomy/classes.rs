@@ -9,12 +9,12 @@ use std::collections::BTreeMap;
 
 use super::bone_labels::{NearestBone, Owner};
 use super::cut::Plane;
-use super::free_band::near_others;
+use super::free_band::near_other_segments;
 use crate::domain::Boundary;
 
 use crate::mesh::{Vector, VolumeMesh, Warning};
 
-/// What a node does when bones move. Segments by their number.
+/// Class of a node. Segments by their number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Role {
     Joined(usize),
@@ -31,7 +31,7 @@ pub struct TissueBoundary<'a> {
     pub marks: &'a [Option<Boundary>],
 }
 
-/// What bone says of nodes that lie on it.
+/// Classes of nodes on bone.
 pub struct BoneContact<'a> {
     /// The bone behind a place, seen along the normal that leaves the tissue.
     pub behind: &'a dyn Fn(&Vector, &Vector) -> Option<NearestBone>,
@@ -39,7 +39,7 @@ pub struct BoneContact<'a> {
     pub slides: &'a dyn Fn(&Vector) -> bool,
 }
 
-/// What is held, and how wide the band along osteotomies is.
+/// Rules of the classes, and the width of the free band along osteotomies.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ClassRules {
     /// For each segment a number that those share which move alike; 0 for those that stay with the rest of the bone.
@@ -135,7 +135,7 @@ impl Overlaps {
     }
 }
 
-/// Frees held nodes that are near others which move otherwise, or share a cell with one; how many they are.
+/// Frees constrained nodes that are near nodes with another movement, or share a cell with one; returns how many.
 fn free_near_other_segments(
     tissue: &TissueBoundary<'_>,
     rules: &ClassRules,
@@ -147,7 +147,7 @@ fn free_near_other_segments(
         Role::Free => None,
     };
     let movements: Vec<Option<u32>> = roles.iter().map(movement).collect();
-    let near = near_others(tissue.mesh, &movements, rules.band_mm);
+    let near = near_other_segments(tissue.mesh, &movements, rules.band_mm);
     for &node in &near {
         roles[node as usize] = Role::Free;
     }

@@ -1,4 +1,4 @@
-//! Faces of voxels at which bone of one owner meets bone of another, at a cut or without one, and what cuts leave whole.
+//! Faces of voxels between bone of two owners, at a cut or without one, and bone that cuts do not separate.
 
 use std::collections::BTreeMap;
 

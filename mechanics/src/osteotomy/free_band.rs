@@ -1,4 +1,4 @@
-//! The band along an osteotomy: held nodes too near to others that move otherwise.
+//! Free band along an osteotomy: constrained nodes too near to others with another movement.
 
 use std::collections::BTreeSet;
 
@@ -7,7 +7,7 @@ use crate::mesh::VolumeMesh;
 
 /// Held nodes, by number ascending, with one of another movement at most `band_mm` away or in one of their cells.
 /// `None` for nodes that are not held.
-pub(super) fn near_others(
+pub(super) fn near_other_segments(
     mesh: &VolumeMesh,
     movements: &[Option<u32>],
     band_mm: f64,

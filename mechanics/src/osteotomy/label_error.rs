@@ -1,4 +1,4 @@
-//! Reasons why the bone of a scan holds no such segments.
+//! Reasons why the bone of a scan cannot be divided into the stated segments.
 
 use crate::mesh::Vector;
 

@@ -79,7 +79,7 @@ pub fn label_given(
 }
 
 impl Labelled {
-    /// What is told of labelled bone of which nothing is loose.
+    /// Report on labelled bone of which nothing is loose.
     fn new(
         osteotomy: &Osteotomy,
         grid: &Grid<'_>,
@@ -125,7 +125,7 @@ fn saw(osteotomy: &Osteotomy, grid: &Grid<'_>, labels: &mut BoneLabels) {
     }
 }
 
-/// Tells pieces of bone of no segment that are too small to hold tissue from the skull.
+/// Separates loose pieces of bone, too small to hold tissue, from the skull.
 fn separate_loose(
     osteotomy: &Osteotomy,
     bone: &BoneImage<'_>,

@@ -1,4 +1,4 @@
-//! Osteotomies: cuts through bone, the segments between them, and what the nodes of the tissue around them are held to.
+//! Osteotomies: cuts through bone, the segments between them, and the boundary conditions of the tissue around them.
 //!
 //! [`rule::Osteotomy`] says where is cut and what comes loose. [`labelling::label`] finds the segments in the bone of a
 //! scan and [`label_surface`](label_surface::label_surface) makes closed surfaces of them;

@@ -1,5 +1,4 @@
-//! Plans that look like a mistake: nothing moves, metres for millimetres, radians for degrees, movements larger than
-//! the face.
+//! Plausibility of a plan: nothing moves, metres for millimetres, radians for degrees, movements larger than the face.
 
 use super::RigidMovement;
 use crate::mesh::{Vector, Warning};
@@ -112,7 +111,7 @@ mod tests {
     }
 
     #[test]
-    fn metres_and_radians_are_told_with_what_they_would_mean() {
+    fn metres_and_radians_are_reported_with_what_they_would_mean() {
         let metres = suspect_units(&moved(&shifted(0.005))).unwrap();
         assert_eq!(metres.numbers[1].0, "if_metres_mm");
         assert!((metres.numbers[1].1 - 5.0).abs() < 1e-12, "{metres:?}");
@@ -139,7 +138,7 @@ mod tests {
     }
 
     #[test]
-    fn a_movement_beyond_the_size_of_the_face_is_told_with_both_lengths() {
+    fn a_movement_beyond_the_size_of_the_face_is_reported_with_both_lengths() {
         let (near, far) = (shifted(59.0), shifted(61.0));
         assert_eq!(beyond_face(&moved(&near), 60.0), None);
         let beyond = beyond_face(&moved(&far), 60.0).unwrap();

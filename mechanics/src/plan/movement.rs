@@ -17,7 +17,7 @@ pub struct RigidMovement {
     translation: Vector,
 }
 
-/// What a movement is restricted to: a direction, or the plane across one.
+/// Restriction of a movement: to a direction, or to the plane across one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Restriction {
     Axis(Vector),

@@ -65,7 +65,7 @@ fn muscles_stay(scene: &Scene) -> Option<Warning> {
     (!pulling.is_empty()).then(|| Warning::new("muscles-not-refined", detail))
 }
 
-/// What is accepted, and what it may take.
+/// Accepted error, and bounds of the refinement.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RefinementGoal {
     /// The mean error over the skin nodes of the case that move (`moving_points`), in mm.

@@ -1,4 +1,4 @@
-//! The answer of a scene: its equilibrium, what the mesh leaves out of it, and what linearity does.
+//! Solution of a scene: its equilibrium, its discretisation error and its linearisation error.
 
 use super::contact::{InTouch, Touch, touch, touch_at_finite_strain};
 use super::method::MethodKind;
@@ -15,11 +15,11 @@ pub(super) struct Answer {
     pub equilibrium: Equilibrium,
     pub numerical_error: Result<NumericalError, NotEstimated>,
     pub nonlinearity: Estimated,
-    /// What touches.
+    /// Contact.
     pub contact: Option<Touch>,
 }
 
-/// What was solved of a scene, with linear elements of first order or otherwise.
+/// Solution of a scene, with linear elements of first order or otherwise.
 pub(super) enum Linear<'a> {
     Solved(Box<LinearAnswer<'a>>),
     Other(Box<Answer>),

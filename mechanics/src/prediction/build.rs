@@ -21,7 +21,7 @@ use crate::model::fem::discretisation_error::DistributedLoads;
 use crate::plan::PlannedSegment;
 use crate::plan::doubt::nothing_moves;
 
-/// What cells are made of, and what runs through them.
+/// Materials and fibres of cells.
 struct InCells {
     tissue: TissueOfCells,
     fibres: Vec<Vector>,

@@ -96,7 +96,7 @@ pub enum SlidingNormal {
     Direction(Vector),
 }
 
-/// What the surgeon decided, and, for mechanical cases, what else acts.
+/// The surgeon's plan, and the loads of mechanical cases.
 #[derive(Clone, Debug, Default)]
 pub struct Plan {
     pub segments: Vec<PlannedSegment>,
@@ -213,7 +213,7 @@ pub enum Prescribed {
     FromArray { nodes: NodeSelection, array: String },
 }
 
-/// What pushes and pulls: mN, kPa, mm/ms².
+/// Loads: mN, kPa, mm/ms².
 #[derive(Clone, Debug, PartialEq)]
 pub enum Load {
     /// The same force at each node.
@@ -236,7 +236,7 @@ pub enum Load {
     },
 }
 
-/// What keeps tissue from passing through what it touches.
+/// Kind of contact.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ContactKind {
     /// Nothing: sliding nodes go free.
@@ -246,7 +246,7 @@ pub enum ContactKind {
     Sliding,
     /// The same, and no part of the boundary passes through another one.
     Unilateral,
-    /// `Unilateral` where a gap closes, which is told; `Sliding` elsewhere.
+    /// `Unilateral` where a gap closes, which is reported; `Sliding` elsewhere.
     Auto,
 }
 
@@ -270,7 +270,7 @@ pub struct Settings {
     pub contact: ContactKind,
     /// |f - K u| / |f_D| of the free rows at which the solver may stop; in [1e-14, 1e-2].
     pub relative_residual: f64,
-    /// What matrix and solver may take, in MB.
+    /// Memory limit of matrix and solver, in MB.
     pub memory_mb: f64,
     /// Absent: the skin is tissue like the rest.
     pub membrane: Option<SkinMembrane>,
@@ -322,7 +322,7 @@ pub struct TissueWindow {
     pub material: LinearElastic,
 }
 
-/// What becomes of a cell with several tissues in it.
+/// Treatment of a cell with several tissues.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Mixing {
     /// It is the tissue of its mean value.

@@ -353,7 +353,7 @@ impl<'a> Check<'a> {
     }
 }
 
-/// The warning of a load all of whose nodes are held, so that it moves nothing.
+/// The warning of a load on constrained nodes only, which moves nothing.
 fn load_on_constrained(nodes: &[u32], holds: &[Hold], pointer: &str) -> Option<Warning> {
     let held: BTreeSet<u32> =
         holds.iter().filter(|hold| hold.count() == 3).map(|hold| hold.node).collect();

@@ -1,4 +1,4 @@
-//! Contact in a prediction: what presses on what, where, and how hard.
+//! Contact result of a prediction: contact pairs with their places and forces.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -15,10 +15,10 @@ use crate::model::fem::linear_system::{LinearSystem, Solved};
 use crate::model::problem::{Equilibrium, ModelError};
 use crate::progress::{Phase, Progress};
 
-/// Parts of the boundary that lie in each other deeper than this, in mm, are told.
+/// Parts of the boundary that lie in each other deeper than this, in mm, are reported.
 const DEEP_MM: f64 = 0.05;
 
-/// Closest points that still moved by more than this in the last round, in mm, are told.
+/// Closest points that still moved by more than this in the last round, in mm, are reported.
 const MOVED_MM: f64 = 1e-3;
 
 /// Contact of an answer.
@@ -43,7 +43,7 @@ pub struct ContactPair {
     pub area: f64,
     /// In kPa.
     pub largest_pressure: f64,
-    /// What one side exerts on the other one, in mN.
+    /// Force of one side on the other one, in mN.
     pub force: f64,
     pub nodes: usize,
 }
@@ -56,7 +56,7 @@ pub(super) struct InTouch {
     pub numerical_error: Option<ErrorOrReason>,
 }
 
-/// What a solution with contact found.
+/// Result of a solution with contact.
 struct Pressing {
     equilibrium: Equilibrium,
     contact: Contact,
@@ -169,7 +169,7 @@ impl Touch {
         self.pairs.iter().map(|pair| pair.area).sum()
     }
 
-    /// What a reader must know.
+    /// Warnings.
     pub(super) fn warnings(&self, scene: &Scene) -> Vec<Warning> {
         let mut warnings = Vec::new();
         let Contact { pressed, effort: Effort { kept, rounds, .. }, last_moved_mm, .. } =
@@ -206,7 +206,7 @@ impl Touch {
     }
 }
 
-/// What a reader must know of a bone that lies in tissue.
+/// Warning of a bone that lies in tissue.
 fn bone_inside(scene: &Scene, BoneInside { bone, depth, at, points }: &BoneInside) -> Warning {
     let detail = format!(
         "contact leaves bone {:?} in tissue, {depth:.2} mm deep, with {points} of the points of its corners and edges: nodes of tissue are held against bone, and bone that is narrower than their distance goes in between them",

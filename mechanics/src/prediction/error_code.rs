@@ -1,6 +1,6 @@
-//! The stable words for what can be wrong with a scene.
+//! Error codes of a scene.
 
-/// What is wrong with a case, a plan or the settings.
+/// Kind of an error in a case, a plan or the settings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SceneErrorCode {
     DuplicateSegment,

@@ -1,4 +1,4 @@
-//! The checks of what is stiffer one way than another: fibres of the tissue, the skin as a membrane.
+//! Checks of anisotropy: fibres of the tissue, the skin as a membrane.
 
 use super::case::{Case, FibreDirection, Muscle, Settings};
 use super::check::Check;

@@ -1,4 +1,4 @@
-//! The checks that tell what every node is held to: segments, fixed, sliding and prescribed nodes.
+//! Boundary conditions of a scene: checks of segments, fixed, sliding and prescribed nodes.
 
 use super::case::{Plan, Prescribed, Settings};
 use super::check::Check;
@@ -29,7 +29,7 @@ impl Check<'_> {
         (segments, held)
     }
 
-    /// Notes a condition, for whoever asks what it exerts.
+    /// Notes a condition, for its reaction force.
     pub(super) fn state(
         &mut self,
         pointer: String,

@@ -1,4 +1,4 @@
-//! Materials by what an image shows of each cell.
+//! Materials of cells from the values of an image.
 //!
 //! `mean`: a cell is the tissue whose window its mean lies in (Zachow et al. 2006, section 3.5).
 //! `fraction`: a cell is the mixture C = sum_t f_t C_t of the tissues in whose windows its sample points lie

@@ -1,6 +1,6 @@
 //! Tissue of the cells of a mesh from an image.
 
-/// What an image shows of a mesh.
+/// Image values on a mesh.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ImagedTissue {
     /// For each cell the mean of its sample points; `None` where one of them lies outside.

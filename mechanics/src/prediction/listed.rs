@@ -1,4 +1,4 @@
-//! Enumerations that know the list of their members.
+//! Enumerations with a list of their members.
 
 /// Writes an enum together with the list of its members, so that none can be missing from the list.
 macro_rules! listed {

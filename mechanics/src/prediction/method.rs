@@ -1,4 +1,4 @@
-//! The methods: their names, their settings, and the one table of what each of them is and knows.
+//! Methods: their names, their settings, and the one table of their properties.
 
 use super::element_choice::{EVERY_SHAPE, ElementChoice, TETRAHEDRA};
 use super::listed::listed;
@@ -46,7 +46,7 @@ pub enum Method {
     ThicknessWarp(ThicknessWarp),
 }
 
-/// What the unknowns of a method are displacements of.
+/// Entities that the unknowns of a method displace.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unknowns {
     /// Nodes of finite elements.
@@ -69,7 +69,7 @@ pub enum Laws {
     Any,
 }
 
-/// What is known of a method: a row of the table.
+/// Properties of a method: a row of the table.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MethodProperties {
     /// As documents call it.

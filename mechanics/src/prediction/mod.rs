@@ -112,9 +112,9 @@ pub struct Prediction {
     pub condition_reactions: Vec<ConditionReaction>,
     /// The displacement of each landmark in mm.
     pub landmarks: BTreeMap<String, Vector>,
-    /// What linear elasticity leaves out, or why that is not known.
+    /// Linearisation error, or the reason why it is not known.
     pub nonlinearity: Estimated,
-    /// What the mesh leaves out of the displacement, or why that is not known.
+    /// Discretisation error of the displacement, or the reason why it is not known.
     pub numerical_error: Result<NumericalError, NotEstimated>,
     /// The same at each landmark, in mm; empty where it is not known.
     pub landmarks_missing: BTreeMap<String, Vector>,

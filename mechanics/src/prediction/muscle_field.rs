@@ -1,4 +1,5 @@
-//! Muscles on a mesh: the stress of cells for each kPa with which one pulls, how much of them it is, and what all make of the tissue.
+//! Muscle fields on a mesh: the active stress of cells for each kPa of a muscle, its volume in them, and the equivalent
+//! tissue of all muscles.
 
 use super::case::{Muscle, MuscleCourse};
 use crate::material::mixture::MixingRule;
@@ -20,7 +21,7 @@ pub struct MuscleField {
     pub stiffens: bool,
 }
 
-/// What the closed surface of a muscle says.
+/// Cells inside the closed surface of a muscle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MuscleBody {
     /// That it encloses, in mm³.
@@ -29,7 +30,7 @@ pub struct MuscleBody {
     pub broadness: Option<f64>,
 }
 
-/// What muscles make of the tissue of a mesh.
+/// Tissue of a mesh with its muscles.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MuscleTissue {
     pub rule: MixingRule,
@@ -72,7 +73,7 @@ impl MuscleField {
 /// Of a muscle the share in the tissue below which it may lie elsewhere.
 const MOSTLY: f64 = 0.5;
 
-/// The warning of a muscle of which little lies in the tissue, `of` what of it that is told.
+/// The warning of a muscle of which little lies in the tissue; `of` names the measured part.
 pub(super) fn elsewhere(share: f64, of: &str, question: &str) -> Option<Warning> {
     let detail = format!("{:.0} % of {of} lies in the tissue: {question}", 100.0 * share);
     (share < MOSTLY).then(|| Warning::new("muscle-outside", detail).with("share", share))

@@ -26,13 +26,13 @@ use crate::muscle::equivalent::{EquivalentTissue, rule_dependent_share};
 /// Shares of cells are whole numbers of this at the finest.
 const STEPS: u16 = 512;
 
-/// A share of the volume in which the rule decides that is told.
+/// A share of the volume in which the rule decides that is reported.
 const DECIDED: f64 = 0.01;
 
 /// A muscle in a cell: its number, and its share times f (x) f.
 type Part = (u16, Matrix3<f64>);
 
-/// What a cell is mixed of: the material that it has without muscles, and its muscles in steps.
+/// Composition of a cell: its material without muscles, and its muscles in steps.
 type Recipe = (u16, Vec<(u16, u16)>);
 
 impl Check<'_> {

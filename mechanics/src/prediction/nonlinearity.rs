@@ -57,7 +57,7 @@ pub enum NonlinearityUnknown {
     Failed(ModelError),
 }
 
-/// What is left out, or why that is not known.
+/// Linearisation error, or the reason why it is not known.
 pub type Estimated = Result<Nonlinearity, NonlinearityUnknown>;
 
 /// Why a method has no estimate.

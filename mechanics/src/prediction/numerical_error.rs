@@ -84,7 +84,7 @@ fn of<'a>(scene: &'a Scene, system: &'a LinearSystem<'a>) -> Estimate<'a> {
     Estimate { tissue: scene.tissue(), system, boundary, loads }
 }
 
-/// What is only not known is no failure.
+/// An unknown error is no failure.
 fn known(estimate: Result<DiscretisationError, ModelError>) -> Result<ErrorOrReason, ModelError> {
     match estimate {
         Ok(error) => Ok(Ok(error.into())),

@@ -1,4 +1,4 @@
-//! Sliding nodes that leave a curved wall: small displacement slides along the tangent and not along the wall.
+//! Sliding nodes that leave a curved wall: at small displacement they slide along its tangent.
 //!
 //! A node that slides by t along a wall of radius r ends t^2 / 2 r off it. What is measured is how far it lies
 //! from the plane of the closest wall triangle, so that sliding past the rim of a flat wall counts as nothing.

@@ -1,9 +1,9 @@
-//! Errors in a case and a plan, all of them, with the place of each.
+//! All errors in a case and a plan, each with its place.
 
 use super::error_code::SceneErrorCode;
 use crate::boundary::SelectionError;
 
-/// More problems than this help nobody.
+/// Most problems that are listed.
 const MOST_PROBLEMS: usize = 50;
 
 /// Everything wrong with a case and a plan, at most 50 entries.

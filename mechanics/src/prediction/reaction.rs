@@ -1,6 +1,6 @@
-//! Reactions: the forces in mN that what holds the tissue exerts on it, at each held node K u - f along the held
-//! directions. Where a bone pulls tissue upwards, its reaction points upwards, and the sum of all reactions and loads
-//! is zero.
+//! Reaction forces in mN of the boundary conditions on the tissue: at each constrained node K u - f along its
+//! constrained directions. Where a bone pulls tissue upwards, its reaction points upwards, and the sum of all reactions
+//! and loads is zero.
 
 use std::collections::BTreeMap;
 
@@ -117,7 +117,7 @@ pub(super) fn by_condition(
     sums
 }
 
-/// What the surface of each bone presses with, where it does.
+/// Contact force of the surface of each bone.
 fn by_bone(scene: &Scene, contact: Option<&Touch>) -> Vec<ConditionReaction> {
     let of_bone = |(number, bone): (usize, &BoneSurface)| {
         let mut own = ConditionReaction {
@@ -151,7 +151,7 @@ impl ConditionReaction {
     }
 }
 
-/// A force on a node between walls, as the sum of one along the normal of each.
+/// Splits the force on a node between walls into components along their normals.
 fn split_by_normals(force: &Vector, walls: &[(usize, Vector)], sums: &mut [ConditionReaction]) {
     let mut own: Vec<(usize, Vector)> = Vec::new();
     for (place, normal) in walls {

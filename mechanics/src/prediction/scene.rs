@@ -1,4 +1,4 @@
-//! A checked scene: nothing optional, nothing left to refuse.
+//! Checked input of a prediction: no option open and no error left.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -40,7 +40,7 @@ use crate::plan::doubt::{NOTHING_MOVES, nothing_moves};
 use crate::progress::Progress;
 use crate::solver::Tolerance;
 
-/// What a tetrahedron is taken as.
+/// Element of a tetrahedron.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Tetrahedron {
     Plain,
@@ -73,7 +73,7 @@ pub struct Scene {
     pub conditions: Conditions,
     /// The conditions as case and plan state them.
     pub stated: Vec<StatedCondition>,
-    /// What hangs together, and what holds each part.
+    /// Connected parts with their constraints.
     pub parts: Vec<ConnectedPart>,
     /// Segments by the number in `NodeClass::Joined`, with the movement each makes.
     pub segments: Vec<PlannedSegment>,
@@ -91,7 +91,7 @@ pub struct Scene {
     /// Whether a plan may carry the whole tissue away as one.
     pub allow_unfixed: bool,
     pub settings: Settings,
-    /// What a reader must know before anything is solved: overlaps, tearing, locking.
+    /// Warnings before anything is solved: overlaps, tearing, locking.
     pub warnings: Vec<Warning>,
 }
 
@@ -145,7 +145,7 @@ impl Scene {
         (self.tetrahedron() == Tetrahedron::Quadratic).then(|| EdgeNodes::new(&self.mesh))
     }
 
-    /// What the plan of this scene does to its tissue.
+    /// Measures of the tissue after the plan.
     pub fn load_case(&self) -> LoadCase {
         let held = self.conditions.holds.iter().map(|hold| *hold.values()).collect();
         // A cell without volume is refused where its matrix is made.

@@ -1,4 +1,4 @@
-//! The surface whose movement is the answer.
+//! Skin: the surface whose displacement is predicted.
 
 use std::collections::BTreeMap;
 

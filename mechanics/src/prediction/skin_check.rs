@@ -10,7 +10,7 @@ use crate::mesh::disjoint_sets::DisjointSets;
 use crate::mesh::surface_edges::edges;
 use crate::mesh::{TriangleSurface, Vector, Warning};
 
-/// Shares of the skin above which it is told: a few nodes are held where a scan ends.
+/// Shares of the skin above which it is reported: a few nodes are held where a scan ends.
 const MOST_HELD: f64 = 0.1;
 const MOST_INWARDS: f64 = 0.1;
 
@@ -146,7 +146,8 @@ impl Closest {
     }
 }
 
-/// A skin that nobody named is every free face; sharp edges part what faces forward from rims where tissue was cut.
+/// Without a stated skin every free face counts; sharp edges separate faces to the front from rims where tissue was
+/// cut.
 fn unnamed_skin(surface: &TriangleSurface) -> Warning {
     let mut parts = DisjointSets::new(surface.triangles.len());
     let sides = surface.sorted_sides();

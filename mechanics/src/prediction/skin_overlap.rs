@@ -1,4 +1,4 @@
-//! Predicted skin that passes through itself: nothing in the models keeps a lip out of the other one.
+//! Self-intersection of the predicted skin, which models without contact allow.
 //!
 //! Pairs of triangles that cross after the movement and did not before it are counted; scanned lips touch, and some
 //! of their triangles cross at rest. How deep: the triangles that cross cut the skin into parts, and an edge that

@@ -1,4 +1,4 @@
-//! The conditions at the boundary as case and plan state them, each with its place.
+//! Boundary conditions as case and plan state them, each with its place.
 
 use crate::mesh::Vector;
 
@@ -14,7 +14,7 @@ pub struct StatedCondition {
     pub holds: StatedHold,
 }
 
-/// What a condition holds of each of its nodes; of several at one node the first in this order has what it holds.
+/// Components that a boundary condition constrains; of several at one node the first in this order prevails.
 #[derive(Clone, Debug, PartialEq)]
 pub enum StatedHold {
     /// Prescribed components.

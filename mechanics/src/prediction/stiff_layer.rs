@@ -8,7 +8,7 @@
 use super::Scene;
 use crate::mesh::Warning;
 
-/// How many times as stiff as a neighbour a cell is from which on a single layer is told.
+/// How many times as stiff as a neighbour a cell is from which on a single layer is reported.
 const STIFFER: f64 = 30.0;
 /// The same along its fibres.
 const STIFFER_ALONG: f64 = 8.0;

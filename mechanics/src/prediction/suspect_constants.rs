@@ -1,4 +1,4 @@
-//! Constants that only a wrong unit explains: they are computed with, and told with their numbers.
+//! Material constants that suggest a wrong unit: they are used, with a warning that has the numbers.
 //!
 //! What no unit explains is refused where constants are made (`material`). Between the two lie decades in which a
 //! number is more likely a mistake of a thousand than a tissue: fat has 1 to 3 kPa, bone 1e7 kPa.
@@ -17,7 +17,7 @@ const SOFTEST: f64 = 2000.0;
 const STIFFEST: f64 = 0.5;
 const THOUSAND: f64 = 1e3;
 
-/// More of these help nobody.
+/// Most warnings of this kind.
 const MOST: usize = 20;
 
 /// What a constant is called, its unit, and between which values it is usual.

@@ -1,5 +1,5 @@
-//! Tissue that goes along as one: what holds it moves alike, or leaves it free to follow, so that it is not deformed
-//! and a prediction says nothing about it.
+//! Unconstrained tissue: parts whose constraints all move alike, or let them follow. Such a part is not deformed, and a
+//! prediction says nothing about it.
 //!
 //! What is judged is each connected part of the mesh, from the values at which it is held: prescribed nodes that all
 //! move too, a wall along which everything slides, something fixed in another part are no hold. A part with a tenth of
@@ -27,7 +27,7 @@ pub struct RigidlyCarried {
     pub told: Vec<Warning>,
 }
 
-/// What goes along as one when each segment makes its movement.
+/// The parts that move rigidly under given movements of the segments.
 pub fn rigidly_carried(
     parts: &[ConnectedPart],
     movement: impl Fn(u32) -> RigidMovement + Copy,
@@ -76,7 +76,7 @@ fn left_free(part: &ConnectedPart, stays: impl Fn(u32) -> bool) -> Option<Freedo
 }
 
 impl Check<'_> {
-    /// Refuses a plan that carries tissue along as one, and warns of a case that may come to that.
+    /// Refuses a plan that moves a part of the tissue rigidly, and warns of a case that allows it.
     pub(super) fn unconstrained(
         &mut self,
         plan: &Plan,

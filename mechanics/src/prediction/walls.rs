@@ -1,5 +1,4 @@
-//! Walls that tissue slides on: which bone carries each, where two contradict each other, and where one that stays
-//! lies beside a bone that moves.
+//! Sliding walls: the bone that carries each, contradictions between two, and fixed walls beside a bone that moves.
 //!
 //! A wall that a segment carries holds n . u = n . ((R - I) x + t) at each of its nodes x and leaves what is along
 //! it free. Small strain keeps n; a model that knows large rotations takes R n.
@@ -273,7 +272,7 @@ fn carried_by(carrier: Option<u32>, segments: &[PlannedSegment]) -> String {
     }
 }
 
-/// Warnings of walls that turn with their segments while small strain keeps their normals.
+/// Warnings of walls that rotate with their segments, whose normals small strain keeps fixed.
 pub(super) fn warn_of_rotated_walls(scene: &Scene) -> Vec<Warning> {
     if !scene.settings.method.properties().is_small_strain {
         return Vec::new();

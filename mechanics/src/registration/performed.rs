@@ -23,7 +23,7 @@ pub struct BoneBefore<'a> {
     pub start: Start,
 }
 
-/// What a segment did.
+/// Performed movement of a segment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Performed {
     /// x' = R x + t in the frame before the operation, in mm.

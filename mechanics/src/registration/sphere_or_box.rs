@@ -1,4 +1,4 @@
-//! Parts of space that choose what counts.
+//! Spheres and boxes that select points.
 
 use crate::mesh::Vector;
 

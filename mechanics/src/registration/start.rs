@@ -5,7 +5,7 @@ use nalgebra::{Matrix3, Rotation3};
 use super::RigidTransform;
 use crate::mesh::{SurfaceSearch, TriangleSurface, Vector, area_sampling};
 
-/// Points by which the four ways of joining principal axes are told apart.
+/// Points by which the four ways of joining principal axes are distinguished.
 const POINTS: usize = 300;
 
 /// Where the moving surface lies before the first iteration.
@@ -18,7 +18,7 @@ pub enum Start {
     Boxes,
     /// Centres and principal axes together, in the one of four ways that leaves least.
     Inertia,
-    /// A movement that somebody knows, such as one by landmarks.
+    /// A given movement, such as one by landmarks.
     Known(RigidTransform),
 }
 

@@ -15,7 +15,7 @@ const MARGINS: [f64; 4] = [0.05, 0.1, 0.2, 0.02];
 /// Sweeps without fewer unproven cells after which a margin has gained what it can.
 const PATIENCE: usize = 20;
 
-/// What a repair did.
+/// Report of a repair.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct RepairReport {
     /// Cells whose Jacobian was not proven positive in every point.
@@ -40,7 +40,7 @@ pub struct UnprovenCell {
 /// Moves nodes of a mesh until every cell is proven valid, or nothing more is gained.
 pub fn repair(mesh: &mut VolumeMesh, bounds: &Bounds, progress: &dyn Progress) -> RepairReport {
     let cells: Vec<usize> = (0..mesh.cells.len()).collect();
-    let mut unproven = unproven_of(mesh, &cells);
+    let mut unproven = unproven_cells(mesh, &cells);
     let mut report = RepairReport { unproven_before: unproven.len(), ..RepairReport::default() };
     if unproven.is_empty() {
         return report;
@@ -56,7 +56,7 @@ pub fn repair(mesh: &mut VolumeMesh, bounds: &Bounds, progress: &dyn Progress) -
         let (mut fewest, mut since) = (unproven.len(), 0);
         while !unproven.is_empty() && since < PATIENCE && !progress.is_cancelled() {
             let near = work.sweep(&unproven, margin);
-            unproven = unproven_of(work.mesh, &near);
+            unproven = unproven_cells(work.mesh, &near);
             report.sweeps += 1;
             since = if unproven.len() < fewest { 0 } else { since + 1 };
             fewest = fewest.min(unproven.len());
@@ -66,13 +66,13 @@ pub fn repair(mesh: &mut VolumeMesh, bounds: &Bounds, progress: &dyn Progress) -
         }
     }
     (unproven, mesh.nodes) = best;
-    report.tell_moves(&first, &mesh.nodes);
+    report.report_moves(&first, &mesh.nodes);
     report.unproven = named(mesh, &unproven);
     report
 }
 
 impl RepairReport {
-    fn tell_moves(&mut self, first: &[Vector], now: &[Vector]) {
+    fn report_moves(&mut self, first: &[Vector], now: &[Vector]) {
         let moves = first.iter().zip(now).map(|(a, b)| (a - b).norm());
         let moves: Vec<f64> = moves.filter(|&length| length > 0.0).collect();
         self.nodes_moved = moves.len();
@@ -82,7 +82,7 @@ impl RepairReport {
 }
 
 /// The cells of some that are not proven valid.
-fn unproven_of(mesh: &VolumeMesh, cells: &[usize]) -> Vec<usize> {
+fn unproven_cells(mesh: &VolumeMesh, cells: &[usize]) -> Vec<usize> {
     let is_unproven = |cell: &&usize| {
         let corners: Vec<Vector> = mesh.corners(**cell).collect();
         !jacobian_sign(mesh.cells.shape(**cell), &corners).is_valid()

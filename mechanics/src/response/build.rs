@@ -51,7 +51,7 @@ pub struct Columns {
     pub linearity: Linearity,
     /// The second order, where it was asked for.
     pub second_order: Option<QuadraticForm>,
-    /// What hangs together, and what holds it; segments by their place in `segments`, others stay.
+    /// Connected parts with their constraints; segments by their place in `segments`, others stay.
     pub parts: Vec<ConnectedPart>,
     /// For each segment whether tissue slides on it.
     pub carries_wall: Vec<bool>,

@@ -1,4 +1,4 @@
-//! The skin of one plan, solved as one load case: what a response makes of it, without its columns.
+//! Skin of one plan as a single load case: the result of a response without its columns.
 
 use super::ResponseError;
 use super::build::{ColumnRequest, chosen, held_values, segment_of};

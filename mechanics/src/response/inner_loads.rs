@@ -1,5 +1,4 @@
-//! Columns of what acts inside the tissue: growth of a region, and the pull of a muscle, each by one unit, where every
-//! segment stays.
+//! Columns of internal loads: one unit of growth of a region or of the pull of a muscle, with all segments at rest.
 
 use super::response_error::ResponseError;
 use super::superposition::InnerLoad;

@@ -1,4 +1,4 @@
-//! Linearity estimate of a response: what it leaves out, from the movements of its segments.
+//! Linearisation error of a response, estimated from the movements of its segments.
 //!
 //! Where elements have a second order, it is sampled: q_j, the mean length of the second-order term on the skin that moves
 //! (`moving_points`) for a unit of translation along and of rotation about each axis of each segment, and e = sum_j alpha_j^2 q_j
@@ -37,7 +37,7 @@ const TURNED: f64 = 2.7;
 /// Skin nodes whose distance to what is held is measured: enough for a median.
 const MEASURED_NODES: usize = 1000;
 
-/// What the estimate needs to know of a scene.
+/// Input of the estimate from a scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Linearity {
     /// h in mm.

@@ -39,7 +39,7 @@ pub struct QuadraticForm {
     pub third: Vec<[f64; SAMPLES]>,
 }
 
-/// What a plan has of the second and the third order, as means over the skin that moves, in mm.
+/// Second and third order of a plan, as means over the skin that moves, in mm.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BeyondLinear {
     /// Of |u2|.

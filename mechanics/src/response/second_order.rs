@@ -1,4 +1,5 @@
-//! The second-order columns of a response: a loose solution for every pair of columns, and samples of the third order.
+//! Second-order columns of a response: an approximate solution for every pair of columns, and samples of the third
+//! order.
 //!
 //! U_kk = -K0^-1 N2(c_k, c_k) and U_kl = -2 K0^-1 N2(c_k, c_l), k < l, with N2 of `model::fem::force_series`, the matrix and
 //! the hierarchy of the columns themselves, and nothing moved where it is held: what a hold states is linear in the numbers

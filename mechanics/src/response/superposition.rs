@@ -79,7 +79,7 @@ pub struct ResponseSegment {
     pub centre: Vector,
 }
 
-/// What acts inside the tissue, a column each.
+/// Internal loads, a column each.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum InnerLoad {
     /// Growth of a region, or of all tissue (`*`); its amount is eps_g, `prediction::linear_strain` of the volume change.

@@ -34,7 +34,7 @@ const ROWS: std::ops::RangeInclusive<usize> = 2..=6;
 /// Collapses between two looks at whether to stop.
 const AT_A_TIME: usize = 1 << 10;
 
-/// What a simplification keeps to. Lengths in mm.
+/// Limits of a simplification. Lengths in mm.
 pub struct SimplificationSettings<'a> {
     /// Neither surface is farther from the other than this, at the points that are looked at.
     pub deviation: f64,

@@ -1,4 +1,4 @@
-//! The choice between a factorisation and iterations, and what either made, kept for further right-hand sides.
+//! Choice between a factorisation and iterations, and the factor or hierarchy, kept for further right-hand sides.
 
 use std::sync::OnceLock;
 
@@ -20,7 +20,7 @@ const CHOLESKY_WORK: f64 = 6e9;
 /// Above this many rows even the ordering of a factorisation costs more than it can save.
 const ORDERING_ROWS: usize = 150_000;
 
-/// What was made to solve one system: its factor or its hierarchy, each when it is first needed.
+/// Factor or hierarchy of one system, each computed when it is first needed.
 #[derive(Default)]
 pub struct Solver {
     factor: OnceLock<Factor>,
@@ -92,7 +92,7 @@ impl Solver {
     }
 
     /// Solves until a relative residual is met or nothing more is gained, whichever comes first: the residual
-    /// that was reached is told. Where there is a factor the solution is as good as that is.
+    /// that was reached is reported. Where there is a factor the solution is as good as that is.
     pub fn solve_best_effort(
         &self,
         system: &System,

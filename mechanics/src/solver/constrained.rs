@@ -160,7 +160,7 @@ struct Run<'a, 'b> {
     independent: Independent,
     point: Point,
     r: Vec<[f64; 1]>,
-    /// What residuals are relative to.
+    /// Norm that residuals are relative to.
     scale: f64,
     iterations: usize,
 }

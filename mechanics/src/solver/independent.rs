@@ -1,4 +1,4 @@
-//! Symmetric positive semidefinite systems of a few hundred unknowns, of which some decide the others.
+//! Symmetric positive semidefinite systems of a few hundred, possibly dependent, unknowns.
 
 /// A pivot below this part of its diagonal is decided by those before it.
 const DECIDED: f64 = 1e-6;

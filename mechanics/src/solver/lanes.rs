@@ -1,4 +1,4 @@
-//! The unknowns of one row for one or several right-hand sides, and what a block does to them.
+//! Unknowns of one row for one or several right-hand sides, and their product with a block.
 
 use std::ops::{AddAssign, Mul, Neg};
 

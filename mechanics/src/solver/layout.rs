@@ -1,5 +1,4 @@
-//! The order in which rows are stored: neighbours near each other, independent parts for threads,
-//! held rows last.
+//! Row ordering (permutation): neighbours near each other, independent parts for threads, constrained rows last.
 //!
 //! Free rows are numbered breadth first from one end of the mesh to the other (Cuthill, McKee 1969,
 //! without sorting by degree), so that the rows a row is coupled to lie close by in memory. That order is

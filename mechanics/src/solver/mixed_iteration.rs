@@ -17,8 +17,8 @@ const DIRECTIONS: usize = 4;
 /// tissue the residual stands still for some steps before it falls, and nothing may be forgotten meanwhile.
 pub const MOST_DIRECTIONS: usize = 60;
 
-/// A step that takes less than this part of the residual stands still: the next direction is then made from
-/// the last product instead of the residual (ORTHODIR; Young, Jea 1980), which has hardly changed.
+/// A step that reduces the residual by less than this part stagnates: the next direction is then made from the last
+/// product instead of the residual (ORTHODIR; Young, Jea 1980), which has hardly changed.
 const STANDSTILL: f64 = 0.1;
 
 /// S = D / 3.

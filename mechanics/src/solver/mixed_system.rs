@@ -34,7 +34,7 @@ pub struct MixedSolution {
     pub pressures: Vec<[f64; 1]>,
 }
 
-/// What ties pressures to displacements and to each other.
+/// The coupling of pressures to displacements and to each other.
 pub struct Coupling {
     /// B: a row for each pressure, a column for each row of K.
     pub divergence: SparseRows<[f64; 3]>,

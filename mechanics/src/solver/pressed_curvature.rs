@@ -1,5 +1,5 @@
-//! Whether displacements with pressures are at a least energy: whether S = K + B^T C^-1 B, what is left of a mixed matrix where
-//! pressures answer to displacements, is positive definite.
+//! Second-order condition of a mixed solution: whether the Schur complement S = K + B^T C^-1 B of the displacements is
+//! positive definite, so that the energy is at a minimum.
 //!
 //! Conjugate gradients on S under the multigrid cycle of K: a direction without positive curvature ends them (Steihaug 1983).
 //! S is stiffer than K by the bulk modulus, so they take more iterations the nearer Poisson's ratio is to 1/2.

@@ -1,4 +1,4 @@
-//! Places of the terms of a sparse matrix that is assembled again and again over the same cells.
+//! Positions of the terms of a sparse matrix that is assembled repeatedly over the same cells.
 
 use rayon::prelude::*;
 

@@ -1,4 +1,4 @@
-//! Stationary iterations on the blocks of the diagonal: how the mass-tensor model is brought to rest.
+//! Stationary block iterations: the solver of the mass-tensor model.
 //!
 //! Block Jacobi: x <- x + omega D^-1 (f - K x), D the blocks of the diagonal. With omega = 1 it is eq. 32 of
 //! Kim et al. 2012; it converges only where lambda_max(D^-1 K) < 2, which meshes of tetrahedra exceed from
@@ -40,7 +40,7 @@ const GROWTH_OVER: usize = 10;
 /// Values of all free rows.
 type Rows = Vec<Lanes<f64, 3, 1>>;
 
-/// What one iteration does.
+/// Scheme of one iteration.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Iteration {
     /// Rows one after the other, each with the newest values of the others.
@@ -183,7 +183,7 @@ fn power_iteration(
     Ok(lambda)
 }
 
-/// Iterates, residuals and what is told of them.
+/// Iterates, residuals and their reports.
 struct Run<'a> {
     system: &'a System,
     inverse: &'a [Block],
@@ -338,7 +338,7 @@ impl<'a> GaussSeidel<'a> {
     }
 }
 
-/// What all threads of a sweep read.
+/// Shared data of a sweep's threads.
 struct RowSweep<'a> {
     system: &'a System,
     inverse: &'a [Block],

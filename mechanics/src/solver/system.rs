@@ -35,7 +35,7 @@ pub struct PartlyHeld {
     pub axes: Matrix3<f64>,
 }
 
-/// What a solution has to meet and what finding it may take.
+/// Tolerance and limits of a solution.
 #[derive(Clone, Copy, Debug)]
 pub struct Tolerance {
     /// |f - K x| / |f| over the free unknowns.

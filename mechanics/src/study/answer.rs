@@ -23,7 +23,7 @@ use crate::solver::SolverError;
 /// A row is not solved again once its solves took this long together, in s.
 pub const LONG_S: f64 = 2.0;
 
-/// What measures rows.
+/// Measurement of rows.
 pub(super) struct Bench<'a> {
     /// Of one thread.
     pub pool: ThreadPool,
@@ -34,7 +34,7 @@ pub(super) struct Bench<'a> {
     pub progress: &'a dyn Progress,
 }
 
-/// What a method answered.
+/// Answer of a method.
 pub(super) struct Answer {
     /// In mm, at the nodes that were asked for.
     pub displacement: Vec<Vector>,
@@ -51,7 +51,7 @@ pub(super) struct Answer {
     pub warnings: Vec<String>,
 }
 
-/// What solving took.
+/// Cost of the solution.
 pub(super) struct Time {
     /// Median of the repeats.
     pub wall_s: f64,

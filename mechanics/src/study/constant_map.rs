@@ -184,7 +184,7 @@ mod tests {
     }
 
     #[test]
-    fn constants_are_told_apart_only_beyond_what_registration_left() {
+    fn constants_are_distinguished_only_beyond_what_registration_left() {
         let found = map([0.5, 0.30, 0.4, 0.6, 0.35, f64::NAN], Some(0.06));
         assert_eq!((found.best, found.values(1)), (Some(1), vec![10.0, 0.4]));
         assert_eq!(found.profile(0), [Some(0.30), Some(0.35)]);
@@ -203,7 +203,7 @@ mod tests {
     }
 
     #[test]
-    fn a_best_value_at_an_end_is_told_and_a_map_without_numbers_has_none() {
+    fn a_best_value_at_an_end_is_reported_and_a_map_without_numbers_has_none() {
         assert!(map([0.2, 0.3, 0.4, 0.5, 0.5, 0.5], None).is_at_end(1));
         let nothing = map([f64::NAN; 6], Some(0.1));
         assert_eq!((nothing.best, nothing.least(), nothing.as_good(0)), (None, None, Vec::new()));

@@ -1,4 +1,4 @@
-//! Work that is stopped at a time, or when its caller wants no more.
+//! Deadline and cancellation of a computation.
 
 use super::Stopwatch;
 use crate::progress::{Phase, Progress};

@@ -1,4 +1,4 @@
-//! Error of an answer: the distance of its skin from the true one, whose displacement is known.
+//! Error of an answer: the distance of its skin from the reference skin, whose displacement is known.
 //!
 //! Node-wise e_i = |u_i - u*_i| at the skin nodes of level 0, which refined meshes keep; closest point
 //! e_i = min_{y in S*} |x_i + u_i - y|, S* the skin of level 0 moved by u*. Node i weighs a third of the area of its
@@ -24,7 +24,7 @@ pub(super) struct DisplacedSkin<'a> {
     search: SurfaceSearch,
 }
 
-/// What is told of an answer.
+/// Errors of an answer.
 pub(super) struct Measured {
     pub error: Errors,
     pub closest_point: Errors,

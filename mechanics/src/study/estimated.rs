@@ -1,4 +1,4 @@
-//! Estimates of what answers leave out, beside what they are truly off by.
+//! Estimated errors of answers beside their true errors.
 //!
 //! Effectivity is the estimated mean error over the true one. Of the mesh |m|, at the skin nodes of level 0; where the truth is one
 //! of finite strain and the answer is linear, of mesh and linearity together, |m + l|. A model that was chosen by its error tells a
@@ -14,9 +14,9 @@ const NO_ERROR: f64 = 1e-4;
 /// What an answer is estimated to be off by, at the nodes that were asked for.
 #[derive(Default)]
 pub(super) struct Estimates {
-    /// What the mesh leaves out, in mm.
+    /// Discretisation error, in mm.
     pub mesh: Option<Vec<Vector>>,
-    /// What linearity leaves out, in mm.
+    /// Linearisation error, in mm.
     pub linearity: Option<Vec<Vector>>,
     /// The mean error that is expected over the nodes that move, where that chose the model, in mm.
     pub of_moving: Option<f64>,

@@ -1,6 +1,6 @@
 //! Reasons why a study has no report at all.
 
-/// Why there is no report at all; whatever goes wrong in a row is told there.
+/// Why there is no report at all; whatever goes wrong in a row is reported there.
 #[derive(Debug, thiserror::Error)]
 pub enum StudyError {
     #[error("stopped on request")]

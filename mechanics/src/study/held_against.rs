@@ -1,4 +1,4 @@
-//! What the answers of a scene are held against: those with contact against a truth with contact, the others against one without.
+//! Reference solutions of a scene: one with contact for answers with contact, one without for the others.
 
 use super::StudyError;
 use super::answer::{Answer, Refusal};
@@ -24,7 +24,7 @@ const ROUNDING: f64 = 1e-6;
 /// The code of rows whose skin moves where a scan has nothing opposite.
 const PARTIAL: &str = "partial-coverage";
 
-/// What is true of a scene.
+/// Reference solutions of a scene.
 pub(super) struct SceneTruths {
     without: Truths,
     with: Option<Truths>,
@@ -86,7 +86,7 @@ pub(super) struct ReferenceSkin<'a> {
     own_error: Option<[f64; 2]>,
 }
 
-/// What the answers to one plan with one set of materials are held against.
+/// Reference solutions of one plan with one set of materials.
 pub(super) enum TrueSkins<'a> {
     Displaced {
         without: Box<ReferenceSkin<'a>>,
@@ -97,7 +97,7 @@ pub(super) enum TrueSkins<'a> {
 }
 
 impl TrueSkins<'_> {
-    /// What an answer of a variant is off by.
+    /// Error of an answer of a variant.
     pub(super) fn judge(&self, variant: &Variant, answer: Answer) -> Result<Solved, Refusal> {
         let is_touching = variant.settings.contact.is_unilateral();
         match self {

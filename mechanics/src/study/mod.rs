@@ -1,4 +1,4 @@
-//! Methods side by side on the same scenes: how long each takes, and how far each is from the truth.
+//! Comparison of methods on the same scenes: time and error of each.
 
 mod answer;
 pub mod cell_sizes;
@@ -38,11 +38,11 @@ pub use variant::{
     ClosedForm, Materials, Scan, ScanMetric, Strain, Study, StudyScene, Truth, Variant,
 };
 
-/// What the caller measures while the study computes: numerics know neither clock nor memory.
+/// Time and memory, measured by the caller: numerics know neither.
 pub trait Stopwatch: Sync {
     /// Seconds since some moment.
     fn seconds(&self) -> f64;
-    /// Starts anew to look for the most memory in use.
+    /// Resets the peak of the memory in use.
     fn reset_peak(&self);
     /// The most memory in use since then in MB, where the system tells.
     fn peak_mb(&self) -> Option<f64>;

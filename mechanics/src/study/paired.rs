@@ -14,7 +14,7 @@
 /// Differing pairs up to which the distribution is counted out.
 pub const MOST_EXACT: usize = 25;
 
-/// What becomes of pairs without a difference.
+/// Treatment of pairs without a difference.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ZeroRule {
     /// They leave before the ranking.
@@ -23,7 +23,7 @@ pub enum ZeroRule {
     Pratt,
 }
 
-/// What counts as equal.
+/// Tolerance of equality.
 #[derive(Clone, Copy, Debug)]
 pub struct Equality {
     /// Differences up to this are none, and absolute differences this close share their ranks; in the unit of

@@ -59,7 +59,7 @@ pub fn compare_variants(rows: &[Row]) -> Vec<Pairwise> {
     found
 }
 
-/// What two rows have to share to be a pair.
+/// Key that two rows of a pair share.
 type PairKey<'a> = (&'a str, &'a str, &'a str, u32);
 
 fn of_label<'a>(rows: &'a [Row], label: &str) -> BTreeMap<PairKey<'a>, &'a Outcome> {

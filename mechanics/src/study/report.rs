@@ -43,7 +43,7 @@ pub struct SceneReport {
     pub unmoved_mm: Option<f64>,
     /// Root of the mean squared distance that the registration of a scan left; none without a scan, or where it is not known.
     pub noise_mm: Option<f64>,
-    /// What speaks against a scan.
+    /// Doubts about a scan.
     pub warnings: Vec<Warning>,
     /// Making the truth, in s; not part of any row.
     pub truth_s: f64,
@@ -64,7 +64,7 @@ pub struct Row {
     pub outcome: Outcome,
 }
 
-/// What came of a row.
+/// Outcome of a row.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Outcome {
     Solved(Box<Solved>),

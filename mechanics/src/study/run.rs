@@ -1,4 +1,4 @@
-//! The study itself: rows first, each alone in memory, then the truth they are held against.
+//! Run of a study: rows first, each alone in memory, then the reference solution they are compared with.
 
 use super::Stopwatch;
 use super::answer::{Answer, Bench, NoAnswer, Refusal};
@@ -19,7 +19,7 @@ use std::collections::{BTreeMap, BTreeSet};
 pub const NOT_RUN: &str = "not-run";
 
 /// Runs every scene with every plan, material, level and variant. The same study gives the same report but for times
-/// and memory. Combinations that are the truth themselves have no row, nor have variants that do not serve a scene: both are told
+/// and memory. Combinations that are the truth themselves have no row, nor have variants that do not serve a scene: both named
 /// as skipped.
 pub fn run(
     study: &Study,
@@ -42,7 +42,7 @@ pub fn run(
     Ok(report)
 }
 
-/// An empty study is an error, and so are two things of one name: rows could not be told apart.
+/// An empty study is an error, and so are two things of one name: rows could not be distinguished.
 fn check(study: &Study) -> Result<(), StudyError> {
     distinct("scene", study.scenes.iter().map(|scene| scene.name.clone()))?;
     distinct("variant", study.variants.iter().map(|variant| variant.label.clone()))?;
@@ -65,7 +65,7 @@ fn distinct(what: &'static str, names: impl Iterator<Item = String>) -> Result<(
     if seen.is_empty() { Err(StudyError::Empty { what }) } else { Ok(()) }
 }
 
-/// Variants that took too long at a level, and what rows of theirs are told that are not tried after that.
+/// Variants that took too long at a level, and the reason for their further rows, which are skipped.
 type OverdueVariants<'a> = BTreeMap<(u32, &'a str), Refusal>;
 
 /// The rows of one scene.
@@ -79,7 +79,7 @@ struct SceneWork<'a> {
     begun: f64,
 }
 
-/// What came of one combination.
+/// Outcome of one combination.
 struct Attempt<'a> {
     level: u32,
     variant: &'a Variant,

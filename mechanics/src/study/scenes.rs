@@ -38,7 +38,7 @@ pub fn scene_of(name: &str) -> Option<StudyScene> {
 
 /// What is held for true of a case without more knowledge: quadratic tetrahedra on halved edges where the mesh is made
 /// of tetrahedra, else mean-dilatation cells on edges halved twice, or once on large meshes.
-pub fn usual_truth(case: &Case) -> Truth {
+pub fn default_truth(case: &Case) -> Truth {
     let element = usual_truth_element(case);
     let is_small = case.volume.cells.len() <= HALVED_TWICE;
     let times = if is_small && element != ElementChoice::Quadratic { 2 } else { 1 };
@@ -72,7 +72,7 @@ fn shift(segment: &str, length: f64, direction: Vector) -> (String, Plan) {
 }
 
 /// One segment turned by an angle in degrees about an axis through a pivot, e.g. `patch 5 deg`.
-fn turn(segment: &str, degrees: f64, axis: Vector, pivot: Vector) -> (String, Plan) {
+fn rotated(segment: &str, degrees: f64, axis: Vector, pivot: Vector) -> (String, Plan) {
     let angles = axis * degrees.to_radians();
     let movement = RigidMovement::about_pivot(angles, pivot, Vector::zeros());
     (format!("{segment} {degrees} deg"), plan_of(segment, movement))

@@ -31,7 +31,7 @@ pub(super) const PLANS_A_SEGMENT: usize = 3;
 /// The displacement of skin nodes in mm, or why there is none.
 pub(super) type TrueSkin = Result<Vec<Vector>, Refusal>;
 
-/// What is true, and what is told of it.
+/// Reference solution and its description.
 pub(super) struct Truths {
     /// For each plan, for each material.
     pub skins: Vec<Vec<TrueSkin>>,
@@ -205,7 +205,7 @@ impl TruthRequest<'_> {
             fields.push(of_level);
         }
 
-        // 2. What is told of it.
+        // 2. Its description.
         let own = self.own_errors(&fields);
         let finest = fields.pop().unwrap_or_default();
         let of_mean = |own: &&OwnError| own.mean_and_p95[0];
@@ -326,7 +326,7 @@ impl FinerCase<'_> {
             Err(ResponseError::Prediction(ModelError::Solver(SolverError::Stopped))) => {
                 Err(StudyError::Cancelled)
             }
-            // What is in the way is told plan by plan.
+            // What is in the way is reported plan by plan.
             Err(_) => Ok(None),
         }
     }

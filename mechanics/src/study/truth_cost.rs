@@ -1,4 +1,4 @@
-//! The cost of a refined truth, told before anything is solved: its meshes, their unknowns and the solves on them.
+//! Cost of a refined reference solution before it is solved: its meshes, their unknowns and the solves on them.
 
 use super::levels::cells_at;
 use super::truth::{
@@ -11,7 +11,7 @@ use crate::prediction::{ElementChoice, Plan};
 /// Edges for each node of a mesh whose edges carry nodes as well: eight times its nodes come of one halving.
 const WITH_EDGES: f64 = 8.0;
 
-/// What a refined truth takes.
+/// Cost of a refined reference solution.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TruthCost {
     /// Coarsest first: the finest, and one or two before it that tell its error.

@@ -1,4 +1,4 @@
-//! What a refined truth is off by itself, by extrapolation from the mesh before it:
+//! Error of a refined reference solution, by extrapolation from the mesh before it:
 //!
 //! e = |u_t - u_(t-1)| / (2^p - 1)        p = log2(mean |u_(t-1) - u_(t-2)| / mean |u_t - u_(t-1)|)
 //!

@@ -1,4 +1,4 @@
-//! Words for how a truth was found.
+//! Origin of a reference solution in words.
 
 /// How often the edges of level 0 were halved.
 pub(super) fn halved(times: u32) -> String {

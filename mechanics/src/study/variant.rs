@@ -17,7 +17,7 @@ pub struct Study {
     pub pairs: BTreeSet<(usize, usize)>,
     /// Level n halves every edge n times.
     pub levels: Vec<u32>,
-    /// Solves of each row, of which the median time is told; at least 1. Rows that take long are solved
+    /// Solves of each row, of which the median time is reported; at least 1. Rows that take long are solved
     /// less often: see [`super::report::Solved::repeats`].
     pub repeats: usize,
     /// No row is begun once the study has taken this long, in s; infinite where it may take its time.
@@ -110,7 +110,7 @@ pub enum Truth {
     Scan(Box<Scan>),
 }
 
-/// What a truth takes for strain.
+/// Strain measure of a reference solution.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Strain {
     /// Linear finite elements: no truth where movements are large.

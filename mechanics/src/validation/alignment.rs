@@ -1,5 +1,5 @@
-//! The actual surface onto the prediction: not at all, as somebody else found, by landmarks, or by iterative closest
-//! point of itself or of bone that was scanned with it.
+//! Alignment of the actual surface with the prediction: none, a given one, by landmarks, or by iterative closest point
+//! of itself or of bone that was scanned with it.
 
 use super::error::ComparisonError;
 use crate::mesh::{TriangleSurface, Vector, Warning};
@@ -66,7 +66,7 @@ pub struct LandmarkPair {
     pub actual: Vector,
 }
 
-/// What the alignment did to the actual surface.
+/// Result of the alignment of the actual surface.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AlignmentReport {
     pub method: &'static str,

@@ -1,4 +1,4 @@
-//! Two surfaces measured from each other, and how much of each has the other opposite.
+//! Distances between two surfaces in both directions, and how much of each has the other opposite.
 
 use super::distance::{Direction, DistanceError, DistanceStatistics, Distances, Measured};
 use super::error::ComparisonError;
@@ -6,7 +6,7 @@ use super::statistics::StatisticsError;
 use crate::mesh::{SurfaceSearch, TriangleSurface, Warning};
 use crate::progress::Progress;
 
-/// Below this share a scan covers only a part of the prediction, and the reader is told.
+/// Below this share a scan covers only a part of the prediction, which gives a warning.
 const WHOLE: f64 = 0.95;
 
 /// Distances from the prediction, from the actual surface, and of both pooled.

@@ -20,7 +20,7 @@ use super::warped::{WarpedStatistics, warped};
 use crate::mesh::{TriangleSurface, Vector, Warning};
 use crate::progress::Progress;
 
-/// What is compared and how.
+/// Input of a comparison.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ComparisonSettings {
     pub alignment: Alignment,

@@ -1,4 +1,4 @@
-//! How far apart the landmarks of both surfaces are.
+//! Landmark errors: distances between the landmarks of both surfaces.
 
 use std::collections::BTreeMap;
 

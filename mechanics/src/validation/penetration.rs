@@ -33,7 +33,7 @@ pub fn reach(points: &[Vector], side: Side, surface: &SurfaceSearch) -> f64 {
     points.par_iter().map(depth).reduce(|| 0.0, f64::max)
 }
 
-/// What two closed surfaces have in common.
+/// Overlap of two closed surfaces.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Overlap {
     /// How deep points of either reach into the other, in mm.

@@ -1,4 +1,4 @@
-//! Parts of a comparison: places, parts of the skin, and what a plan moves.
+//! Regions of a comparison: spheres and boxes, parts of the skin, and the part that a plan moves.
 
 use std::collections::BTreeMap;
 

@@ -1,5 +1,5 @@
-//! Is the actual surface the scan that is meant? Somebody else's fits badly wherever it lies, and one from before
-//! the operation fits where nothing was moved yet.
+//! Plausibility of the actual surface: that of another person fits badly wherever it lies, and one from before the
+//! operation fits where nothing was moved yet.
 
 use super::alignment::{Alignment, AlignmentReport};
 use super::both_ways::{BothDirections, Pair};

@@ -31,11 +31,11 @@ trials! {
     all_cells_of_the_subject_face_are_valid_and_four_must_be_divided_to_know
     a_real_face_moves_much_as_finite_elements_say
     the_sum_of_columns_is_the_direct_solution_on_the_face_like_shell
-    a_jaw_raised_into_the_lips_of_a_real_face_is_told
+    a_jaw_raised_into_the_lips_of_a_real_face_is_reported
     lips_of_real_faces_press_on_each_other_with_contact
     the_second_order_of_a_face_like_shell_is_stored_to_a_thousandth_of_a_millimetre
     the_search_for_crossings_tries_few_pairs_for_each_triangle
-    swapped_sets_and_the_inside_of_a_real_face_are_told
+    swapped_sets_and_the_inside_of_a_real_face_are_reported
     tissue_of_a_face_and_of_a_shell_is_one_part_that_moves_as_planned
 }
 
@@ -90,7 +90,7 @@ fn crossings(case: &Case, plan: &Plan) -> (u64, u64, Option<Warning>) {
 }
 
 /// The 6 pairs at rest were counted by another program too.
-fn a_jaw_raised_into_the_lips_of_a_real_face_is_told() -> Result<(), Missing> {
+fn a_jaw_raised_into_the_lips_of_a_real_face_is_reported() -> Result<(), Missing> {
     let case = subject()?;
     let (rest, moved, told) = crossings(&case, &Plan::default());
     assert_eq!((rest, moved, told), (6, 6, None));
@@ -219,7 +219,7 @@ fn tissue_of_a_face_and_of_a_shell_is_one_part_that_moves_as_planned() -> Result
     Ok(())
 }
 
-fn swapped_sets_and_the_inside_of_a_real_face_are_told() -> Result<(), Missing> {
+fn swapped_sets_and_the_inside_of_a_real_face_are_reported() -> Result<(), Missing> {
     let mut case = subject()?;
     for bone in ["jaw", "maxilla"] {
         let bytes = std::fs::read(shared_data(&format!("face/subject_face_{bone}.stl"))?).unwrap();

@@ -111,7 +111,7 @@ fn a_bone_smaller_than_a_voxel_is_refused_by_its_name() {
 }
 
 #[test]
-fn what_was_mended_is_told_by_name_and_number_and_a_whole_surface_is_not() {
+fn what_was_mended_is_reported_by_name_and_number_and_a_whole_surface_is_not() {
     let whole = ball(BONE, Vector::zeros());
     let told = |skin: &TriangleSurface, bone: &TriangleSurface| {
         mended(&SurfaceDomain::new(skin, &[bone], &[]).unwrap())
@@ -136,7 +136,7 @@ fn what_was_mended_is_told_by_name_and_number_and_a_whole_surface_is_not() {
 }
 
 #[test]
-fn bone_that_nothing_cuts_is_told_because_no_plan_can_move_it() {
+fn bone_that_nothing_cuts_is_reported_because_no_plan_can_move_it() {
     let (skin, bone) = (skin(), ball(BONE, Vector::zeros()));
     let domain = SurfaceDomain::new(&skin, &[&bone], &[]).unwrap();
     let meshing = MeshingSettings { size: SizeField::uniform(8.0), ..MeshingSettings::default() };
@@ -151,7 +151,7 @@ fn bone_that_nothing_cuts_is_told_because_no_plan_can_move_it() {
 }
 
 #[test]
-fn a_second_skin_that_is_not_meshed_and_teeth_that_do_not_slide_are_told() {
+fn a_second_skin_that_is_not_meshed_and_teeth_that_do_not_slide_are_reported() {
     let mut skin = skin();
     let other = ball(27.0, Vector::x() * 120.0);
     let first = skin.points.len() as u32;

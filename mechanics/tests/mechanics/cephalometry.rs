@@ -99,7 +99,7 @@ fn a_lower_jaw_in_front_has_a_negative_anb() {
 }
 
 #[test]
-fn swapped_sides_are_told_with_how_far() {
+fn swapped_sides_are_reported_with_how_far() {
     let mut swapped = example();
     assert!(Landmarks(&swapped).swapped_sides(Frame::Lps).is_empty());
     let [left, right] = ["Po_L", "Po_R"].map(|name| swapped[name]);
@@ -111,7 +111,7 @@ fn swapped_sides_are_told_with_how_far() {
 }
 
 #[test]
-fn what_lacks_a_landmark_is_left_out_and_the_rest_is_told() {
+fn what_lacks_a_landmark_is_left_out_and_the_rest_is_reported() {
     let mut few = example();
     few.remove("Or_L");
     assert_eq!(measure("overjet", &few), None);

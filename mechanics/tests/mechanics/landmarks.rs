@@ -112,7 +112,7 @@ fn parts_of_the_face_lie_at_their_landmarks_and_no_node_is_in_two() {
 }
 
 #[test]
-fn a_gap_in_the_face_is_told_and_the_back_of_the_head_is_no_face() {
+fn a_gap_in_the_face_is_reported_and_the_back_of_the_head_is_no_face() {
     let mut skin = head(0.0, &BUMPS);
     let is_nose = |x: &Vector| x.y < 0.0 && x.x.abs() < 12.0 && (-12.0..-2.0).contains(&x.z);
     let points = skin.points.clone();

@@ -168,7 +168,7 @@ mod tests {
     }
 
     #[test]
-    fn a_refusal_is_told_by_its_first_reason() {
+    fn a_refusal_is_reported_by_its_first_reason() {
         let problem =
             br#"{"detail":"2 problems","errors":[{"detail":"nu is 0.7"},{"detail":"E"}]}"#;
         assert_eq!(reason(problem), "nu is 0.7");

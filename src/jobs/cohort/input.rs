@@ -21,7 +21,7 @@ pub struct CohortInput {
     /// The stored cohort that the spec has its groups from.
     #[serde(default)]
     pub cohort: Option<CohortVersionDocument>,
-    /// What each job found, by its id.
+    /// Result of each job, by its id.
     pub comparisons: BTreeMap<String, ComparisonDocument>,
     /// The SHA-256 of the scan that each compared with, by its id: who the patient was.
     #[serde(default)]

@@ -1,4 +1,4 @@
-//! Doubts that the comparisons in one place of a cohort are of one patient, and those of one group of several.
+//! Consistency of a cohort: the comparisons in one place should be of one patient, those of one group of several.
 
 use std::collections::BTreeMap;
 

@@ -1,4 +1,4 @@
-//! The groups of a cohort of twins: the variants of the model, what was measured of what happened, and no movement at all.
+//! Groups of a cohort of twins: the variants of the model, the measured outcome, and no movement at all.
 
 use std::collections::BTreeMap;
 

@@ -22,7 +22,7 @@ use mechanics::validation::{
     NodeWise, Region, compare,
 };
 
-/// What a comparison found.
+/// Result of a comparison.
 pub struct ComparisonFindings {
     pub document: ComparisonDocument,
     /// At each point of the prediction in mm, positive outside the actual surface.

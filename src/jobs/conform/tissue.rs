@@ -1,4 +1,4 @@
-//! What a template's tissue has beside its cells, brought to the patient: muscles along lines, and fibres that have a direction.
+//! Muscle lines and fibre directions of a template, mapped to the patient.
 
 use super::input::PreparedConformation;
 use crate::schema::case::document::{FrameName, LengthUnit};

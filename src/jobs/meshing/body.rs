@@ -13,7 +13,7 @@ use mechanics::domain::{Domain, LabelBody, SurfaceDomain, SurfaceDomainError, Su
 use mechanics::image::ImageVolume;
 use mechanics::mesh::{TriangleSurface, Warning};
 
-/// What was read.
+/// Parsed input.
 pub enum Body {
     Scan(ScannedHead),
     Labels(Box<LabelBody>),

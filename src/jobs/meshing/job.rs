@@ -114,7 +114,7 @@ impl PreparedMeshing {
     }
 }
 
-/// What a meshing has made, before it is written.
+/// Result of a meshing, before it is written.
 struct MeshingOutput<'a> {
     prepared: &'a PreparedMeshing,
     anatomy: &'a Anatomy,

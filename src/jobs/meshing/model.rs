@@ -94,7 +94,7 @@ impl PreparedMeshing {
         Ok(PartedBody { domain: Box::new(domain), bone, warnings, skin: None })
     }
 
-    /// With what is told of the label map.
+    /// With the warnings of the label map.
     fn part_labels(&self, labels: &LabelBody) -> Result<PartedBody, AnatomyError> {
         let domain = labels.domain(&[])?;
         let bone = part_labels(labels, &domain, &self.rules)?;

@@ -32,7 +32,7 @@ use mechanics::response::{
     COLUMNS_PER_SEGMENT, ColumnRequest, ResponseError, ResponseOrder, chosen,
 };
 
-/// A difference between full solution and response that is told, in mm: stored in single precision and
+/// A difference between full solution and response that is reported, in mm: stored in single precision and
 /// solved to the usual residual they agree to 1e-4 mm.
 const NOTICEABLE: f64 = 0.01;
 

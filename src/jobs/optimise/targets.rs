@@ -40,7 +40,7 @@ fn part_of(target: usize) -> String {
 
 impl OptimiseInput {
     /// Fetches the meshes and checks the documents as those of a prediction in which nothing moves.
-    /// Everything wrong is told; pointers start at `/case` and `/spec`.
+    /// Everything wrong is reported; pointers start at `/case` and `/spec`.
     pub fn prepare(
         &self,
         sources: &dyn MeshSource,

@@ -1,4 +1,4 @@
-//! Growth and constants of regions that are looked for, and the materials that they make.
+//! Unknown growth and constants of regions, and the materials that follow from them.
 
 use super::input::OptimiseInput;
 use crate::jobs::failure::JobError;

@@ -18,7 +18,7 @@ use mechanics::prediction::Prediction;
 /// The file of the corrected skin.
 pub const CORRECTED_FILE: &str = "corrected.vtp";
 
-/// What a model made of a prediction.
+/// A prediction corrected by a model.
 pub struct Correction {
     pub document: CorrectedDocument,
     /// None where the case is refused.

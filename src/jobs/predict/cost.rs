@@ -40,7 +40,7 @@ pub const CONTACT: f64 = 80.0;
 pub const CONTACT_AT_FINITE_STRAIN: f64 = 5.0;
 
 /// The memory of a process that solves a scene, in MB, and of so many columns of a response. Volume splines check
-/// the size of their lattice themselves, and are told as their mesh here.
+/// the size of their lattice themselves, and are reported as their mesh here.
 pub fn memory_mb(scene: &Scene, columns: usize) -> f64 {
     let cells: f64 = scene.mesh.cells.iter().map(|(shape, _)| bytes_of_cell(scene, shape)).sum();
     let columns = (columns * scene.mesh.nodes.len()) as f64;

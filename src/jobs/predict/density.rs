@@ -9,7 +9,8 @@ use mechanics::mesh::ignored::listed;
 /// Of water, in g/cm³: what a material without a density has.
 const DEFAULT: f64 = 1.0;
 
-/// The warning where gravity acts on tissue whose density nobody stated. Of a case without materials another warning tells it.
+/// The warning where gravity acts on tissue without a stated density. Of a case without materials another warning tells
+/// it.
 pub(super) fn default_density(input: &PredictInput) -> Option<Warning> {
     if !input.plan.loads.iter().any(|load| load.gravity_m_per_s2.is_some()) {
         return None;

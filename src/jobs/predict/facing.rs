@@ -1,4 +1,4 @@
-//! Orientation of a face: whether it looks where its frame says that faces look.
+//! Orientation of a face: whether it looks in the direction that its frame states.
 
 use mechanics::chart::{FaceDirection, clear_front};
 use mechanics::mesh::{Frame, TriangleSurface, Vector, Warning};
@@ -49,7 +49,7 @@ mod tests {
     }
 
     #[test]
-    fn a_face_that_looks_to_the_back_of_its_frame_is_told_with_both_directions() {
+    fn a_face_that_looks_to_the_back_of_its_frame_is_reported_with_both_directions() {
         assert_eq!(frame_mismatch(Frame::Ras, &tent()), None);
         assert_eq!(frame_mismatch(Frame::Unspecified, &tent()), None);
         let told = frame_mismatch(Frame::Lps, &tent()).expect("LPS looks along -y");

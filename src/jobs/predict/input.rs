@@ -74,7 +74,7 @@ struct Converted {
 }
 
 impl PredictInput {
-    /// Fetches the meshes, converts the documents and checks them together. Everything wrong is told;
+    /// Fetches the meshes, converts the documents and checks them together. Everything wrong is reported;
     /// pointers start at `/case`, `/plan` and `/spec`.
     pub fn prepare(&self, sources: &dyn MeshSource, limits: &Limits) -> Result<Prepared, JobError> {
         let stored = self.fetch(sources)?;
@@ -142,7 +142,7 @@ impl PredictInput {
         files
     }
 
-    /// The pictures of its job that are no files; a command has nobody to draw them later.
+    /// The pictures of its job that are no files: on the command line nothing draws them later.
     pub fn pictures_beside(&self, files: &[FileDocument]) -> Vec<PictureName> {
         let has = |output: OutputName| files.iter().any(|file| file.name == output.file_name());
         if self.job.is_some() { PictureName::beside(has) } else { Vec::new() }

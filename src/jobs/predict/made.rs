@@ -1,4 +1,4 @@
-//! Check of a case whose meshes were just made: what holds its nodes before any segment moves.
+//! Check of a case whose meshes were just made: the boundary conditions of its nodes before any segment moves.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;

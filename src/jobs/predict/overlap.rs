@@ -1,4 +1,4 @@
-//! Overlap of surfaces under a plan: warned of, since nothing in the model stops it.
+//! Overlap of surfaces under a plan: a warning, since nothing in the model prevents it.
 
 use crate::jobs::result::pictures::upright;
 use crate::jobs::result::tissue::encode_bones;

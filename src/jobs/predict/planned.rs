@@ -1,4 +1,4 @@
-//! What a plan means for the landmarks of a head: cephalometric measures and symmetry before, planned and predicted.
+//! Landmarks of a head under a plan: cephalometric measures and symmetry before, planned and predicted.
 
 use std::collections::BTreeMap;
 

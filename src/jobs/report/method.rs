@@ -1,4 +1,4 @@
-//! What a prediction was computed with, in a sentence that is right for it, and what it leaves out.
+//! Method of a prediction in one sentence, and its limits.
 
 use super::content::{Block, Section};
 use super::tables::mm;

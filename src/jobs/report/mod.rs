@@ -1,4 +1,4 @@
-//! Reports of results for people: what was planned, what comes of it, how sure that is and where it comes from.
+//! Printable reports of results: the plan, the outcome, its errors and its provenance.
 
 mod comparison;
 mod content;

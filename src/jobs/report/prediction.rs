@@ -27,11 +27,11 @@ use crate::schema::{CaseDocument, Language, PlanDocument};
 /// Of the name of a case so many letters stand under the title.
 const LONGEST_NAME: usize = 120;
 
-/// Of what a plan does beside bone so much is told in its sentence.
+/// Most loads and muscles of a plan that its sentence names.
 const MOST_BESIDE: usize = 18;
 const LONGEST_PART: usize = 40;
 
-/// What a prediction was made of and what it found.
+/// Input and result of a prediction.
 pub struct PredictionFacts<'a> {
     pub case: &'a CaseDocument,
     pub plan: &'a PlanDocument,
@@ -132,7 +132,7 @@ fn centre(scene: &Scene, segment: u32) -> Vector {
     sum / f64::max(count, 1.0)
 }
 
-/// What a plan does that moves no bone.
+/// Parts of a plan that move no bone.
 fn beside_bone(plan: &PlanDocument, words: &Words) -> Option<String> {
     let plain = |name: &str| match name {
         "*" => words.all_tissue.to_owned(),

@@ -1,4 +1,4 @@
-//! What of a report its two pages have room for: tables and lists of a page share its lines, and a figure has what is left.
+//! Page budget of a report: tables and lists of a page share its lines, and a figure has what is left.
 //!
 //! Heights are in points, each the larger one of a browser that prints the HTML on A4 and of the PDF.
 

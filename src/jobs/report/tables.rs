@@ -1,4 +1,4 @@
-//! What all reports tell: where the numbers come from, and numbers as words.
+//! Common tables of all reports: provenance, and numbers as words.
 
 use mechanics::mesh::Frame;
 

@@ -61,8 +61,11 @@ impl Kind<'_> {
     /// The worst of them, and how many there are.
     fn told(&self, words: &Words) -> Option<String> {
         // Of several as bad the first.
-        let worst =
-            self.all.iter().rev().max_by(|one, other| badness(one).total_cmp(&badness(other)))?;
+        let worst = self
+            .all
+            .iter()
+            .rev()
+            .max_by(|one, other| severity_mm(one).total_cmp(&severity_mm(other)))?;
         let code = match self.all.len() {
             1 => self.code.to_owned(),
             count => filled(words.times, &[self.code.to_owned(), count.to_string()]),
@@ -72,7 +75,7 @@ impl Kind<'_> {
 }
 
 /// The first length among the numbers of a warning, in mm: distances, depths and errors, of which more is worse.
-fn badness(warning: &WarningDocument) -> f64 {
+fn severity_mm(warning: &WarningDocument) -> f64 {
     let lengths = warning.numbers.iter().filter(|(name, _)| name.ends_with("_mm"));
     lengths.filter_map(|(_, value)| value.as_f64()).next().map_or(0.0, f64::abs)
 }

@@ -1,4 +1,4 @@
-//! Doubts about a reproduction: that both scans are of one person, the right way round, in the order of time.
+//! Plausibility of a reproduction: both scans are of one person, the right way round, in the order of time.
 
 use crate::schema::reproduce::document::{ReproduceDocument, ReproducedSegmentDocument};
 use mechanics::mesh::{TriangleSurface, Warning};

@@ -1,4 +1,4 @@
-//! The pictures of a job: what holds the boundary, and how the skin moves.
+//! Pictures of a job: its boundary conditions and the displacement of its skin.
 
 use crate::schema::compare::result::StatDocument;
 use mechanics::anatomy::Anatomy;

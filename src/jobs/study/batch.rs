@@ -12,7 +12,7 @@ use crate::schema::wire::canonical;
 use crate::schema::{ErrorCode, Faults};
 use mechanics::study::Variant;
 
-/// What a study is made of.
+/// Scenes and variants of a study.
 pub(super) struct StudyItems {
     pub scenes: Scenes,
     pub variants: Vec<Variant>,

@@ -80,7 +80,7 @@ pub fn cell_sizes_chart(report: &ReportDocument, group: [&str; 3]) -> String {
     picture.to_svg()
 }
 
-/// What a reader wants to know of a series.
+/// Summary of a series.
 pub fn convergence_text(of: &CellSizesDocument) -> String {
     let fit = match (of.order, of.limit_mm, of.fit_rms_mm) {
         (Some(order), Some(limit), Some(rms)) => {

@@ -90,7 +90,7 @@ impl StudyInput {
     }
 }
 
-/// What a study that names no method is told: the dearest of them takes minutes where the cheapest takes a second.
+/// Warning of a study that names no method: the costliest takes minutes where the cheapest takes a second.
 fn all_methods(study: &Study) -> Warning {
     let methods: BTreeSet<&str> =
         study.variants.iter().map(|variant| variant.method.as_str()).collect();

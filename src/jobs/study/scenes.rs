@@ -18,7 +18,7 @@ use crate::schema::{
 };
 use mechanics::mesh::ignored::listed;
 use mechanics::prediction::MethodKind;
-use mechanics::study::scenes::{scene_of, usual_truth};
+use mechanics::study::scenes::{default_truth, scene_of};
 use mechanics::study::sweep::{self, SweepError};
 use mechanics::study::{Materials, StudyScene, Variant, methods};
 
@@ -309,7 +309,7 @@ impl Documents<'_> {
             });
         }
         let name = reference.name.clone().or_else(|| case.name.clone());
-        let truth = usual_truth(&first.case);
+        let truth = default_truth(&first.case);
         let mut scene = StudyScene {
             name: name.unwrap_or_else(|| format!("case {}", found.scenes.len() + 1)),
             case: first.case.clone(),

@@ -1,4 +1,4 @@
-//! Verdict on a study: its rows against thresholds, and against the same rows of an earlier study.
+//! Outcome of a study: its rows against thresholds, and against the same rows of an earlier study.
 
 use std::collections::BTreeMap;
 
@@ -180,7 +180,7 @@ fn above(row: &RowDocument, numbers: &NumbersDocument, bounds: &ThresholdsDocume
     exceeds.collect()
 }
 
-/// What is worse than in the same row before.
+/// Regressions against the same row before.
 fn grown(
     now: &NumbersDocument,
     before: &NumbersDocument,

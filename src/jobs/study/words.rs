@@ -1,4 +1,4 @@
-//! Words for what names in documents stand for, as pictures call it.
+//! Words for the names in documents, as pictures show them.
 
 /// Methods by their names.
 const METHODS: [(&str, &str); 9] = [

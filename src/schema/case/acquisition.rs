@@ -1,4 +1,4 @@
-//! How a scan was taken: facts that say what a comparison can tell, and none that says whose it is.
+//! Acquisition of a scan: what a comparison needs to know of it, and nothing that identifies the patient.
 
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;

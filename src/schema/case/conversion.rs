@@ -1,4 +1,4 @@
-//! A case document and its meshes to the case that the path takes: one unit, one frame, checked values.
+//! Conversion of a case document and its meshes to the numerics: one unit, one frame, checked values.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;

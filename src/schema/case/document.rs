@@ -1,4 +1,4 @@
-//! A case: the meshes of a patient, what they mean, and what holds them.
+//! Case document: the meshes of a patient, their meaning, and their boundary conditions.
 
 use std::collections::BTreeMap;
 

@@ -29,7 +29,7 @@ pub struct HounsfieldDocument {
     /// frame of the case where both are stated.
     pub image: String,
     /// Points in each cell, the same in every cell of a shape.
-    #[serde(default = "usual_samples")]
+    #[serde(default = "default_samples")]
     #[schema(default = 512, minimum = 1, maximum = 512)]
     pub samples: u32,
     /// Windows of values that do not overlap.
@@ -39,7 +39,7 @@ pub struct HounsfieldDocument {
     pub mixing: MixingName,
 }
 
-fn usual_samples() -> u32 {
+fn default_samples() -> u32 {
     MOST_SAMPLES as u32
 }
 

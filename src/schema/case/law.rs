@@ -33,7 +33,7 @@ pub struct LawDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false, minimum = 0.0, maximum = 1e9)]
     pub lambda_kpa: Option<f64>,
-    /// K of U(J), of laws that tell shape and volume apart.
+    /// K of U(J), of laws that separate shape and volume.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false, minimum = 1e-9, maximum = 1e9)]
     pub bulk_modulus_kpa: Option<f64>,
@@ -147,7 +147,7 @@ struct ConstantNames {
 }
 
 impl LawKind {
-    /// As it stands in documents.
+    /// Its name in documents.
     pub fn name(self) -> &'static str {
         match self {
             LawKind::NeoHookean => "neo_hookean",

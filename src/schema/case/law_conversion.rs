@@ -1,4 +1,4 @@
-//! A law of a document as the law that is computed, and back.
+//! Conversion of a law between its document and the numerics.
 
 use super::law::{LawDocument, LawKind, OgdenTermDocument, VolumetricName};
 use crate::schema::code::ErrorCode;

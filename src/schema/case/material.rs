@@ -84,7 +84,7 @@ impl MaterialDocument {
         MaterialDocument { fibre, ..self.clone() }
     }
 
-    /// The same over the default tissue, which nobody stated: a law with moduli of its own takes its place.
+    /// The same over the default tissue: a law with moduli of its own takes its place.
     pub(super) fn over_default(&self, base: &MaterialDocument) -> MaterialDocument {
         match self.law.as_ref().is_some_and(LawDocument::has_moduli) {
             true => self.clone(),

@@ -15,15 +15,15 @@ use mechanics::prediction::SkinMembrane;
 #[serde(deny_unknown_fields)]
 pub struct MembraneDocument {
     /// In [0.001, 20].
-    #[serde(default = "usual_thickness")]
+    #[serde(default = "default_thickness_mm")]
     #[schema(default = 1.5, minimum = 1e-3, maximum = 20.0)]
     pub thickness_mm: f64,
     /// In [1e-9, 1e9]; with lines, across them.
-    #[serde(default = "usual_modulus")]
+    #[serde(default = "default_modulus_kpa")]
     #[schema(default = 200.0, minimum = 1e-9, maximum = 1e9)]
     pub young_modulus_kpa: f64,
     /// In [0, 0.5]; with lines, how much the sheet narrows when it is stretched along them.
-    #[serde(default = "usual_ratio")]
+    #[serde(default = "default_poisson_ratio")]
     #[schema(default = 0.45, minimum = 0.0, maximum = 0.5)]
     pub poisson_ratio: f64,
     /// Stress of the skin in its plane as it was scanned, in balance with the tissue below, in [0, 1000]: a taut skin resists slopes
@@ -55,15 +55,15 @@ pub struct LinesDocument {
     pub array: Option<String>,
 }
 
-fn usual_thickness() -> f64 {
+fn default_thickness_mm() -> f64 {
     1.5
 }
 
-fn usual_modulus() -> f64 {
+fn default_modulus_kpa() -> f64 {
     200.0
 }
 
-fn usual_ratio() -> f64 {
+fn default_poisson_ratio() -> f64 {
     0.45
 }
 

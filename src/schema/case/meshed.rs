@@ -93,7 +93,7 @@ impl MeshedCaseDocument {
     }
 }
 
-/// A case with the volume mesh that it names, or one whose mesh is to be made: `volume` or `meshing` tells them apart.
+/// A case with the volume mesh that it names, or one whose mesh is to be made: distinguished by `volume` or `meshing`.
 #[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
 #[serde(untagged)]
 pub enum CaseBody {

@@ -1,4 +1,4 @@
-//! How the material of muscles becomes that of cells and changes as they pull, and what muscles are in the cells of a mesh.
+//! Mixing of muscles into the material of cells, passive and active, and the report of muscles in the cells of a mesh.
 
 use std::collections::BTreeMap;
 
@@ -19,12 +19,12 @@ pub struct MuscleMixingDocument {
     #[serde(default)]
     pub rule: MixingRuleName,
     /// Points in each cell by which the share of a body in it is found.
-    #[serde(default = "usual_samples")]
+    #[serde(default = "default_samples")]
     #[schema(default = 64, minimum = 1, maximum = 512)]
     pub samples: u32,
 }
 
-fn usual_samples() -> u32 {
+fn default_samples() -> u32 {
     MuscleMixing::default().samples as u32
 }
 

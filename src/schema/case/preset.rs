@@ -1,4 +1,4 @@
-//! Materials of the literature by name: their constants, their source, what state of tissue they are of, and what speaks against them.
+//! Materials of the literature by name: constants, source, state of the tissue, and caveats.
 //!
 //! A value never changes under its name, because results that are stored name it: a better one gets a name of its own.
 
@@ -36,7 +36,7 @@ pub struct PresetDocument {
     pub doubt: Option<String>,
     /// Whether the course of its fibres has to be stated beside it, as `fibre.direction` or `fibre.array`.
     pub needs_course: bool,
-    /// What it stands for.
+    /// The tissue that it describes.
     pub material: MaterialDocument,
 }
 

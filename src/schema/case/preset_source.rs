@@ -1,4 +1,4 @@
-//! What is said in words of each material of the literature: its source, its state, and what speaks against it.
+//! Source, state and caveats of each material of the literature, in words.
 
 /// Words of one material.
 pub(super) struct Words {

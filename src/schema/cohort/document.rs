@@ -53,8 +53,8 @@ pub struct CohortDocument {
     pub subjects: Vec<String>,
     #[serde(default)]
     pub distance: CohortDistance,
-    /// A region of every comparison, of which closest points are told; of twins `nose`, `lips`, `chin` or `cheeks`. Absent: the whole
-    /// surface.
+    /// A region of every comparison, for distances by closest points; of twins `nose`, `lips`, `chin` or `cheeks`.
+    /// Absent: the whole surface.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub region: Option<String>,

@@ -1,4 +1,4 @@
-//! Cohorts that are kept: operated cases, what was measured of them, and what may be learned from whom.
+//! Stored cohorts: operated cases, their measured outcome, and consent for learning.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -28,7 +28,7 @@ pub struct StoredCohortDocument {
     pub members: Vec<MemberDocument>,
 }
 
-/// What may be learned from whom.
+/// Consent for learning from a member.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ConsentDocument {

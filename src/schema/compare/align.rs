@@ -1,4 +1,4 @@
-//! How a comparison aligns the actual surface with the prediction.
+//! Alignment of the actual surface with the prediction in a comparison.
 
 use std::collections::BTreeMap;
 
@@ -52,7 +52,7 @@ pub struct AlignDocument {
     pub report_unaligned: bool,
 }
 
-/// A way to align by its name, or with what it has to be told. Only described here.
+/// An alignment by its name, or with its parameters. Only described here.
 #[derive(Clone, Debug, Serialize, ToSchema)]
 #[serde(untagged)]
 pub enum AlignReference {

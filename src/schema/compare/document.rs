@@ -40,13 +40,13 @@ pub struct CompareDocument {
     pub align: AlignDocument,
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub regions: BTreeMap<String, ComparedRegionDocument>,
-    #[serde(default = "usual_density")]
+    #[serde(default = "default_samples_per_mm2")]
     #[schema(default = 1.0, exclusive_minimum = 0.0, maximum = 100.0)]
     pub samples_per_mm2: f64,
     #[serde(default)]
     pub node_wise: NodeWise,
-    /// Places that both surfaces have, those of the actual one before it is aligned. How far apart they are is told;
-    /// four or more that do not lie in a plane measure by thin-plate spline and closest point as well.
+    /// Places that both surfaces have, those of the actual one before it is aligned. Their distances are reported; four
+    /// or more that do not lie in a plane measure by thin-plate spline and closest point as well.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub landmarks: BTreeMap<String, LandmarkDocument>,
     /// Ascending edges of the bins of a histogram of distances, in mm.
@@ -77,13 +77,13 @@ pub struct CompareToDocument {
     pub align: AlignDocument,
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub regions: BTreeMap<String, ComparedRegionDocument>,
-    #[serde(default = "usual_density")]
+    #[serde(default = "default_samples_per_mm2")]
     #[schema(default = 1.0, exclusive_minimum = 0.0, maximum = 100.0)]
     pub samples_per_mm2: f64,
     #[serde(default)]
     pub node_wise: NodeWise,
-    /// Places that both surfaces have, those of the actual one before it is aligned. How far apart they are is told;
-    /// four or more that do not lie in a plane measure by thin-plate spline and closest point as well.
+    /// Places that both surfaces have, those of the actual one before it is aligned. Their distances are reported; four
+    /// or more that do not lie in a plane measure by thin-plate spline and closest point as well.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub landmarks: BTreeMap<String, LandmarkDocument>,
     /// Ascending edges of the bins of a histogram of distances, in mm.
@@ -95,7 +95,7 @@ pub struct CompareToDocument {
     pub acquisition: Option<AcquisitionDocument>,
 }
 
-fn usual_density() -> f64 {
+fn default_samples_per_mm2() -> f64 {
     1.0
 }
 
@@ -118,7 +118,7 @@ impl CompareToDocument {
             actual,
             align: AlignDocument::default(),
             regions: BTreeMap::new(),
-            samples_per_mm2: usual_density(),
+            samples_per_mm2: default_samples_per_mm2(),
             node_wise: NodeWise::Auto,
             landmarks: BTreeMap::new(),
             histogram_edges_mm: Vec::new(),

@@ -39,7 +39,7 @@ pub struct ConformDocument {
     #[serde(default)]
     pub start: ConformStartName,
     /// By which map the template's muscles and uniform fibres come to the patient; those in arrays go with the mesh.
-    #[serde(default, skip_serializing_if = "MuscleMapName::is_usual")]
+    #[serde(default, skip_serializing_if = "MuscleMapName::is_default")]
     pub muscles_by: MuscleMapName,
     #[serde(default)]
     pub repair: RepairDocument,
@@ -96,7 +96,7 @@ pub enum MuscleMapName {
 
 impl MuscleMapName {
     #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks for a reference")]
-    fn is_usual(&self) -> bool {
+    fn is_default(&self) -> bool {
         *self == MuscleMapName::Conformation
     }
 }

@@ -1,4 +1,4 @@
-//! The template of a conformation: its mesh, which of its nodes lie on what, and what its tissue is made of.
+//! Template of a conformation: its mesh, the node sets of its surfaces, and its tissue.
 
 use std::collections::BTreeMap;
 

@@ -1,4 +1,4 @@
-//! The spec of a meshing: the scan, the label map or the surfaces, what of them is tissue and bone, what is cut, and how fine the mesh is.
+//! Spec of a meshing: the scan, the label map or the surfaces, their tissue and bone, the cuts, and the cell sizes.
 
 use serde::{Deserialize, Serialize};
 use serde_json::Value;

@@ -1,4 +1,4 @@
-//! A label map that is meshed, and what its labels are.
+//! Label map to be meshed, with the meaning of its labels.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -15,7 +15,7 @@ use mechanics::image::{ImageVolume, LabelMap};
 
 /// The region of tissue that has no name of its own.
 const TISSUE: &str = "tissue";
-/// The label that stands for all that are not listed.
+/// The label for all that are not listed.
 const REST: &str = "*";
 /// Labels that a message names at most.
 const MOST_TOLD: usize = 20;
@@ -82,12 +82,12 @@ impl LabelClassDocument {
 impl LabelsDocument {
     /// The regions of tissue, each once, in their order.
     pub fn regions(&self) -> Vec<&str> {
-        each_once(self.classes.iter().filter_map(LabelClassDocument::region))
+        distinct_in_order(self.classes.iter().filter_map(LabelClassDocument::region))
     }
 
     /// The segments of bone, each once, in their order.
     pub fn segments(&self) -> Vec<&str> {
-        each_once(self.classes.iter().filter_map(LabelClassDocument::segment))
+        distinct_in_order(self.classes.iter().filter_map(LabelClassDocument::segment))
     }
 
     /// What needs no image.
@@ -208,7 +208,7 @@ fn told(regions: &[Region]) -> String {
     if all.is_empty() { "none".to_owned() } else { all.join(", ") }
 }
 
-fn each_once<'a>(names: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
+fn distinct_in_order<'a>(names: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
     let mut found: Vec<&str> = Vec::new();
     for name in names {
         if !found.contains(&name) {

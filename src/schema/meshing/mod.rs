@@ -1,4 +1,4 @@
-//! Meshing: the job that makes a volume mesh from a scan, a label map or surfaces, and what it says of the mesh.
+//! Meshing: the job that makes a volume mesh from a scan, a label map or surfaces, and its report.
 
 pub mod cuts;
 pub mod document;

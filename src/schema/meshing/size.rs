@@ -1,4 +1,4 @@
-//! How fine a mesh is, and where.
+//! Cell sizes of a mesh, by place.
 
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;

@@ -30,26 +30,26 @@ pub enum HistogramName {
 #[serde(deny_unknown_fields)]
 pub struct HounsfieldThresholdsDocument {
     /// Below this there is air.
-    #[serde(default = "usual_skin")]
+    #[serde(default = "default_skin_hu")]
     #[schema(default = -300.0)]
     pub skin: f64,
     /// From this on there is bone.
-    #[serde(default = "usual_bone")]
+    #[serde(default = "default_bone_hu")]
     #[schema(default = 250.0)]
     pub bone: f64,
 }
 
-fn usual_skin() -> f64 {
+fn default_skin_hu() -> f64 {
     ImageOptions::default().skin_threshold
 }
 
-fn usual_bone() -> f64 {
+fn default_bone_hu() -> f64 {
     ImageOptions::default().bone_threshold
 }
 
 impl Default for HounsfieldThresholdsDocument {
     fn default() -> Self {
-        HounsfieldThresholdsDocument { skin: usual_skin(), bone: usual_bone() }
+        HounsfieldThresholdsDocument { skin: default_skin_hu(), bone: default_bone_hu() }
     }
 }
 

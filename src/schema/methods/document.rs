@@ -1,4 +1,4 @@
-//! The description of a method: what it assumes, what it reads, what it has to be told.
+//! Description of a method: its assumptions, its input, its parameters.
 
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
@@ -19,11 +19,11 @@ pub struct MethodDocument {
     pub cells: Vec<String>,
     /// The fields of case, plan and spec that it reads.
     pub reads: Vec<String>,
-    /// What only it has to be told, in the field of the spec that has its name.
+    /// Its parameters, in the field of the spec that has its name.
     pub parameters: Vec<ParameterDocument>,
 }
 
-/// What is told of a method in words; its name, its elements and its cells are those of the table of methods.
+/// Description of a method in words; its name, its elements and its cells are those of the table of methods.
 pub(super) struct Description {
     pub title: &'static str,
     pub assumptions: &'static [&'static str],
@@ -50,7 +50,7 @@ impl MethodDocument {
 /// A parameter of a method.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct ParameterDocument {
-    /// As it stands in the spec, with its unit.
+    /// Its name in the spec, with its unit.
     pub name: String,
     pub meaning: String,
     /// As JSON.

@@ -1,4 +1,4 @@
-//! The dynamic volume spline: what a spec tells it, and what is told of it. Times in s, stiffness in N/m.
+//! Dynamic volume spline: parameters and description. Times in s, stiffness in N/m.
 
 use serde::{Deserialize, Serialize};
 use serde_json::json;
@@ -58,7 +58,7 @@ pub enum DvsStepping {
     Explicit,
 }
 
-/// What only the dynamic volume spline has to be told.
+/// Parameters of the dynamic volume spline.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct DvsDocument {
@@ -86,7 +86,7 @@ pub struct DvsDocument {
     pub bone: DvsBone,
     /// Stiffness of what holds held nodes, over that of the tissue around a control point. A large one brings
     /// held nodes nearer to where they have to be, and leaves less freedom beside them.
-    #[serde(default = "usual_hold")]
+    #[serde(default = "default_hold")]
     #[schema(default = 5.0, minimum = 1.0, maximum = 1e6)]
     pub hold_weight: f64,
     #[serde(default)]
@@ -121,7 +121,7 @@ fn cubic() -> u32 {
     3
 }
 
-fn usual_hold() -> f64 {
+fn default_hold() -> f64 {
     VolumeSpline::default().hold_weight
 }
 
@@ -134,7 +134,7 @@ impl Default for DvsDocument {
             degrees: None,
             control_points: None,
             bone: DvsBone::Springs,
-            hold_weight: usual_hold(),
+            hold_weight: default_hold(),
             stepping: DvsStepping::Static,
             step_s: None,
             duration_s: None,

@@ -1,4 +1,4 @@
-//! Linear finite elements: what is told of them.
+//! Linear finite elements: description.
 
 use super::document::Description;
 

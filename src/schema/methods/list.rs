@@ -1,4 +1,4 @@
-//! The list of methods that are built, and of what they serve.
+//! List of the available methods and their uses.
 
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
@@ -69,7 +69,7 @@ pub struct ResponseMethod {
     pub linear_range_mm: f64,
 }
 
-/// A model, and where it stands on the chart of speed and accuracy.
+/// A model with its measured speed and accuracy.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct MeasuredMethod {
     #[serde(flatten)]

@@ -1,5 +1,4 @@
-//! Where each method stands on the chart of speed and accuracy: read from the table of the study that is kept with the
-//! program.
+//! Measured speed and accuracy of each method: read from the table of the study that is kept with the program.
 
 use std::sync::OnceLock;
 

@@ -44,9 +44,9 @@ pub struct OwnSettings {
 /// A row of the table.
 struct MethodRow {
     description: fn() -> Description,
-    /// Whether the spec tells it something.
+    /// Whether the spec has parameters of it.
     is_told: fn(&OwnSettings) -> bool,
-    /// The method with what it is told at a place, or with what is usual.
+    /// The method with its parameters at a place, or with defaults.
     to_method: fn(&OwnSettings, &Pointer, &mut Faults) -> Method,
 }
 
@@ -109,7 +109,7 @@ fn row(method: MethodKind) -> MethodRow {
     }
 }
 
-/// What is told of a method.
+/// Description of a method.
 fn describe(method: MethodKind) -> MethodDocument {
     MethodDocument::new(method, (row(method).description)())
 }

@@ -1,4 +1,4 @@
-//! The mass-spring model: what a spec tells it, and what is told of it.
+//! Mass-spring model: parameters and description.
 
 use serde::{Deserialize, Serialize};
 use serde_json::json;

@@ -1,4 +1,4 @@
-//! The nonlinear mass-tensor model: what is told of it.
+//! Nonlinear mass-tensor model: description.
 
 use super::document::Description;
 

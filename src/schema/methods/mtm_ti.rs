@@ -1,4 +1,4 @@
-//! The mass-tensor model of tissue with fibres: what is told of it.
+//! Mass-tensor model of transversely isotropic tissue: description.
 
 use super::document::Description;
 use super::mtm;

@@ -44,7 +44,7 @@ impl MethodName {
         }
     }
 
-    /// As it stands in documents.
+    /// Its name in documents.
     pub fn name(self) -> &'static str {
         match self {
             MethodName::Auto => "auto",
@@ -104,7 +104,7 @@ impl PartialSchema for MethodName {
 impl ToSchema for MethodName {}
 
 impl ElementName {
-    /// As it stands in documents.
+    /// Its name in documents.
     pub fn name(self) -> &'static str {
         self.0.name()
     }

@@ -1,4 +1,4 @@
-//! The thickness-preserving warp: what a spec tells it, and what is told of it.
+//! Thickness-preserving warp: parameters and description.
 
 use serde::{Deserialize, Serialize};
 use serde_json::json;
@@ -8,7 +8,7 @@ use super::document::{Description, parameter};
 use crate::schema::wire::fault::{Faults, Pointer};
 use mechanics::model::thickness_warp::ThicknessWarp;
 
-/// What only the thickness-preserving warp has to be told.
+/// Parameters of the thickness-preserving warp.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ThicknessWarpDocument {

@@ -1,4 +1,4 @@
-//! The spec of inverse planning: where skin is wanted, and how far each segment may move.
+//! Spec of inverse planning: targets of the skin, and bounds of the movement of each segment.
 
 use std::collections::BTreeMap;
 
@@ -64,7 +64,8 @@ pub struct OptimiseDocument {
     /// Muscles that pull likewise.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub activations: Vec<ActivationDocument>,
-    /// Solves the plan that was found as `predict` would, and tells how far the skin is from the answer of the response.
+    /// Solves the plan that was found as `predict` would, and reports how far the skin is from the answer of the
+    /// response.
     #[serde(default = "yes")]
     #[schema(default = true)]
     pub verify: bool,

@@ -1,4 +1,4 @@
-//! Doubts about growth and constants that were found.
+//! Plausibility of growth and constants that were found.
 
 use super::document::OptimiseDocument;
 use super::result::{OptimisationDocument, ParameterName};

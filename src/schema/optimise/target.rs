@@ -1,4 +1,4 @@
-//! Where skin is wanted, or where a scan shows it.
+//! Targets of the skin: wanted positions, or a scan.
 
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;

@@ -1,4 +1,4 @@
-//! Bounds of the growth and of the constants that are looked for.
+//! Bounds of unknown growth and tissue constants.
 
 use std::collections::BTreeMap;
 use std::ops::RangeInclusive;

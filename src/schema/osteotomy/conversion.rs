@@ -1,4 +1,4 @@
-//! Cuts and segments of a document as those of the numerics, and what is wrong with them.
+//! Conversion of the cuts and segments of a document to the numerics, with their errors.
 
 use std::ops::Range;
 
@@ -303,7 +303,7 @@ mod tests {
     }
 
     #[test]
-    fn each_mistake_is_told_at_its_place() {
+    fn each_mistake_is_reported_at_its_place() {
         let changed = |from: &str, to: &str| {
             assert!(MAXILLA.contains(from), "{from}");
             read(&MAXILLA.replace(from, to), false).unwrap_err()

@@ -1,4 +1,4 @@
-//! Osteotomies: where bone of a scan is cut, and which pieces come loose.
+//! Osteotomies: the cuts through the bone of a scan, and the segments they free.
 
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;

@@ -1,4 +1,4 @@
-//! Lines that are sawn into bone, as chains of polygons, and what is wrong with them.
+//! Polyline cuts as chains of polygons, with their errors.
 
 use mechanics::mesh::Vector;
 use mechanics::osteotomy::{Cut, CutError};

@@ -1,4 +1,4 @@
-//! Structures that cuts have to keep clear of, as those of the numerics, and what is wrong with them.
+//! Conversion of structures at risk, which cuts must avoid, to the numerics, with their errors.
 
 use mechanics::osteotomy::Risk;
 

@@ -1,4 +1,4 @@
-//! A plan: how the segments of a case move, and for mechanical cases what else acts.
+//! Plan document: the movements of the segments of a case, and for mechanical cases the loads.
 
 use std::collections::BTreeSet;
 

@@ -10,10 +10,10 @@ use crate::schema::wire::limits::Limits;
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct BudgetDocument {
-    #[serde(default = "usual_wall")]
+    #[serde(default = "default_wall_s")]
     #[schema(default = 600.0, exclusive_minimum = 0.0)]
     pub wall_s: f64,
-    #[serde(default = "usual_memory")]
+    #[serde(default = "default_memory_mb")]
     #[schema(default = 4000.0, minimum = 1.0)]
     pub memory_mb: f64,
 }
@@ -26,16 +26,16 @@ impl BudgetDocument {
     }
 }
 
-fn usual_wall() -> f64 {
+fn default_wall_s() -> f64 {
     600.0
 }
 
-fn usual_memory() -> f64 {
+fn default_memory_mb() -> f64 {
     4000.0
 }
 
 impl Default for BudgetDocument {
     fn default() -> Self {
-        BudgetDocument { wall_s: usual_wall(), memory_mb: usual_memory() }
+        BudgetDocument { wall_s: default_wall_s(), memory_mb: default_memory_mb() }
     }
 }

@@ -1,4 +1,4 @@
-//! The answer of a check: what every node is held to, before anything is solved.
+//! Answer of a check: the boundary condition of every node, before anything is solved.
 
 use std::collections::BTreeMap;
 

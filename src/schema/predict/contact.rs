@@ -1,4 +1,4 @@
-//! Contact: whether tissue is held where it slides, and whether it may pass through what it touches.
+//! Contact settings: sliding without separation, or unilateral contact.
 
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;

@@ -1,4 +1,4 @@
-//! Correction of a prediction by what was learned from operated cases.
+//! Correction of a prediction by a model learned from operated cases.
 
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;

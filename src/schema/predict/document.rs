@@ -1,4 +1,4 @@
-//! The spec of a prediction: what is to be computed, how, and within which budget.
+//! Spec of a prediction: outputs, method and budget.
 
 use std::collections::BTreeMap;
 
@@ -53,7 +53,7 @@ pub struct PredictDocument {
     #[serde(default)]
     #[schema(required)]
     pub kind: PredictKind,
-    /// The id of the case. In files of the command line the case stands beside the spec.
+    /// The id of the case. In files of the command line the case is beside the spec.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false, required)]
     pub case: Option<String>,
@@ -118,7 +118,7 @@ pub struct PredictDocument {
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub accept_regions_mm: BTreeMap<String, f64>,
     /// Whether the discretisation error of the skin is estimated.
-    #[serde(default, skip_serializing_if = "EstimateName::is_usual")]
+    #[serde(default, skip_serializing_if = "EstimateName::is_default")]
     pub estimate: EstimateName,
     /// Adds what the mesh leaves out, as far as that is estimated, to the displacement. Default: false.
     #[serde(default, skip_serializing_if = "is_false")]

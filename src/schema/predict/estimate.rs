@@ -14,7 +14,7 @@ pub enum EstimateName {
 
 impl EstimateName {
     /// What is not written down.
-    pub(super) fn is_usual(&self) -> bool {
+    pub(super) fn is_default(&self) -> bool {
         *self == EstimateName::Auto
     }
 }

@@ -1,4 +1,4 @@
-//! Nonlinearity of a prediction: what linear elasticity leaves out, as its result tells it.
+//! Linearisation error of a prediction in its result.
 
 use std::collections::BTreeMap;
 

@@ -1,4 +1,4 @@
-//! What a plan means for bone, before anything is predicted: movements for navigation, collisions, measures of the head.
+//! Bones under a plan, before anything is predicted: movements for navigation, collisions, measures of the head.
 
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
@@ -10,7 +10,7 @@ use mechanics::plan::{PlannedSegment, RigidMovement};
 use mechanics::validation::contact_map::ContactRegion;
 use mechanics::validation::penetration::Overlap;
 
-/// Stretches of contact that are told one by one.
+/// Most contact regions that are listed.
 const MOST_REGIONS: usize = 50;
 
 /// A segment that moves. Every text gives the same bits when it is read again.

@@ -1,4 +1,4 @@
-//! Contact in a result: what presses on what, and how its solution went.
+//! Contact in a result: pairs, forces, and the report of the solution.
 
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;

@@ -1,4 +1,4 @@
-//! Refinement of the mesh of a prediction where the estimate of its error asks for it, and how it went.
+//! Adaptive refinement of the mesh of a prediction: settings and report.
 
 use std::collections::BTreeMap;
 
@@ -25,16 +25,16 @@ pub struct RefineDocument {
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub regions: BTreeMap<String, f64>,
     /// The most cells of a mesh.
-    #[serde(default = "usual_cells")]
+    #[serde(default = "default_cells")]
     #[schema(default = 400_000, minimum = 1)]
     pub cells: u64,
 }
 
-fn usual_cells() -> u64 {
+fn default_cells() -> u64 {
     400_000
 }
 
-/// What `check` tells of the mesh that may be refined.
+/// Report of `check` on the mesh that may be refined.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct RefineBoundDocument {
     /// The most cells of a mesh: those of the spec, or fewer where the memory of a job holds no more.
@@ -74,7 +74,7 @@ pub struct RefinementLevelDocument {
 
 impl RefineDocument {
     pub fn new(accept_mm: f64) -> Self {
-        RefineDocument { accept_mm, regions: BTreeMap::new(), cells: usual_cells() }
+        RefineDocument { accept_mm, regions: BTreeMap::new(), cells: default_cells() }
     }
 
     pub fn check(&self, at: &Pointer, limits: &Limits, faults: &mut Faults) {

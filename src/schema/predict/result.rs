@@ -308,7 +308,7 @@ pub struct ProvenanceDocument {
     /// `bitwise`: the same input gives the same bits on any number of threads.
     pub determinism: String,
     pub timing: TimingDocument,
-    /// Of the whole process so far; absent where the system does not tell.
+    /// Of the whole process so far; absent where the system does not report it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub peak_rss_mb: Option<f64>,
@@ -346,7 +346,7 @@ pub struct SolverDocument {
     pub why: String,
     pub unknowns: u64,
     pub iterations: u64,
-    /// |f - K u| / |f_D| of the free rows, computed anew at the end; with pressures, of both equations.
+    /// |f - K u| / |f_D| of the free rows, computed from scratch at the end; with pressures, of both equations.
     pub relative_residual: f64,
     pub wanted_residual: f64,
     pub elements: Vec<String>,

@@ -1,4 +1,4 @@
-//! What a spec that asks for stress has to state beside it.
+//! Further requirements of a spec that asks for stress.
 
 use super::document::{OutputName, PredictDocument};
 use crate::schema::code::ErrorCode;

@@ -1,4 +1,4 @@
-//! The law of a tissue at finite strain, as provenance tells it.
+//! Law of a tissue at finite strain, in the provenance of a result.
 
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;

@@ -15,7 +15,7 @@ pub struct ItemDocument {
     pub plan_id: Option<String>,
     /// Over the materials of the case, field by field.
     pub materials: Option<MaterialDocuments>,
-    /// Everything else: the method and what it has to be told; `label`, as rows call it.
+    /// Everything else: the method and its parameters; `label`, its name in rows.
     pub variant: Value,
 }
 
@@ -24,7 +24,7 @@ const PLAN: &str = "plan";
 const PLAN_ID: &str = "plan_id";
 const MATERIALS: &str = "materials";
 
-/// An item as it stands in JSON.
+/// An item in JSON.
 #[derive(Deserialize)]
 struct Members {
     #[serde(default, rename = "kind")]

@@ -22,7 +22,7 @@ pub struct ConstantMapDocument {
     pub cells: Vec<ConstantCellDocument>,
     /// With the least distance, the first of equal ones.
     pub best: ConstantCellDocument,
-    /// What registration left, by which values are told apart; absent where it is not known.
+    /// Error of the registration, which limits how well values are distinguished; absent where it is not known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub noise_mm: Option<f64>,
@@ -36,10 +36,10 @@ pub struct SweptAxisDocument {
     pub region: String,
     pub constant: ConstantName,
     pub values: Vec<f64>,
-    /// The values that the scan cannot tell from the best one: the least distance with them, over all other constants,
-    /// lies above the least of all by no more than `noise_mm`.
+    /// The values that the scan cannot distinguish from the best one: the least distance with them, over all other
+    /// constants, lies above the least of all by no more than `noise_mm`.
     pub as_good: Vec<f64>,
-    /// Whether the scan tells any of the values from the best one.
+    /// Whether the scan distinguishes any of the values from the best one.
     pub is_determined: bool,
 }
 

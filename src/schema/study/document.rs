@@ -1,5 +1,5 @@
-//! The spec of a study: scenes, plans, models, materials and mesh levels, each with each, against a
-//! truth; and what makes its outcome good or bad.
+//! Spec of a study: scenes, plans, models, materials and mesh levels, in all combinations, against a reference
+//! solution; and the criteria of its outcome.
 
 use std::collections::BTreeMap;
 
@@ -67,14 +67,14 @@ pub struct StudyDocument {
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub sweep: BTreeMap<String, SweepDocument>,
     /// Level n halves every edge n times; from 0 to 4.
-    #[serde(default = "usual_levels")]
+    #[serde(default = "default_levels")]
     #[schema(default = json!([0]), min_items = 1)]
     pub levels: Vec<u32>,
     /// Default: that of the scene; of a case, linear finite elements on halved edges.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub truth: Option<TruthDocument>,
-    /// Solves of each row, whose median time is told; fewer once they take 2 s together.
+    /// Solves of each row, whose median time is reported; fewer once they take 2 s together.
     #[serde(default = "usual_repeats")]
     #[schema(default = 3, minimum = 1, maximum = 20)]
     pub repeats: u32,
@@ -97,7 +97,7 @@ pub struct StudyDocument {
     pub tags: Vec<String>,
 }
 
-fn usual_levels() -> Vec<u32> {
+fn default_levels() -> Vec<u32> {
     vec![0]
 }
 
@@ -105,7 +105,7 @@ fn usual_repeats() -> u32 {
     3
 }
 
-/// A method by its name, or with what it has to be told. Only described here: read as a `predict` spec.
+/// A method by its name, or with its parameters. Only described here: read as a `predict` spec.
 #[derive(Clone, Debug, Serialize, ToSchema)]
 #[serde(untagged)]
 pub enum MethodReference {
@@ -213,35 +213,39 @@ impl Default for TolerancesDocument {
 pub struct StudyBudgetDocument {
     /// After this time no further row is begun, and the study ends as incomplete with the rows it has; the truth of
     /// those is still found, for at most as long again and a minute.
-    #[serde(default = "usual_wall")]
+    #[serde(default = "default_wall_s")]
     #[schema(default = 3600.0, exclusive_minimum = 0.0)]
     pub wall_s: f64,
     /// A solve that takes longer is given up, and its row fails with `budget-exceeded`, as do those of the scene's later
     /// plans with that variant and level, which are not tried.
-    #[serde(default = "usual_row")]
+    #[serde(default = "default_row_s")]
     #[schema(default = 60.0, exclusive_minimum = 0.0)]
     pub row_s: f64,
     /// Of each row.
-    #[serde(default = "usual_memory")]
+    #[serde(default = "default_memory_mb")]
     #[schema(default = 4000.0, minimum = 1.0)]
     pub memory_mb: f64,
 }
 
-fn usual_wall() -> f64 {
+fn default_wall_s() -> f64 {
     3600.0
 }
 
-fn usual_row() -> f64 {
+fn default_row_s() -> f64 {
     60.0
 }
 
-fn usual_memory() -> f64 {
+fn default_memory_mb() -> f64 {
     4000.0
 }
 
 impl Default for StudyBudgetDocument {
     fn default() -> Self {
-        StudyBudgetDocument { wall_s: usual_wall(), row_s: usual_row(), memory_mb: usual_memory() }
+        StudyBudgetDocument {
+            wall_s: default_wall_s(),
+            row_s: default_row_s(),
+            memory_mb: default_memory_mb(),
+        }
     }
 }
 
@@ -255,7 +259,7 @@ impl Default for StudyDocument {
             elements: Vec::new(),
             materials: Vec::new(),
             sweep: BTreeMap::new(),
-            levels: usual_levels(),
+            levels: default_levels(),
             items: Vec::new(),
             truth: None,
             repeats: usual_repeats(),

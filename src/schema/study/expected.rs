@@ -1,4 +1,4 @@
-//! Expected cost of a study, told when it is accepted.
+//! Expected cost of a study, reported when it is accepted.
 
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;

@@ -1,4 +1,4 @@
-//! `report.json`, what a study found: rows, fronts, comparisons of variants, convergence, and the outcome.
+//! `report.json`, the report of a study: rows, fronts, comparisons of variants, convergence, and the outcome.
 
 use std::collections::BTreeMap;
 
@@ -23,8 +23,8 @@ pub struct ReportDocument {
     #[schema(nullable = false)]
     pub job: Option<String>,
     pub spec_hash: String,
-    /// The same where everything but the rules of the outcome is: thresholds, baseline, tolerances, expected failures. A
-    /// study with the key of an earlier one takes its rows and judges them anew.
+    /// The same where everything but the rules of the outcome is: thresholds, baseline, tolerances, expected failures.
+    /// A study with the key of an earlier one takes its rows and judges them again.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     #[schema(required = false)]
     pub rows_key: String,
@@ -186,7 +186,7 @@ pub struct NumbersDocument {
     pub wall_s: f64,
     #[schema(required = false)]
     pub repeats: u64,
-    /// The most memory of the process during the row; absent where the system does not tell.
+    /// The most memory of the process during the row; absent where the system does not report it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub peak_mb: Option<f64>,
@@ -226,7 +226,8 @@ pub struct NumbersDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub smallest_det_f: Option<f64>,
-    /// What the truth of this plan and these materials is off by itself; absent where it is a formula or a scan, or that is not known.
+    /// Error of the reference solution of this plan and these materials; absent where it is a formula or a scan, or
+    /// that is not known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub truth_error_mm: Option<TruthErrorDocument>,

@@ -1,4 +1,4 @@
-//! What a study holds for true.
+//! Reference solutions of a study.
 
 use std::collections::BTreeMap;
 
@@ -54,7 +54,7 @@ pub struct TruthDocument {
     pub mesh: Option<String>,
     /// Of `mesh` onto the skin of the case, by anything but `icp`, which would take back from each answer what tells it
     /// from others. Default: `none`.
-    #[serde(default, skip_serializing_if = "is_usual", deserialize_with = "align")]
+    #[serde(default, skip_serializing_if = "is_default", deserialize_with = "align")]
     #[schema(value_type = AlignReference, required = false)]
     pub align: AlignDocument,
     /// Of `mesh`: only skin counts that some answer moves by more than this. Default: 0.5.
@@ -114,7 +114,7 @@ fn is_false(value: &bool) -> bool {
     !value
 }
 
-fn is_usual(align: &AlignDocument) -> bool {
+fn is_default(align: &AlignDocument) -> bool {
     *align == AlignDocument::default()
 }
 
@@ -137,7 +137,7 @@ impl TruthDocument {
         let refine = f64::from(self.refine.unwrap_or_default());
         faults.check_range(&at.key("refine"), refine, 0.0..=f64::from(MOST_LEVEL), "");
         let of_mesh = [
-            ("align", !is_usual(&self.align)),
+            ("align", !is_default(&self.align)),
             ("moved_by_more_than_mm", self.moved_by_more_than_mm.is_some()),
             ("noise_mm", self.noise_mm.is_some()),
             ("metric", !is_both(&self.metric)),

@@ -1,4 +1,4 @@
-//! The outcome of a study, what led to it, and the rows that keep it from being a pass.
+//! Outcome of a study, its reasons, and the rows that keep it from passing.
 
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;

@@ -54,7 +54,7 @@ pub struct Limits {
     pub samples_per_mm2: f64,
     /// Scenes times plans times materials times levels times variants of a study.
     pub study_rows: u32,
-    /// Requests of one client in a minute; 0 where nobody is counted.
+    /// Requests of one client in a minute; 0 for no limit.
     pub requests_per_minute: u32,
     /// Streams of events that one client may have open.
     pub event_streams: u32,

@@ -1,4 +1,4 @@
-//! Lists of names: tags, and entries that are told apart by their names.
+//! Lists of unique names: tags, and entries identified by their names.
 
 use std::collections::BTreeSet;
 

@@ -103,7 +103,7 @@ mod tests {
     use crate::schema::{Faults, Pointer};
 
     #[test]
-    fn a_problem_that_is_moved_names_its_first_place_anew_in_its_sentence() {
+    fn a_problem_that_is_moved_names_its_first_place_again_in_its_sentence() {
         let at = |text: &str| Pointer::from_text(text);
         let mut one = Faults::default();
         one.add(&at("/case/fixed/0"), ErrorCode::UnknownSet, "the mesh has no node set");

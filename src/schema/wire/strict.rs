@@ -1,4 +1,4 @@
-//! JSON read strictly: what a lenient reader would drop or guess is refused, with the place.
+//! Strict JSON: what a lenient reader would drop or guess is refused, with the place.
 //!
 //! Syntax (RFC 8259), size, depth and encoding are refused as `malformed-json` with line and column;
 //! repeated keys, nulls and anything a document does not know as `validation-failed` with JSON pointers.

@@ -1,4 +1,4 @@
-//! Warnings: the work went on, and a reader must know.
+//! Warnings: facts that a reader needs although the work went on.
 
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};

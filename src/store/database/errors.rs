@@ -1,4 +1,4 @@
-//! Meaning of an error of the database to those who met it.
+//! Classification of database errors.
 
 use super::{postgres, sqlite};
 

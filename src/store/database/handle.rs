@@ -1,4 +1,4 @@
-//! A database of either engine: opened, brought up to date, asked.
+//! Database handle for either engine: connections, migration, queries.
 
 use super::run::{Open, Pool, Transaction, Writer};
 use super::schema::Migrated;
@@ -28,7 +28,7 @@ impl Address {
         Ok(Address::Server { options, connections })
     }
 
-    /// How many may write at the same time; on a server some connections are left to those who read.
+    /// Concurrent writers; on a server some connections are left to readers.
     fn writers(&self) -> usize {
         match self {
             Address::File(_) => 1,
@@ -39,7 +39,7 @@ impl Address {
         }
     }
 
-    /// How long one waits who wants to write, before he is told to come back.
+    /// Time after which a waiting writer gives up and its client gets `Retry-After`.
     fn patience(&self) -> Duration {
         match self {
             Address::File(_) => sqlite::ACQUIRE_TIMEOUT,
@@ -48,25 +48,25 @@ impl Address {
     }
 }
 
-/// What has to be done before something is written for the first time.
+/// A step before the first write of a request.
 pub(in crate::store) trait BeforeWriting: Send + Sync {
     fn prepare(&self) -> BoxFuture<'_, Result<(), StoreError>>;
 }
 
-/// The connections of this process: those that read, and those that may write. Those who write take turns: the tenants
-/// that ask, the audit log, and all that the service does by itself.
+/// The connections of this process, for readers and for writers. Writers take turns: the tenants of requests, the audit
+/// log, and the service's own work.
 #[derive(Clone)]
 pub(in crate::store) struct Database {
     address: Address,
     writer: Arc<Pool>,
     reader: Arc<Pool>,
     turns: FairSemaphore,
-    /// In which line of writers this one stands.
+    /// The queue of writers that it waits in.
     line: Arc<str>,
     first: Option<Arc<dyn BeforeWriting>>,
 }
 
-/// Where those stand for whom no tenant asks.
+/// The queue of the service's own work.
 const OWN_LINE: &str = "";
 
 impl Database {
@@ -133,17 +133,17 @@ impl Database {
         Database { address, writer, reader, turns, line: OWN_LINE.into(), first: None }
     }
 
-    /// The same in another line of writers, for one who has nothing to do before.
+    /// The same in another queue of writers, without a step before writing.
     pub fn in_line(&self, line: &str) -> Database {
         Database { line: line.into(), first: None, ..self.clone() }
     }
 
-    /// The same for one who has to do something before he writes.
+    /// The same with a step before the first write.
     pub fn after(&self, first: Arc<dyn BeforeWriting>) -> Database {
         Database { first: Some(first), ..self.clone() }
     }
 
-    /// How many wait in this line to write.
+    /// Waiting writers of this queue.
     pub fn waiting(&self) -> usize {
         self.turns.waiting(&self.line)
     }

@@ -1,5 +1,5 @@
-//! One way to ask two engines. The SQL text of the other files is shared; what differs between SQLite and
-//! PostgreSQL stands in one file each, and only connections, the `clock` and error codes do.
+//! Database access for two engines. The SQL text of the other files is shared; what differs between SQLite and
+//! PostgreSQL is in one file each, and only connections, the `clock` and error codes do.
 //!
 //! Text for both: `$1` placeholders, TEXT, BIGINT and DOUBLE PRECISION, RETURNING, ON CONFLICT, row values and
 //! `string_agg`, which SQLite has since 3.44. A row that is read in order to be changed is read with

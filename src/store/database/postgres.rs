@@ -47,7 +47,7 @@ pub async fn connect(options: &PgConnectOptions, connections: u32) -> Result<PgP
         .await
 }
 
-/// Whether the server answers on a connection that nobody has used for a while.
+/// Whether the server answers on a connection that was idle for a while.
 async fn is_there(
     connection: &mut PgConnection,
     used: PoolConnectionMetadata,

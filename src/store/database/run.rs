@@ -105,7 +105,7 @@ impl Statement {
                 let mut connection = pool.acquire().await?;
                 let answer = postgres::run(&mut connection, self, take).await;
                 if matches!(answer, Err(sqlx::Error::Io(_))) {
-                    // Nobody is to wait for the answer that did not come.
+                    // Later statements must not wait for the answer that did not come.
                     connection.close_on_drop();
                 }
                 answer

@@ -1,4 +1,4 @@
-//! The tables, step by step. Each step runs in a transaction: it is done or it is not.
+//! Schema migrations, step by step. Each step runs in a transaction: it is done or it is not.
 
 use std::sync::LazyLock;
 

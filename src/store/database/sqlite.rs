@@ -64,7 +64,7 @@ async fn is_free(connection: &mut SqliteConnection) -> Result<bool, sqlx::Error>
     Ok(!connection.is_in_transaction())
 }
 
-/// Brings everything in the log of writes into the file itself and empties the log; false while somebody reads or writes.
+/// Checkpoints and truncates the write-ahead log; false while a reader or a writer prevents it.
 pub async fn empty_log(file: &Path) -> Result<bool, sqlx::Error> {
     // Waiting here would make those wait who write.
     let options = options(file).create_if_missing(false).busy_timeout(Duration::ZERO);
@@ -110,7 +110,7 @@ pub async fn run(
     Ok(changed)
 }
 
-/// SQLite knows no locks of rows and needs none: whoever writes has the database to himself.
+/// SQLite has no row locks and needs none: a writer has the whole database.
 fn without_row_locks(sql: Cow<'static, str>) -> Cow<'static, str> {
     const LOCKS: [&str; 2] = [" FOR UPDATE SKIP LOCKED", " FOR UPDATE"];
     LOCKS.iter().fold(sql, |sql, lock| match sql.contains(lock) {

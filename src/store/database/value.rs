@@ -54,7 +54,7 @@ pub(in crate::store) fn query_of(sql: String) -> Statement {
     Statement { sql: sql.into(), values: Vec::new(), patient: false }
 }
 
-/// Who is handed the rows, one after the other.
+/// Consumer of rows, one after the other.
 pub(in crate::store) type RowSink<'a> = &'a mut (dyn FnMut(Row) -> Result<(), sqlx::Error> + Send);
 
 /// A row of either engine.

@@ -1,4 +1,4 @@
-//! The process of a slot as its worker sees it: started, talked to, killed, and asked how it died.
+//! Child process of a slot: start, messages, kill and exit status.
 
 use std::collections::VecDeque;
 use std::io::{self, BufRead, BufReader, Write};
@@ -38,7 +38,7 @@ impl Program {
     }
 }
 
-/// Why a process ended that nobody told to.
+/// Cause of an unexpected end of a process.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Death {
     /// An allocation of so many bytes was refused.
@@ -94,7 +94,7 @@ impl std::fmt::Display for Death {
     }
 }
 
-/// What came from a process within some time.
+/// Output of a process within some time.
 pub enum Output {
     Report(Report),
     Nothing,
@@ -184,7 +184,7 @@ impl Process {
         }
     }
 
-    /// Whose lines standard error holds from here on.
+    /// Assigns the lines on standard error from here on to a job.
     pub fn set_log_owner(&self, job: Option<(&str, i64)>) {
         lock(&self.log).job = job.map(|(job, attempt)| (job.to_owned(), attempt));
     }
@@ -200,7 +200,7 @@ impl Process {
     }
 
     fn kill(&mut self) -> Option<ExitStatus> {
-        // An output that is closed is the last that a dying process does: its own death is told, not ours.
+        // An output that is closed is the last that a dying process does: its own death is reported, not ours.
         let mut ended = self.child.try_wait().ok().flatten();
         for _ in 0..50 {
             if ended.is_some() || !matches!(self.receive(Duration::ZERO), Output::Gone) {

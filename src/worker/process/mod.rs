@@ -1,6 +1,6 @@
-//! A slot computes one job after the other in a process of its own: an allocation that fails, a full stack or a
-//! signal ends one attempt and nothing else. The worker keeps claim, lease and publication; the process gets documents
-//! and meshes from it, and has neither database nor credentials.
+//! Process of a slot, which computes one job after the other: an allocation that fails, a full stack or a signal ends
+//! one attempt and nothing else. The worker keeps claim, lease and publication; the process gets documents and meshes
+//! from it, and has neither database nor credentials.
 
 pub mod attempt;
 pub mod child;

@@ -30,7 +30,7 @@ pub enum Order {
     Answer(Answer),
 }
 
-/// What a process keeps to for its whole life.
+/// Settings of a process for its whole life.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Settings {
     pub limits: Limits,
@@ -154,7 +154,7 @@ pub struct MeshFile {
     pub report: String,
 }
 
-/// What a job was and what it took, for those who watch the service.
+/// Kind, time and memory of a job, for metrics.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct Effort {
     pub method: Option<String>,

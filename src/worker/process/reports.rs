@@ -5,7 +5,7 @@ use std::sync::{Mutex, PoisonError};
 
 use super::protocol::{Report, encode};
 
-/// What a process has to say, one message at a time.
+/// Messages of a process to its worker.
 pub struct Reports(Mutex<Stdout>);
 
 impl Reports {
@@ -20,7 +20,7 @@ impl Reports {
             to.flush()
         });
         if told.is_err() {
-            // Nobody listens: what this process computes is of no use to anybody.
+            // The worker is gone: the result of this process is of no use.
             std::process::exit(0);
         }
     }

@@ -1,4 +1,4 @@
-//! The process of a slot: takes jobs from its worker, one after the other, and keeps what it parsed.
+//! Main loop of the process of a slot: takes jobs from its worker, one after the other, and keeps parsed meshes.
 
 use std::io::{self, BufReader};
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -62,7 +62,7 @@ pub fn serve() -> Result<(), SlotError> {
     Ok(())
 }
 
-/// The system ends this process with its worker, even one that does not read any more.
+/// Asks the system to end this process with its worker, even if it no longer reads.
 fn end_with_parent() {
     #[cfg(target_os = "linux")]
     {
@@ -89,7 +89,7 @@ fn outcome(
     })
 }
 
-/// What arrives, sorted.
+/// Incoming messages, by kind.
 struct Inbox {
     assignments: Receiver<Assignment>,
     answers: Receiver<FullAnswer>,
@@ -110,7 +110,7 @@ fn listen(mut orders: BufReader<io::Stdin>) -> Result<(StopFlag, Inbox), SlotErr
                 break;
             }
         }
-        // The worker is gone or talks nonsense: nobody will take a result.
+        // The worker is gone or breaks the protocol: no result can be delivered.
         std::process::exit(0);
     })?;
     Ok((ears, Inbox { assignments, answers }))

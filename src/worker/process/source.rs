@@ -1,4 +1,5 @@
-//! Meshes for a process that has neither database nor credentials: it asks its worker, and keeps what it parsed.
+//! Mesh source of a slot's process, which has neither database nor credentials: it asks its worker, and keeps parsed
+//! meshes.
 
 use std::alloc::{Layout, handle_alloc_error};
 use std::sync::mpsc::Receiver;

@@ -1,4 +1,4 @@
-//! Memory of an attempt: the bound that its budget sets, and how one ends that took more.
+//! Memory limit of an attempt, set by its budget, and the report when it is exceeded.
 
 use std::collections::BTreeMap;
 use std::time::{Duration, Instant};

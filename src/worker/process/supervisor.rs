@@ -1,4 +1,4 @@
-//! The work of one slot: hands attempts to its process, follows them, and judges how they ended.
+//! Supervisor of a slot: hands attempts to its process, follows them, and classifies their outcome.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -23,7 +23,7 @@ use mechanics::progress::{Phase, Progress};
 
 /// How often the worker looks whether the job is still wanted, and what its process takes.
 const LOOK: Duration = Duration::from_millis(100);
-/// How long a process may go on that was told to stop, or whose budget of time is used up.
+/// How long a process may go on that was cancelled, or whose budget of time is used up.
 const GRACE: Duration = Duration::from_secs(10);
 /// How long a process may take to begin.
 const START: Duration = Duration::from_secs(30);
@@ -33,7 +33,7 @@ const JOBS_OF_A_PROCESS: usize = 1000;
 const FIRST_WAIT: Duration = Duration::from_millis(100);
 const LONGEST_WAIT: Duration = Duration::from_secs(10);
 
-/// What all slots of a worker share.
+/// Shared state of all slots of a worker.
 pub struct SlotSettings {
     pub library: Library,
     pub runtime: Handle,
@@ -57,7 +57,7 @@ struct Attempt<'a> {
     library: Library,
     process: &'a Process,
     progress: &'a dyn Progress,
-    /// When it was told to stop.
+    /// When it was cancelled.
     stopped: Option<Instant>,
     /// When it should have stopped by itself, and after how many seconds that is.
     budget: Option<(Instant, f64)>,
@@ -94,7 +94,7 @@ impl SlotWork {
         }
     }
 
-    /// Lets the next start wait, longer after each death in a row.
+    /// Delays the next start, longer after each crash in a row.
     fn died(&mut self, why: &str) {
         metrics::slot_ended(why);
         self.process = None;
@@ -106,7 +106,7 @@ impl SlotWork {
         self.not_before = Some(Instant::now() + wait);
     }
 
-    /// What an attempt means for the job, and for the process.
+    /// Outcome of an attempt for the job and for the process.
     fn judge(
         &mut self,
         end: End,
@@ -129,7 +129,7 @@ impl SlotWork {
             End::Deaf => {
                 tracing::warn!("a job did not stop in time; its process is killed");
                 self.died("deaf");
-                // It is nobody's mistake that a factorisation cannot be interrupted.
+                // A factorisation cannot be interrupted: this does not count as a crash.
                 self.deaths = 0;
                 Err(Failure::Cancelled)
             }
@@ -280,7 +280,7 @@ impl Attempt<'_> {
         }
     }
 
-    /// Tells the process to stop when the job is not wanted any more; says when to wait no longer.
+    /// Tells the process to stop when its job was cancelled or is over time; says when to kill it.
     fn enforce_deadlines(&mut self) -> Option<End> {
         let now = Instant::now();
         if self.stopped.is_none() && self.progress.is_cancelled() {

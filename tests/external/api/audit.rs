@@ -20,7 +20,7 @@ trials! {
         the_audit_log_shows_what_was_changed
         an_audited_action_whose_end_nobody_told_is_in_the_audit_log_as_unknown
         an_audited_action_of_a_process_that_lives_is_never_unknown
-        an_end_that_the_database_did_not_take_is_told_later
+        an_end_that_the_database_did_not_take_is_reported_later
     }
     alone {
         what_cannot_be_noted_is_not_done
@@ -133,7 +133,7 @@ async fn an_audited_action_of_a_process_that_lives_is_never_unknown(on: Deployme
     assert_eq!(store.audit(1, "", 10).await.unwrap()[0].outcome, "unknown", "nobody does it");
 }
 
-async fn an_end_that_the_database_did_not_take_is_told_later(on: Deployment) {
+async fn an_end_that_the_database_did_not_take_is_reported_later(on: Deployment) {
     let store = on.open().await;
     let audited = AuditedAction { action: "crashed".into(), ..AuditedAction::default() };
     let begun = store.begin_action(&audited).await.unwrap();

@@ -12,7 +12,7 @@ use crate::support::trials::trials;
 trials! {
     on_both {
         a_fenced_attempt_stores_no_mesh
-        a_mesh_that_came_or_went_meanwhile_is_looked_for_anew
+        a_mesh_that_came_or_went_meanwhile_is_looked_for_again
         a_case_that_is_erased_while_its_job_publishes_leaves_no_mesh
         a_mesh_that_is_lost_is_made_again_by_its_job
         a_mesh_that_a_job_made_is_not_too_old_while_the_job_is_there
@@ -47,7 +47,7 @@ async fn a_fenced_attempt_stores_no_mesh(on: Deployment) {
     assert_eq!((blob_count(&store).await, on.objects().len()), (0, 0));
 }
 
-async fn a_mesh_that_came_or_went_meanwhile_is_looked_for_anew(on: Deployment) {
+async fn a_mesh_that_came_or_went_meanwhile_is_looked_for_again(on: Deployment) {
     let store = on.open().await;
     let id = enqueue(&store, "a").await;
     let lease = store.claim(LEASE).await.unwrap().unwrap().lease;

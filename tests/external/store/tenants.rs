@@ -138,10 +138,10 @@ async fn a_key_that_was_ended_is_not_let_in(on: Deployment) {
 }
 
 async fn a_tenant_has_no_more_keys_in_force_than_it_may(on: Deployment) {
-    let store = on.open().await.with_most_keys(2);
+    let store = on.open().await.with_key_limit(2);
     let (a, b) = (store.of_tenant("a"), store.of_tenant("b"));
     let wanted = KeyDocument { label: "test".into(), scopes: [Scope::Read].into(), days: Some(1) };
-    let (many, last) = (on.again(&store).await.with_most_keys(2).of_tenant("a"), a.clone());
+    let (many, last) = (on.again(&store).await.with_key_limit(2).of_tenant("a"), a.clone());
     let made = [&many, &last, &many, &last].map(|store| store.make_key(&wanted));
     let made = futures::future::join_all(made).await;
     assert_eq!(made.iter().filter(|key| key.is_ok()).count(), 2, "of those that came together");

@@ -25,13 +25,13 @@ trials! {
         a_worker_tells_what_it_counts_and_that_it_lives
         a_job_whose_host_is_killed_is_solved_by_another
         a_worker_cut_off_from_the_database_loses_its_job_to_another_and_changes_nothing
-        a_store_of_blobs_that_does_not_answer_is_told_as_503
+        a_store_of_blobs_that_does_not_answer_is_reported_as_503
         a_deployment_is_checked_and_mended_by_command
         a_service_moves_from_sqlite_to_postgresql_by_command
         an_export_from_a_server_needs_no_stop_of_it
     }
     alone {
-        a_restart_of_postgresql_loses_nothing_and_is_told_as_503
+        a_restart_of_postgresql_loses_nothing_and_is_reported_as_503
         a_database_that_was_not_prepared_is_refused_with_78_until_it_is
         a_wrong_password_or_address_stops_the_start_with_78
     }
@@ -143,7 +143,7 @@ async fn a_worker_cut_off_from_the_database_loses_its_job_to_another_and_changes
     assert_eq!(ask(api.get(&format!("/v1/jobs/{id}"))).await.json(), job);
 }
 
-async fn a_restart_of_postgresql_loses_nothing_and_is_told_as_503() -> Result<(), Missing> {
+async fn a_restart_of_postgresql_loses_nothing_and_is_reported_as_503() -> Result<(), Missing> {
     let cluster = Cluster::start()?;
     let on = Deployment::on(&cluster.database().await);
     Store::migrate(&on.places).await.unwrap();
@@ -172,7 +172,7 @@ async fn a_restart_of_postgresql_loses_nothing_and_is_told_as_503() -> Result<()
     Ok(())
 }
 
-async fn a_store_of_blobs_that_does_not_answer_is_told_as_503(on: Deployment) {
+async fn a_store_of_blobs_that_does_not_answer_is_reported_as_503(on: Deployment) {
     let case = api(&on).case(&SMALL).await;
     let mut command = serve_shared(&on);
     command.env("AWS_ENDPOINT_URL", "http://127.0.0.1:1");

@@ -68,7 +68,7 @@ fn cohort_in(
 }
 
 #[test]
-fn lists_in_another_order_and_a_patient_who_stands_twice_are_told() {
+fn lists_in_another_order_and_a_patient_who_stands_twice_are_reported() {
     let names = ["a 0", "a 1", "b 0", "b 1"];
     let comparisons: BTreeMap<String, ComparisonDocument> =
         names.map(|name| (name.to_owned(), comparison(0.5))).into();
@@ -224,7 +224,7 @@ fn twins_are_modelled_in_four_ways_beside_what_happened_and_no_movement() {
 }
 
 #[test]
-fn what_is_wrong_with_twins_is_told_before_any_is_made() {
+fn what_is_wrong_with_twins_is_reported_before_any_is_made() {
     let none = BTreeMap::new();
     let twins = || json!({"patients": 3});
     for (spec, at) in [

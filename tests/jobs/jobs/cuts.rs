@@ -130,7 +130,7 @@ fn a_wide_saw_is_not_told_to_touch_bone_that_stays_as_its_dust_does() {
 }
 
 #[test]
-fn a_line_that_begins_beside_the_bone_is_one_cut_and_told_once_where_all_of_it_is_there() {
+fn a_line_that_begins_beside_the_bone_is_one_cut_and_reported_once_where_all_of_it_is_there() {
     let told = |line: Value| -> Vec<(String, Value)> {
         let mut asked = steps(80.0);
         asked["polylines"][0]["polyline_mm"] = line;
@@ -157,7 +157,7 @@ fn a_line_that_begins_beside_the_bone_is_one_cut_and_told_once_where_all_of_it_i
 }
 
 #[test]
-fn a_place_that_is_to_be_fine_and_holds_no_tissue_is_told() {
+fn a_place_that_is_to_be_fine_and_holds_no_tissue_is_reported() {
     let fine = json!([{"sphere_mm": [60, 55, 92, 4]}, {"box_mm": [500, 0, 0, 520, 20, 20]}, {"sphere_mm": [60, 55, -400, 5]}]);
     let (result, _folder) = meshed_finely(steps(80.0), fine).unwrap();
     let told = result.warnings.iter().filter(|own| own.code == "fine-place-empty");

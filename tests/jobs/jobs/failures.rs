@@ -10,7 +10,7 @@ fn told(error: impl Into<ModelError>) -> Value {
 }
 
 #[test]
-fn what_a_solver_ran_into_is_told_with_its_numbers() {
+fn what_a_solver_ran_into_is_reported_with_its_numbers() {
     let history = vec![1.0, 0.5];
     let stalled = SolverError::NotConverged {
         iterations: 2,
@@ -64,7 +64,7 @@ fn what_a_solver_ran_into_is_told_with_its_numbers() {
 }
 
 #[test]
-fn what_a_model_refuses_is_told_as_a_mistake_of_the_input() {
+fn what_a_model_refuses_is_reported_as_a_mistake_of_the_input() {
     assert_eq!(
         told(InvertedCell { cell: 3 }),
         json!({

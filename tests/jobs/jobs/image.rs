@@ -84,7 +84,7 @@ fn refused(change: impl Fn(&mut Value)) -> (String, String) {
 }
 
 #[test]
-fn what_is_wrong_with_windows_is_told_with_its_place() {
+fn what_is_wrong_with_windows_is_reported_with_its_place() {
     let at = |code: &str, place: &str| (code.to_owned(), format!("/case/hounsfield{place}"));
     let tissue = |number: usize, name: &'static str, value: Value| {
         move |case: &mut Value| case["hounsfield"]["tissues"][number][name] = value.clone()

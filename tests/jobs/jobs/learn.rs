@@ -154,7 +154,7 @@ fn the_table_has_a_row_for_each_patient_with_class_and_largest_movement_of_bone(
 }
 
 #[test]
-fn the_search_of_a_width_and_the_modes_of_a_deformation_model_are_told() {
+fn the_search_of_a_width_and_the_modes_of_a_deformation_model_are_reported() {
     let (sources, input) = operated();
     let found = done(JobInput::Learn(input), &sources).unwrap().0.result.learning.unwrap();
     let climb = found.width.unwrap().climb.unwrap();

@@ -96,7 +96,7 @@ impl Progress for StopAt {
 }
 
 #[test]
-fn a_job_that_is_told_to_stop_stops_in_every_phase_and_writes_nothing() {
+fn a_job_that_is_cancelled_stops_in_every_phase_and_writes_nothing() {
     for phase in [Phase::Validate, Phase::Assemble, Phase::Solve, Phase::Surface, Phase::Compare] {
         let folder = tempfile::tempdir().unwrap();
         let out = folder.path().join("out");

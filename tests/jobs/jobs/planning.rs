@@ -101,7 +101,7 @@ pub fn performed() -> (RigidMovement, Meshes, Value) {
 }
 
 #[test]
-fn a_base_that_holds_the_bone_that_was_moved_is_told() {
+fn a_base_that_holds_the_bone_that_was_moved_is_reported() {
     let (_, sources, mut spec) = performed();
     let told = |spec: &Value| -> Vec<String> {
         let warnings = result_of(&sources, spec.clone()).unwrap().warnings;
@@ -347,7 +347,7 @@ fn a_check_measures_the_head_before_and_as_planned() {
 }
 
 #[test]
-fn landmarks_of_bone_in_metres_or_far_from_the_mesh_are_told() {
+fn landmarks_of_bone_in_metres_or_far_from_the_mesh_are_reported() {
     let plan = json!({"segments": [{"name": "right", "translation_mm": [0, -4, 0]}]});
     let told = |nasion: [f64; 3]| -> Vec<String> {
         let landmarks =

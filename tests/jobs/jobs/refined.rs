@@ -46,7 +46,7 @@ fn a_refined_prediction_tells_its_meshes_and_keeps_the_nodes_of_the_case() {
 }
 
 #[test]
-fn a_bound_that_comes_first_is_told() {
+fn a_bound_that_comes_first_is_reported() {
     let out = tempfile::tempdir().unwrap();
     let spec = r#"{"refine":{"accept_mm":0.001,"cells":1000}}"#;
     let result = predict(CASE, PULL, spec, out.path()).unwrap().result;

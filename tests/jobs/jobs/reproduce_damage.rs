@@ -50,7 +50,7 @@ fn an_operation_as_it_was_performed_raises_no_doubt() {
 }
 
 #[test]
-fn scans_in_the_wrong_order_are_told_by_the_surface_of_a_segment() {
+fn scans_in_the_wrong_order_are_reported_by_the_surface_of_a_segment() {
     let (_, sources, spec) = performed();
     let mut swapped = swapped(&spec);
     swapped["base"] = json!({});
@@ -75,7 +75,7 @@ fn registered(sources: &Meshes) -> Meshes {
 }
 
 #[test]
-fn scans_in_the_wrong_order_are_told_where_both_lie_in_one_frame() {
+fn scans_in_the_wrong_order_are_reported_where_both_lie_in_one_frame() {
     let (_, sources, spec) = performed();
     let sources = registered(&sources);
     assert_eq!(codes(&sources, &spec), [""; 0]);
@@ -83,7 +83,7 @@ fn scans_in_the_wrong_order_are_told_where_both_lie_in_one_frame() {
 }
 
 #[test]
-fn a_segment_that_is_a_part_of_the_scan_is_told_by_the_plan_that_it_undoes() {
+fn a_segment_that_is_a_part_of_the_scan_is_reported_by_the_plan_that_it_undoes() {
     let (_, sources, mut spec) = performed();
     let sources = registered(&sources);
     spec["segments"] = json!([{"name": "jaw", "mask": {"box_mm": [-50, -50, -60, 150, 100, -9]}}]);
@@ -96,7 +96,7 @@ fn a_segment_that_is_a_part_of_the_scan_is_told_by_the_plan_that_it_undoes() {
 }
 
 #[test]
-fn the_same_scan_twice_is_told() {
+fn the_same_scan_twice_is_reported() {
     let (_, sources, mut spec) = performed();
     spec["segments"] = json!([{"name": "jaw", "before": {"mesh": "jaw"}}]);
     spec.as_object_mut().unwrap().remove("planned");
@@ -115,7 +115,7 @@ fn the_same_scan_twice_is_told() {
 }
 
 #[test]
-fn a_scan_with_its_sides_exchanged_is_told() {
+fn a_scan_with_its_sides_exchanged_is_reported() {
     let (_, sources, spec) = performed();
     let mirrored = changed(&sources, "after", |at| Vector::new(-at.x, at.y, at.z));
     assert!(codes(&mirrored, &spec).contains(&DOUBTS[1].to_owned()));

@@ -180,7 +180,7 @@ fn thresholds_hold_for_the_labels_they_name() {
 }
 
 #[test]
-fn a_baseline_that_says_nothing_of_these_rows_is_none_and_lost_rows_are_told() {
+fn a_baseline_that_says_nothing_of_these_rows_is_none_and_lost_rows_are_reported() {
     let rows = [solved("fem", 0, [1.0, 0.1])];
     let missing = Baseline::Missing("it is gone".to_owned());
     assert_eq!(outcome(&rows, usual(), &missing), OutcomeName::NoBaseline);
@@ -205,7 +205,7 @@ fn a_plan_that_moves_nothing_passes_no_gate() {
 }
 
 #[test]
-fn a_baseline_of_another_mesh_or_truth_or_without_numbers_is_told() {
+fn a_baseline_of_another_mesh_or_truth_or_without_numbers_is_reported() {
     let rows = [solved("fem", 0, [1.0, 0.1])];
     let of = |nodes: u64, truth: &str| {
         let mut report = report(&rows, usual());
@@ -235,7 +235,7 @@ fn a_baseline_of_another_mesh_or_truth_or_without_numbers_is_told() {
 }
 
 #[test]
-fn a_baseline_whose_plan_of_the_same_name_moves_otherwise_is_told() {
+fn a_baseline_whose_plan_of_the_same_name_moves_otherwise_is_reported() {
     let rows = [solved("fem", 0, [1.0, 0.1])];
     let of = |plans: Value| {
         let mut report = report(&rows, usual());
@@ -451,7 +451,7 @@ fn a_way_of_modelling_has_one_symbol_in_every_chart_of_a_report() {
 }
 
 #[test]
-fn rows_that_cannot_be_compared_are_told_in_the_legend_and_below_the_chart() {
+fn rows_that_cannot_be_compared_are_reported_in_the_legend_and_below_the_chart() {
     let mut rows = [solved("fem_linear plain", 0, [1.0, 0.1]), solved("pressing", 0, [2.0, 0.1])];
     rows[1]["warnings"] = json!(["truth-without-contact", "within-truth-error"]);
     let svg = chart(&report(&rows, usual()), None);

@@ -287,7 +287,7 @@ fn tissue_that_was_lost_comes_back_with_the_ratio_and_shifts_it_where_it_is_left
 }
 
 #[test]
-fn what_a_sweep_of_growth_cannot_mean_is_told_with_its_place() {
+fn what_a_sweep_of_growth_cannot_mean_is_reported_with_its_place() {
     let (_, done, sources, _) = twin();
     let plan = json!({"segments": [{"name": "jaw", "matrix4x4": done.matrix4()}]});
     let sweep = json!({"outer": {"volume_change": [-0.05, -0.7]}});

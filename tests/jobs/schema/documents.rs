@@ -229,7 +229,7 @@ fn a_selection_is_exactly_one_form() {
 }
 
 #[test]
-fn everything_wrong_is_told_at_once() {
+fn everything_wrong_is_reported_at_once() {
     let text = r#"{"schema":2,"units":"mm","volume":"v","name":"","segments":[{"name":"a","nodes":{}}],
         "sliding":[{"nodes":{"node_set":"s"},"normal":[0,0,0]}],"fixed":[{"surface":"s","within_mm":-1}]}"#;
     let (_, errors) = refused(case(text));
@@ -257,7 +257,7 @@ fn methods_that_are_not_built_are_refused_by_name() {
 }
 
 #[test]
-fn a_volume_spline_is_told_in_seconds_and_newtons_per_metre() {
+fn a_volume_spline_is_reported_in_seconds_and_newtons_per_metre() {
     use mechanics::model::spline::stepping::{Clock, Damping, Scheme};
     use mechanics::model::spline::{Bone, ControlPoints, Stiffness, VolumeSpline};
     let method = |text: &str| method_of(&settings(text).unwrap());
@@ -314,7 +314,7 @@ fn a_warp_is_told_its_blend_radius_alone() {
 }
 
 #[test]
-fn a_job_is_told_apart_by_its_kind() {
+fn a_job_is_distinguished_by_its_kind() {
     let parse = |text: &str| JobDocument::parse(text.as_bytes(), &Limits::default());
     let predict = parse(r#"{"kind":"predict","case":"c","plan":{}}"#);
     assert!(matches!(predict, Ok(JobDocument::Predict(_))));

@@ -91,7 +91,7 @@ fn a_check_tells_how_much_of_the_cells_is_muscle_and_where_the_rule_decides() {
 }
 
 #[test]
-fn what_is_wrong_with_a_body_is_told_with_its_place() {
+fn what_is_wrong_with_a_body_is_reported_with_its_place() {
     let at = |muscle: Value| {
         let mut whole = json!({"name": "m"});
         whole.as_object_mut().unwrap().extend(muscle.as_object().unwrap().clone());

@@ -107,7 +107,7 @@ fn a_name_that_no_preset_has_is_refused_where_it_stands() {
 }
 
 #[test]
-fn doubts_are_told_and_the_result_repeats_what_was_used() {
+fn doubts_are_reported_and_the_result_repeats_what_was_used() {
     for preset in MaterialList::all().presets {
         let (_, warnings) = case(&with(preset.name.name(), "")).unwrap();
         assert_eq!(warnings.contains(&"preset-doubt"), preset.doubt.is_some(), "{:?}", preset.name);

@@ -108,7 +108,7 @@ fn thirty_two_levels_are_read_and_thirty_three_are_not() {
 }
 
 #[test]
-fn the_place_of_a_byte_that_is_not_utf8_is_told() {
+fn the_place_of_a_byte_that_is_not_utf8_is_reported() {
     let problem = strict::parse_value(b"{\n \"a\":\"\xff\"}", &Limits::default()).expect_err("no");
     assert_eq!((&problem.members["line"], &problem.members["column"]), (&2.into(), &7.into()));
 }

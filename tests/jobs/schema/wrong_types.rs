@@ -178,7 +178,7 @@ fn a_value_of_another_type_is_refused_at_its_place_in_the_words_of_json() {
 }
 
 #[test]
-fn what_was_expected_and_what_was_found_are_told() {
+fn what_was_expected_and_what_was_found_are_reported() {
     let detail = |text: &[u8]| read::<CompareDocument>(text).unwrap().errors[0].detail.clone();
     let with = |align: &str| {
         format!(

@@ -153,7 +153,7 @@ async fn what_is_not_json_is_refused_with_its_place() {
 }
 
 #[tokio::test]
-async fn a_kind_that_does_not_exist_is_told() {
+async fn a_kind_that_does_not_exist_is_reported() {
     let server = Server::start_with(&["--workers", "0"]);
     let answer = ask(server.post("/v1/jobs").json(&json!({"kind": "guess"}))).await;
     assert_eq!(answer.problem(422, "validation-failed")["errors"][0]["pointer"], "/kind");

@@ -137,7 +137,7 @@ async fn every_bad_mesh_has_one_clear_answer_and_leaves_nothing() {
 }
 
 #[tokio::test]
-async fn what_can_be_mended_is_stored_and_told() {
+async fn what_can_be_mended_is_stored_and_reported() {
     let server = Server::start();
     let mut trailing = binary_stl(b"x", 1, &[TRIANGLE]);
     trailing.extend([0; 7]);

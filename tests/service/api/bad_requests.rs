@@ -9,7 +9,7 @@ use crate::api::tenants::Hospital;
 use crate::helpers::{SMALL, Server, ask, serve, spec};
 
 #[tokio::test]
-async fn what_is_not_there_is_not_found_and_what_is_not_allowed_is_told() {
+async fn what_is_not_there_is_not_found_and_what_is_not_allowed_is_reported() {
     let server = Server::start();
     let nobody = uuid::Uuid::now_v7();
     for path in [

@@ -55,7 +55,7 @@ async fn a_batch_has_a_row_for_each_of_its_items_and_no_other() {
 }
 
 #[tokio::test]
-async fn what_is_wrong_with_an_item_is_told_with_its_place() {
+async fn what_is_wrong_with_an_item_is_reported_with_its_place() {
     let server = Server::start_with(&["--workers", "0"]);
     let case = server.case(&SMALL).await;
     let good = item(&case, 1.0, "fem_linear");

@@ -83,7 +83,7 @@ async fn the_picture_of_a_check_is_drawn_once_and_goes_with_its_case() {
 }
 
 #[tokio::test]
-async fn what_is_wrong_with_a_case_is_told_and_nothing_of_it_is_kept() {
+async fn what_is_wrong_with_a_case_is_reported_and_nothing_of_it_is_kept() {
     let server = Server::start();
     let refused = async |change: &dyn Fn(&mut serde_json::Value)| {
         let mut case = SMALL.case();

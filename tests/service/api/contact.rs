@@ -34,7 +34,7 @@ fn has_warning(job: &Value, code: &str) -> bool {
 }
 
 #[tokio::test]
-async fn contact_is_answered_as_it_is_asked_for_and_told_with_its_pairs_and_arrays() {
+async fn contact_is_answered_as_it_is_asked_for_and_reported_with_its_pairs_and_arrays() {
     let server = Server::start();
     let case = case(&server).await;
     let solved = async |contact: Option<&str>, raised_mm: f64| {

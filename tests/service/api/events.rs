@@ -80,7 +80,7 @@ async fn a_stream_tells_every_state_of_a_job_and_ends_with_it() {
 }
 
 #[tokio::test]
-async fn what_happens_while_a_client_or_the_service_is_away_is_told_later() {
+async fn what_happens_while_a_client_or_the_service_is_away_is_reported_later() {
     let server = Server::start_with(&["--workers", "1"]);
     let job = ask(server.post("/v1/jobs").json(&long())).await.expect(StatusCode::CREATED);
     let id = job["id"].as_str().unwrap().to_owned();

@@ -102,7 +102,7 @@ async fn a_plan_that_moves_nothing_and_one_in_metres_say_so() {
 }
 
 #[tokio::test]
-async fn constants_in_another_unit_are_told_and_those_no_unit_explains_are_refused() {
+async fn constants_in_another_unit_are_reported_and_those_no_unit_explains_are_refused() {
     let server = Server::start();
     let case = server.case(&SMALL).await;
     let mut spec = spec(&case, 1.0);

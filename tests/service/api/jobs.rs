@@ -189,7 +189,7 @@ async fn a_job_that_is_not_waited_for_is_accepted_and_found_again() {
 }
 
 #[tokio::test]
-async fn a_dismissed_job_may_be_asked_for_anew() {
+async fn a_dismissed_job_may_be_asked_for_again() {
     let server = Server::start_with(&["--workers", "0"]);
     let case = server.case(&SMALL).await;
     let post = || server.post("/v1/jobs").json(&spec(&case, 1.0));
@@ -297,7 +297,7 @@ async fn an_identity_plan_moves_nothing() {
 }
 
 #[tokio::test]
-async fn a_wait_is_granted_up_to_its_cap_and_told() {
+async fn a_wait_is_granted_up_to_its_cap_and_reported() {
     let server = Server::start_with(&["--workers", "0"]);
     let case = server.case(&SMALL).await;
     let job =

@@ -311,7 +311,7 @@ async fn a_scan_without_cuts_gives_a_case_whose_bone_is_fixed() {
 }
 
 #[tokio::test]
-async fn a_cut_beside_all_bone_is_told() {
+async fn a_cut_beside_all_bone_is_reported() {
     let server = Server::start();
     let scan = scan(&server).await;
     let mut asked = spec(&scan);

@@ -73,7 +73,7 @@ async fn the_description_and_its_pages_are_served_without_a_network() {
 }
 
 #[tokio::test]
-async fn limits_and_methods_are_told() {
+async fn limits_and_methods_are_reported() {
     let server = Server::start();
     let limits = ask(server.get("/v1/limits")).await.expect(StatusCode::OK);
     assert_eq!((&limits["upload_bytes"], &limits["wait_s"]), (&(256 << 20).into(), &30.into()));
@@ -88,7 +88,7 @@ async fn limits_and_methods_are_told() {
 }
 
 #[tokio::test]
-async fn materials_of_the_literature_are_told_with_their_sources() {
+async fn materials_of_the_literature_are_reported_with_their_sources() {
     let server = Server::start();
     let list = ask(server.get("/v1/materials")).await.expect(StatusCode::OK);
     let presets = list["presets"].as_array().unwrap();

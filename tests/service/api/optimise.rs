@@ -122,7 +122,7 @@ async fn a_plan_is_found_from_the_skin_it_makes_and_verified() {
 }
 
 #[tokio::test]
-async fn a_bound_that_stops_the_plan_is_told_and_its_parameter_is_not_free() {
+async fn a_bound_that_stops_the_plan_is_reported_and_its_parameter_is_not_free() {
     let server = Server::start();
     let case = case(&server).await;
     // The bone would have to move farther than 1 mm along y; along z it is held.

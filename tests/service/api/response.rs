@@ -450,7 +450,7 @@ pub(super) fn lips() -> Vec<u8> {
 }
 
 #[tokio::test]
-async fn skin_that_passes_through_itself_is_told_by_predictions_and_where_a_response_is_asked_to_look()
+async fn skin_that_passes_through_itself_is_reported_by_predictions_and_where_a_response_is_asked_to_look()
  {
     let server = Server::start();
     let upload = server.post("/v1/meshes?units=mm").header("content-type", OCTETS).body(lips());

@@ -58,7 +58,7 @@ fn table(text: &str) -> Vec<BTreeMap<String, String>> {
 
 #[tokio::test]
 #[expect(clippy::too_many_lines, reason = "one report, held against each of its four forms")]
-async fn a_study_is_told_as_document_table_test_results_and_chart() {
+async fn a_study_is_reported_as_document_table_test_results_and_chart() {
     let server = Server::start();
     let job = done(&server, &slab()).await;
     let summary = &job["results"]["study"];
@@ -216,7 +216,7 @@ async fn thresholds_and_time_decide_the_outcome() {
 }
 
 #[tokio::test]
-async fn other_rules_judge_the_rows_of_an_earlier_study_anew() {
+async fn other_rules_judge_the_rows_of_an_earlier_study_again() {
     let server = Server::start();
     let case = server.case(&SMALL).await;
     let plan = json!({"segments": [{"name": "bone", "translation_mm": [2.0, 0.0, 0.0]}]});

@@ -7,7 +7,7 @@ use crate::helpers::{SMALL, Server, ask, spec};
 use crate::processes::until;
 
 #[tokio::test]
-async fn a_client_that_asks_too_often_is_told_when_to_come_back() {
+async fn a_client_that_asks_too_often_gets_retry_after() {
     let server = Server::start_with(&["--requests-per-minute", "3"]);
     for left in [2, 1, 0] {
         let answer = ask(server.get("/v1/limits")).await;
@@ -47,7 +47,7 @@ async fn the_state_of_a_job_has_a_tag_and_is_not_sent_twice() {
 }
 
 #[tokio::test]
-async fn what_was_counted_is_told_on_a_listener_of_its_own() {
+async fn what_was_counted_is_reported_on_a_listener_of_its_own() {
     let mut server = Server::start_with(&["--admin-bind", "127.0.0.1:0"]);
     let metrics = server.second_line().strip_prefix("metrics on ").unwrap().to_owned();
     let case = server.case(&SMALL).await;

@@ -47,7 +47,7 @@ fn a_setting_is_taken_from_the_environment_too() {
 }
 
 #[test]
-fn a_port_that_is_taken_and_a_folder_that_is_served_are_told() {
+fn a_port_that_is_taken_and_a_folder_that_is_served_are_reported() {
     let server = Server::start();
     let folder = TempDir::new().unwrap();
     let mut taken = Command::new(env!("CARGO_BIN_EXE_facies"));

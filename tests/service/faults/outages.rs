@@ -57,7 +57,7 @@ async fn one_who_writes_to_the_embedded_database_is_waited_for() {
 }
 
 #[tokio::test]
-async fn an_embedded_database_that_stays_locked_is_told_as_503_and_nothing_is_lost() {
+async fn an_embedded_database_that_stays_locked_is_reported_as_503_and_nothing_is_lost() {
     let server = faulty("solve:begin:1:stop:attempt=1:tag=slow", &["--workers", "1"]);
     let case = server.case(&SMALL).await;
     let running = accepted(&server, &tagged(&case, 1.0, "slow")).await;

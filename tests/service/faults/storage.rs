@@ -78,7 +78,7 @@ async fn a_job_over_its_budget_of_time_fails_and_says_so() {
 }
 
 #[tokio::test]
-async fn a_server_told_to_stop_gives_its_job_to_the_next() {
+async fn a_server_that_stops_gives_its_job_to_the_next() {
     let server = faulty(HELD, &["--grace-s", "0"]);
     let case = server.case(&MEDIUM).await;
     let id = accepted(&server, &tagged(&case, 2.0, "slow")).await;

@@ -1,4 +1,4 @@
-//! Surfaces of bone that tissue may not pass: rigid triangles that go where a segment takes them, or stay.
+//! Bone surfaces that tissue may not penetrate: rigid triangles, fixed or moved by a segment.
 //!
 //! The gap of a place is its distance to the closest triangle that it opposes, below 0 in the bone, along the normal of that triangle
 //! or, at an edge between triangles, along the line to the edge. Whether it lies in the bone is asked of the closest triangle of

@@ -35,7 +35,7 @@ pub fn bones_inside(
 ) -> Vec<BoneInside> {
     let searches = [rest, moved].map(SurfaceSearch::new);
     let [Ok(at_rest), Ok(after)] = &searches else { return Vec::new() };
-    let (spacing, (low, high)) = (SPACING * usual_edge(rest), moved.bounds());
+    let (spacing, (low, high)) = (SPACING * median_shortest_side(rest), moved.bounds());
     let is_within = |at: &Vector| {
         at.iter().zip(&low).all(|(x, low)| x >= low)
             && at.iter().zip(&high).all(|(x, high)| x <= high)
@@ -67,7 +67,7 @@ fn depth(search: &SurfaceSearch, at: &Vector) -> f64 {
 }
 
 /// The median of the shortest sides of triangles, in mm.
-fn usual_edge(surface: &TriangleSurface) -> f64 {
+fn median_shortest_side(surface: &TriangleSurface) -> f64 {
     let shortest = |triangle: usize| {
         let [a, b, c] = surface.corners(triangle);
         (b - a).norm().min((c - b).norm()).min((a - c).norm())

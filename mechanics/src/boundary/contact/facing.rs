@@ -302,7 +302,7 @@ impl<'a> FacingSurfaces<'a> {
         self.boundary.own_normal(moved, point, triangle).is_some() && (ahead >= 0.0 || is_behind())
     }
 
-    /// Whether a point and a triangle lay in front of each other at rest.
+    /// Whether a point and a triangle faced each other at rest.
     fn faced_at_rest(&self, point: u32, triangle: usize) -> bool {
         let rest = &self.boundary.rest;
         let corners = rest.corners(triangle);

@@ -1,4 +1,4 @@
-//! Nodes that few cells of tissue lead to from another one: two sides of one fold of tissue do not lie in each other.
+//! Neighbourhoods of nodes over few cells of tissue: the two sides of one fold are not in contact with each other.
 
 use std::collections::BTreeSet;
 use std::sync::OnceLock;

@@ -17,10 +17,10 @@ use zip::{Archive, Entry};
 
 pub(super) use zip::is_zip;
 
-/// Bytes by which a file of the archive is told apart.
+/// Bytes by which a file of the archive is distinguished.
 const PREFIX: usize = 256;
 
-/// What a file of the archive is, by its content.
+/// Kind of a file of the archive, by its content.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Kind {
     Dicom,

@@ -267,7 +267,7 @@ impl Entry {
     }
 }
 
-/// Names are never used as paths; one that could do harm as such was made to.
+/// Whether a name leaves its folder. Names are never used as paths, but such a name is an attack.
 fn escapes_folder(name: &[u8]) -> bool {
     let is_up = |part: &[u8]| part == b"..";
     name.starts_with(b"/")

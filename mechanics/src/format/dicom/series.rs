@@ -31,7 +31,7 @@ pub(in crate::format) fn assemble(
     parts: Vec<Part>,
     limits: &ReadLimits,
 ) -> Result<ReadMesh, FormatError> {
-    let Sorted { slices, mut warnings } = sort_out(parts)?;
+    let Sorted { slices, mut warnings } = select_series(parts)?;
     let plane = check_alike(&slices)?;
     let [columns, rows] = plane.size;
     limits.check_voxels((columns * rows) as u64 * slices.len() as u64)?;
@@ -58,7 +58,7 @@ pub(in crate::format) fn assemble(
 }
 
 /// The slices of the one series that is meant.
-fn sort_out(parts: Vec<Part>) -> Result<Sorted, FormatError> {
+fn select_series(parts: Vec<Part>) -> Result<Sorted, FormatError> {
     let files = parts.len();
     let mut left_out = 0;
     let mut by_series: BTreeMap<String, Vec<Slice>> = BTreeMap::new();

@@ -13,7 +13,7 @@ use crate::mesh::Vector;
 /// Directions that differ from length 1, or from right angles, by more are none.
 const CROOKED: f64 = 1e-3;
 
-/// What a file of a series is.
+/// Kind of a file of a series.
 pub(in crate::format) enum Part {
     Slice(Box<Slice>),
     /// A scout view, by which the scan was planned.

@@ -6,7 +6,7 @@ use super::{GmshReader, Version};
 use crate::format::error::FormatError;
 use crate::mesh::CellShape;
 
-/// What a Gmsh element type is to us.
+/// Meaning of a Gmsh element type.
 struct ElementType {
     name: &'static str,
     nodes: usize,

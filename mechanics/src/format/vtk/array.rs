@@ -110,7 +110,7 @@ impl<'d, 'a> Decoder<'d, 'a> {
         Ok(String::from_utf8_lossy(first).into_owned())
     }
 
-    /// Counts an array that nobody asks for: the limit is one of the whole file.
+    /// Counts an unused array: the limit is one of the whole file.
     pub fn pass_over(&mut self, array: &DataArray<'a>) -> Result<(), FormatError> {
         if self.document.compressed && !matches!(array.content, Content::Ascii(_)) {
             let mut source = self.source(array)?;
@@ -287,7 +287,7 @@ impl<'d, 'a> Decoder<'d, 'a> {
                     inflate_to(&stored?, place).map_err(wrong)
                 })
                 .collect();
-            // Of several that are wrong the first is told, whichever was found first.
+            // Of several that are wrong the first is reported, whichever was found first.
             inflated.into_iter().collect::<Result<(), _>>()?;
             first += batch.len();
         }

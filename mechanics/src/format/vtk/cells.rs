@@ -11,7 +11,7 @@ use crate::format::parsed::Parsed;
 use crate::format::scalar::Scalar;
 use crate::mesh::{CellShape, ValuesOf, Vector};
 
-/// What a VTK cell type is to us.
+/// Meaning of a VTK cell type.
 enum Kind {
     Solid(CellShape),
     Polygon,

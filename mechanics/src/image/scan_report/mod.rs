@@ -1,4 +1,4 @@
-//! Report on a scan before anything is made of it, for the technician who made it.
+//! Report on the quality of a scan before it is used, for the technician who made it.
 
 mod field_of_view;
 mod head;

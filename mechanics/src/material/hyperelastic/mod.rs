@@ -33,7 +33,7 @@ pub use saint_venant_kirchhoff::SaintVenantKirchhoff;
 pub use veronda_westmann::VerondaWestmann;
 pub use volumetric::Volumetric;
 
-/// What tissue between fibres does at any deformation.
+/// Law of the tissue between fibres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Law {
     SaintVenantKirchhoff(SaintVenantKirchhoff),

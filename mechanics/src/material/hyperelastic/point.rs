@@ -61,7 +61,7 @@ struct FibresAt {
     second: f64,
 }
 
-/// What a point needs of a shape function.
+/// Data of a shape function at a point.
 #[derive(Clone, Copy, Debug)]
 pub struct Corner {
     g: Vector3<f64>,

@@ -1,4 +1,4 @@
-//! What is said of the nodes, faces and cells of a mesh, carried on to the cells that they are cut into.
+//! Transfer of sets, labels and arrays of a mesh to its refined cells.
 //!
 //! A new node lies inside an edge, a face or a cell of the first mesh, and belongs to a set of nodes where that does. An edge or
 //! a face of the boundary belongs to a set where all nodes of a boundary face around it do; what lies inside the tissue, where all

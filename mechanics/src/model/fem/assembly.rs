@@ -51,7 +51,7 @@ impl<'a> Tissue<'a> {
     }
 }
 
-/// What rows need of an isotropic tetrahedron: gradients of the shape functions, and lambda V and mu V.
+/// Data of an isotropic tetrahedron for the assembly by rows: gradients of the shape functions, and lambda V and mu V.
 #[derive(Clone, Copy)]
 struct Simplex {
     gradients: [Vector; 4],

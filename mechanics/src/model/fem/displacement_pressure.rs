@@ -1,4 +1,4 @@
-//! Tetrahedra that do not lock: linear displacement and linear pressure, stabilised by projection.
+//! Locking-free tetrahedra: linear displacement and linear pressure, stabilised by projection.
 //!
 //! With p = lambda div u: find u, p with
 //!   int 2 mu eps(u) : eps(v) + int p div v = f(v)                             K u + B^T p = f
@@ -72,7 +72,7 @@ pub(super) fn shear_stiffness(
     tissue.assemble_with(numbering, progress, &tensor)
 }
 
-/// What a pressure leaves of a stiffness.
+/// The stiffness without the part that pressures carry.
 pub(super) fn without_pressure_part(tensor: ElasticTensor) -> ElasticTensor {
     let lambda = tensor.lambda - tensor.pressure_part().lambda;
     ElasticTensor { lambda, ..tensor }

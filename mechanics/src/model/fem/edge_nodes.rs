@@ -1,4 +1,4 @@
-//! Nodes in the middle of the edges of tetrahedra, and what of a problem stands at them.
+//! Nodes in the middle of the edges of tetrahedra, with the boundary conditions and loads there.
 
 use crate::boundary::{Hold, midpoint};
 use crate::element::tetrahedron10;

@@ -1,4 +1,4 @@
-//! Stress of tissue that nothing deforms: growth that its surroundings do not allow, and muscles that pull.
+//! Initial stress of undeformed tissue: growth that its surroundings do not allow, and active muscles.
 //!
 //! sigma = C : (eps(u) - eps_g 1) + S,  eps_g = g^(1/3) - 1 of a cell whose volume becomes g times what it was, and
 //! S = T f (x) f of a muscle that pulls with T along its fibres f, so that

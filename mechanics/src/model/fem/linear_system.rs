@@ -1,5 +1,5 @@
-//! Linear finite elements of first order, assembled once for any number of load cases and residuals: numbering, matrices,
-//! and what solving them made.
+//! Linear finite elements of first order, assembled once for any number of load cases and residuals: degree-of-freedom
+//! map, matrices, and factor or preconditioner.
 
 use rayon::prelude::*;
 
@@ -28,7 +28,7 @@ pub struct LinearSystem<'a> {
     solver: Solver,
 }
 
-/// What ties pressures to displacements, and the cells that have them.
+/// The coupling of pressures to displacements, and the cells that have them.
 pub struct Pressures {
     pub coupling: Coupling,
     pub cells: PressureCells,
@@ -51,7 +51,7 @@ pub struct Solved {
     pub pressures: Vec<f64>,
 }
 
-/// What is left over of the equations of an answer.
+/// Residual of the equations of a solution.
 #[derive(Clone, Debug, Default)]
 pub struct Residual {
     /// For each node, in mN. What acts along held axes does nothing.
@@ -60,14 +60,14 @@ pub struct Residual {
     pub volumes: Vec<f64>,
 }
 
-/// What a residual changes where every hold stays.
+/// Correction of a solution for a residual, with constraints kept.
 pub struct Correction {
     /// For each node, in mm.
     pub displacement: Vec<Vector>,
     /// In kPa.
     pub pressures: Vec<f64>,
     pub iterations: usize,
-    /// What is left of the residual.
+    /// The remaining relative residual.
     pub relative_residual: f64,
 }
 
@@ -232,7 +232,8 @@ impl<'a> LinearSystem<'a> {
         Ok(solutions.into_par_iter().map(|mixed| self.mixed_correction(mixed)).collect())
     }
 
-    /// What holds exert on tissue that a correction displaces, with internal forces in mN at each node beside those of K.
+    /// Reaction forces of constraints on tissue that a correction displaces, with internal forces in mN at each node
+    /// beside those of K.
     pub fn reactions(&self, correction: &Correction, beside: &[Vector]) -> Vec<Vector> {
         let constrained = self.constrained();
         let held = vec![Vector::zeros(); self.holds.len()];
@@ -283,7 +284,7 @@ impl<'a> LinearSystem<'a> {
         }
     }
 
-    /// A residual with its sign turned, in the order and with the weights of `preconditioned`.
+    /// A negated residual, in the order and with the weights of `preconditioned`.
     pub(super) fn negated(&self, residual: &Residual) -> Vec<[f64; 1]> {
         let forces = self.constrained().free_forces(&self.stiffness, &residual.forces);
         let mut volumes = residual.volumes.clone();
@@ -295,7 +296,7 @@ impl<'a> LinearSystem<'a> {
         forces.into_flattened().into_iter().chain(volumes).map(|value| [-value]).collect()
     }
 
-    /// What matrices, hierarchy and vectors take, in MB.
+    /// Memory of matrices, hierarchy and vectors, in MB.
     pub fn megabytes(&self) -> f64 {
         match &self.pressures {
             Some(Pressures { coupling, .. }) => megabytes(&self.stiffness, coupling),

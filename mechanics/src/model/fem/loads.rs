@@ -8,7 +8,7 @@ use crate::mesh::{Vector, VolumeMesh};
 use crate::model::problem::InvertedCell;
 use crate::model::reference_cell;
 
-/// What acts on a face.
+/// Load on a face.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum FaceLoad {
     /// Force for each area in kPa.

@@ -11,7 +11,7 @@ use crate::progress::Progress;
 use crate::solver::stationary::{self, Stationary};
 use crate::solver::{self, System, Unknowns};
 
-/// What only this model has to be told.
+/// Parameters of this model.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct MassTensorSettings {
     pub iterations: Iterations,

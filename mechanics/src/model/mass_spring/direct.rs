@@ -1,5 +1,5 @@
-//! Rest found node by node (Teschner, Girod, Girod, Direct computation of nonlinear soft-tissue deformation,
-//! Vision, Modeling and Visualization, 2000; docs/methods.md#mass-springs).
+//! Equilibrium node by node (Teschner, Girod, Girod, Direct computation of nonlinear soft-tissue deformation, Vision,
+//! Modeling and Visualization, 2000; docs/methods.md#mass-springs).
 //!
 //! p_i <- sum_j k_ij (p_j - L_ij n_ij) / sum_j k_ij,  n_ij = (p_j - p_i) / |p_j - p_i|, plus f_i / sum_j k_ij:
 //! where the springs of the node would have it if they kept their directions. Each node sees the newest

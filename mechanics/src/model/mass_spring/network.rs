@@ -1,4 +1,4 @@
-//! Springs, what holds their nodes and what acts on them.
+//! Spring network: springs, boundary conditions and loads.
 
 use super::springs::Springs;
 use crate::boundary::Hold;
@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 /// The Poisson ratio of a network of springs, on average over directions.
 pub const POISSON_RATIO: f64 = 0.25;
 
-/// What only this model has to be told.
+/// Parameters of this model.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MassSpringSettings {
     pub search: Search,
@@ -52,7 +52,7 @@ pub(super) struct Network<'a> {
     pub(super) acting: &'a [Vector],
     /// Nodes at rest, held ones where they are held to.
     pub(super) start: Vec<Vector>,
-    /// |f_D|: the forces on the free unknowns at the start, springs taken as linear. Residuals are told as
+    /// |f_D|: the forces on the free unknowns at the start, springs taken as linear. Residuals are reported as
     /// shares of it, as those of finite elements are.
     pub(super) scale: f64,
 }
@@ -97,13 +97,13 @@ impl<'a> Network<'a> {
         }
     }
 
-    /// What acts less what resists, where nodes are free to follow, in mN.
+    /// Residual forces of the free unknowns, in mN.
     pub(super) fn unbalanced(&self, resistance: &[Vector]) -> Vec<Vector> {
         let forces = self.acting.iter().zip(resistance).enumerate();
         forces.map(|(node, (acting, resisting))| self.free_part(node, acting - resisting)).collect()
     }
 
-    /// What each hold exerts, in mN.
+    /// Reaction force of each constraint, in mN.
     pub(super) fn reactions(&self, resistance: &[Vector]) -> Vec<Vector> {
         let reaction = |hold: &Hold| {
             let node = hold.node as usize;

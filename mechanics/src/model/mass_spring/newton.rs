@@ -1,4 +1,4 @@
-//! Rest found by Newton's method on the energy W - f . u.
+//! Equilibrium by Newton's method on the energy W - f . u.
 //!
 //! K(p) d = f - dW/dp over what is free, p <- p + a d, K the tangent of the springs. The first step is the
 //! answer of springs that keep their directions. Where pressed springs make K indefinite, their sideways part
@@ -63,7 +63,7 @@ pub(super) fn solve(
     Ok(newton.found())
 }
 
-/// What the steps took.
+/// Work of the steps.
 #[derive(Default)]
 struct Tally {
     inner: usize,

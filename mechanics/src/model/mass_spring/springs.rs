@@ -29,7 +29,7 @@ pub struct Spring {
     pub length: f64,
 }
 
-/// How the tangent takes springs that are pressed and so push sideways.
+/// Geometric stiffness of compressed springs in the tangent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum GeometricStiffness {
     /// As they are: the matrix may be indefinite.

@@ -29,7 +29,7 @@ struct BonePoint {
 }
 
 impl BonePoints {
-    /// Takes the control points that are bone out of a system: their displacements become what nodes are held at.
+    /// Eliminates the control points of bone from a system: their displacements become boundary conditions.
     pub fn eliminate(
         assembly: &Assembly,
         holds: &[Hold],

@@ -1,4 +1,4 @@
-//! Boundary conditions of the tissue, as springs between a volume spline and where its points have to be.
+//! Boundary conditions of the tissue as penalty springs on points of a volume spline.
 //!
 //! Bone is not a control point: a held node lies somewhere in a span, and a spline with fewer control points
 //! than there are held nodes cannot pass through all of them. Each hold e_k . u(x) = v_k therefore has the
@@ -19,7 +19,7 @@ use crate::progress::Unobserved;
 use crate::solver::Unknowns;
 use crate::solver::half_matrix::HalfMatrix;
 
-/// A hold that the spline misses by more than this many mm is told.
+/// A hold that the spline misses by more than this many mm is reported.
 const TOLD: f64 = 0.01;
 
 /// Holds along the axes of the lattice's frame.
@@ -112,7 +112,7 @@ impl HeldPoints {
         }
     }
 
-    /// What is left at each hold, v - e . u, as a vector along the frame.
+    /// Remaining error of each constraint, v - e . u, as a vector along the frame.
     pub fn missed(&self, lattice: &Lattice, of_control: &[Vector]) -> Vec<Vector> {
         let missed = |point: &HeldPoint| {
             let u = lattice.displacement(&point.place, of_control);

@@ -1,4 +1,4 @@
-//! A lattice of control points over a box around the tissue, and where the tissue lies in it.
+//! Lattice of control points over a box around the tissue, and the positions of the tissue in it.
 //!
 //! S(u, v, w) = sum_mnp C_mnp N_m(u) N_n(v) N_p(w)   (Ulusoy et al. 2010, eq. 1)
 //!

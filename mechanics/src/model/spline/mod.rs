@@ -31,7 +31,7 @@ use stepping::{Clock, Damping, Motion, State};
 use stiffness::Assembly;
 use tissue_points::tissue_points;
 
-/// What the user of a volume spline decides.
+/// Parameters of a volume spline.
 #[derive(Clone, Debug, PartialEq)]
 pub struct VolumeSpline {
     /// Along each principal axis of the tissue, the longest first; 1 to 3.
@@ -56,7 +56,7 @@ pub enum Bone {
     ControlPoints,
 }
 
-/// What holds control points together.
+/// Stiffness between control points.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Stiffness {
     /// The elasticity of the tissue.
@@ -160,7 +160,7 @@ fn check_memory(lattice: &Lattice, problem: &Problem) -> Result<(), SolverError>
     }
 }
 
-/// Stiffness with the springs of holds, and forces; `None` where told to stop.
+/// Stiffness with the springs of holds, and forces; `None` when cancelled.
 fn assemble<'a>(
     assembly: Assembly<'a>,
     stiffness: HalfMatrix<f64, 3>,
@@ -259,7 +259,7 @@ impl Assembled<'_> {
         places.map(|&row| by_row[row as usize]).collect()
     }
 
-    /// What is not at rest when its time is up has not converged.
+    /// Motion that is not at rest at the end of its time has not converged.
     fn report(
         &self,
         clock: &Clock,

@@ -1,4 +1,4 @@
-//! M d'' + D d' + K d = f in time, to rest (Ulusoy et al. 2010, eq. 2; docs/methods.md#volume-spline).
+//! Time integration of M d'' + D d' + K d = f, to rest (Ulusoy et al. 2010, eq. 2; docs/methods.md#volume-spline).
 //!
 //! D = d_M M + d_K K. What is solved for in each step is the increment of d; v = d'.
 //!
@@ -63,7 +63,7 @@ pub struct Damping {
     pub stiffness: f64,
 }
 
-/// What moves, from rest at d = 0, under a constant force.
+/// A motion from rest at d = 0, under a constant force.
 pub struct Motion<'a> {
     /// K, with nothing held.
     pub stiffness: &'a System,
@@ -255,7 +255,7 @@ impl Motion<'_> {
 }
 
 impl State {
-    /// Moves, and notes how far.
+    /// Adds a step and records its relative length.
     fn advance(&mut self, step: &Unknowns) {
         let (mut moved, mut total) = (0.0, 0.0);
         for (d, step) in self.displacement.iter_mut().zip(step) {

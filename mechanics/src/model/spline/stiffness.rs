@@ -91,7 +91,7 @@ impl<'a> Assembly<'a> {
         self.lattice.place(&point.local).expect("the point was found in its span before")
     }
 
-    /// K of the tissue in mN/mm; `None` where told to stop.
+    /// K of the tissue in mN/mm; `None` when cancelled.
     pub fn galerkin(&self, progress: &dyn Progress) -> Option<HalfMatrix<f64, 3>> {
         let mean = self.mean_shear_modulus();
         self.sum_over_spans(progress, |span| self.span_stiffness(span, mean))

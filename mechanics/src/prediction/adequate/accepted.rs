@@ -8,7 +8,7 @@ use crate::prediction::skin::Skin;
 /// The mean error over the skin that is accepted where nothing else is said, in mm.
 pub const USUALLY_ACCEPTED_MM: f64 = 0.1;
 
-/// What the caller accepts.
+/// Errors that the caller accepts.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Accepted {
     /// The mean error over the skin that moves (`moving_points`), in mm.

@@ -1,4 +1,4 @@
-//! The way up the rungs.
+//! Search for the cheapest adequate model: models in the order of their cost, until one is accurate enough.
 
 use super::accepted::{Accepted, MeanErrors};
 use super::crossing::overlap;
@@ -81,7 +81,7 @@ struct Climb<'a> {
     accepted: &'a Accepted,
     watched: TimedProgress<'a>,
     begun: f64,
-    /// What the linear answer took, with its estimates.
+    /// Time of the linear solution with its estimates.
     linear_s: f64,
     /// Newton's method as a multiple of that.
     newton_relative_time: f64,
@@ -163,7 +163,7 @@ impl Climb<'_> {
         Ok(self.taken(Answers { linear, second_order, finite_strain }))
     }
 
-    /// What the linear answer tells of itself.
+    /// Reads the estimates of the linear solution.
     fn read_linear_answer(&mut self, solved: &Linear) {
         let (displacement, mesh, linearity) = match solved {
             Linear::Solved(own) => (own.displacement(), &own.numerical_error, &own.nonlinearity),
@@ -240,7 +240,8 @@ impl Climb<'_> {
         }
     }
 
-    /// Whether a rung is worth its time; `expected` is the least error that it may have. Says why it is not.
+    /// Whether a model fits the budget and may be accurate enough; `expected` is its least error. Otherwise notes the
+    /// reason.
     fn is_affordable(&mut self, rung: Rung, expected: Option<MeanErrors>) -> bool {
         let share = self.accepted.share(expected.as_ref());
         let so_far = self.least_share();

@@ -1,4 +1,4 @@
-//! Skin that passes through itself: what no estimate of a model without contact has.
+//! Self-intersection of the skin: an error that no estimate of a model without contact contains.
 
 use super::accepted::Accepted;
 use crate::mesh::Warning;

@@ -1,4 +1,4 @@
-//! Expected duration of the dearer models, as multiples of that of the linear answer with its estimates.
+//! Expected time of the costlier models, as multiples of that of the linear solution with its estimates.
 //!
 //! Newton's method takes a step for as much of the way as the most pressed cell bears, so that its steps are as many as the linear
 //! answer turns that cell inside out: on 289 523 stabilised tetrahedra of a CT 11 and 13 for a smallest det F of -2 in the linear

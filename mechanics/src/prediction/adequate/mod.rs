@@ -1,4 +1,4 @@
-//! The cheapest adequate model: from rung to rung of rising cost until the estimated error of the skin is accepted.
+//! Choice of the cheapest adequate model: models of rising cost until the estimated error of the skin is accepted.
 //!
 //! The rungs are linear finite elements; their answer to second order (`nonlinearity`); and the same elements at finite strain;
 //! each as it is and with what its mesh leaves out added (`numerical_error`). With e_m of the mesh, e_l of what linearity

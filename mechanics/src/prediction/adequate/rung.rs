@@ -1,4 +1,4 @@
-//! Ways to predict in the order of their cost, and the error that is expected of each.
+//! Models in the order of their cost, and the error that is expected of each.
 
 use super::accepted::MeanErrors;
 
@@ -21,9 +21,9 @@ pub enum Rung {
 pub struct Errors {
     /// Of the mesh, estimated with the linear answer.
     pub mesh: Option<MeanErrors>,
-    /// What linearity leaves out.
+    /// Linearisation error.
     pub linearity: Option<MeanErrors>,
-    /// What the second order leaves out.
+    /// Error beyond the second order.
     pub third_order: Option<MeanErrors>,
     /// Of the mesh, at rest at finite strain.
     pub mesh_at_rest: Option<MeanErrors>,

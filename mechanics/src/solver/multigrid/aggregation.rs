@@ -1,4 +1,4 @@
-//! Groups of neighbouring rows.
+//! Aggregates of neighbouring rows, the unknowns of a coarser level.
 
 use super::strength_of_connection::StrengthOfConnection;
 

@@ -120,7 +120,7 @@ where
     Coarse { matrix: coarse, layout }
 }
 
-/// S_I for the arm from the centre to the origin: the same movement told about the origin.
+/// S_I for the arm from the centre to the origin: the same movement taken about the origin.
 fn shift(arm: &Vector3<f64>) -> Matrix6<f64> {
     let mut shift = Matrix6::identity();
     shift.fixed_view_mut::<3, 3>(0, 3).copy_from(&-arm.cross_matrix());

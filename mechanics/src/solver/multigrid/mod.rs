@@ -90,7 +90,7 @@ struct CoarseLevel {
     below: Prolongator,
 }
 
-/// What one cycle writes to, for N right-hand sides.
+/// Work vectors of one cycle, for N right-hand sides.
 pub struct Workspace<const N: usize> {
     right: Vec<Lanes<f32, 3, N>>,
     x: Vec<Lanes<f32, 3, N>>,
@@ -243,7 +243,7 @@ fn check_cancelled(progress: &dyn Progress) -> Result<(), SolverError> {
     if progress.is_cancelled() { Err(SolverError::Stopped) } else { Ok(()) }
 }
 
-/// What a cycle answers: `values` times `scale` of each right-hand side.
+/// Result of a cycle: `values` times `scale` of each right-hand side.
 pub struct Correction<'w, const N: usize> {
     pub values: &'w [Lanes<f32, 3, N>],
     pub scale: [f64; N],

@@ -138,7 +138,7 @@ impl Prolongator {
         vec![vec![[[0.0; N]; 6]; self.centres.len()]; self.layout.parts.len() + 1]
     }
 
-    /// P^T residual. Moments are summed about the origin and then told about each centre.
+    /// P^T residual. Moments are summed about the origin and then taken about each centre.
     pub fn restrict<const B: usize, const N: usize>(
         &self,
         residual: &Vector<B, N>,
@@ -203,7 +203,7 @@ impl Prolongator {
         }
     }
 
-    /// fine += P coarse. Leaves the movements of the aggregates told about the origin.
+    /// fine += P coarse. Leaves the movements of the aggregates taken about the origin.
     pub fn add_prolonged<const B: usize, const N: usize>(
         &self,
         coarse: &mut Vector<6, N>,

@@ -1,4 +1,4 @@
-//! Strength of connection between rows: a scalar picture of a block matrix.
+//! Strength of connection between rows: one scalar for each block of a matrix.
 
 use nalgebra::Matrix3;
 
@@ -10,7 +10,7 @@ use crate::solver::layout::Layout;
 pub(super) struct StrengthOfConnection {
     /// The columns of each row, and how strongly each is tied to it.
     rows: Rows<(u32, f32)>,
-    /// The sum of the ties to rows that are held altogether.
+    /// The summed strength of connection to fully constrained rows.
     pub held: Vec<f32>,
 }
 

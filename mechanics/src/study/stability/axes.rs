@@ -1,16 +1,16 @@
-//! Axes of the map of failures that every method has; what only some have is in `own_axes`.
+//! Axes of the map of failures that every method has; those of some methods are in `own_axes`.
 
 use super::axis::FINER;
 use super::axis::FINER_OF_ITS_STRAIN;
 use super::axis::RING;
 use super::axis::TENTH_OF_MOVEMENT;
+use super::axis::default_case;
+use super::axis::fine_finite_strain_truth;
 use super::axis::finer;
-use super::axis::finer_at_finite_strain;
 use super::axis::found;
 use super::axis::material;
 use super::axis::moved;
 use super::axis::numbers;
-use super::axis::usual_case;
 use super::axis::values;
 use super::scenes::{
     CELL, LEVELS, POISSON_RATIO, YOUNG_MODULUS, around_ball, jaw, layer, on_bone, set, shape_for,
@@ -57,7 +57,7 @@ fn poisson_ratio() -> Axis {
         },
         truth: |nu| finer(case_of_nu(nu, CellShape::Tet4), jaw(shift(moved()))),
         finite_truth: Some(|nu, laws| {
-            finer_at_finite_strain(case_of_nu(nu, CellShape::Tet4), jaw(shift(moved())), laws)
+            fine_finite_strain_truth(case_of_nu(nu, CellShape::Tet4), jaw(shift(moved())), laws)
         }),
     }
 }
@@ -110,7 +110,7 @@ fn rotation() -> Axis {
         bound_mm: HALF_A_MILLIMETRE,
         values: numbers(&[1.0, 2.0, 5.0, 10.0, 15.0, 20.0, 30.0, 45.0]),
         probe: |degrees, variant| {
-            let mut case = usual_case(&LEVELS, RING, shape_for(&variant.settings))?;
+            let mut case = default_case(&LEVELS, RING, shape_for(&variant.settings))?;
             case.segments[0].nodes = set("base");
             case.fixed.clear();
             case.allow_unfixed = true;
@@ -147,12 +147,12 @@ fn sliding() -> Axis {
             let case = around_ball(material, shape_for(&variant.settings));
             found(case, jaw(about_z(degrees)), variant)
         },
-        truth: turned_about_z,
-        finite_truth: Some(|degrees, _| turned_about_z(degrees)),
+        truth: rotated_about_z,
+        finite_truth: Some(|degrees, _| rotated_about_z(degrees)),
     }
 }
 
-fn turned_about_z(degrees: f64) -> Truth {
+fn rotated_about_z(degrees: f64) -> Truth {
     Truth::Formula(Box::new(move |x| about_z(degrees).displacement(x)))
 }
 
@@ -184,11 +184,11 @@ fn aspect() -> Axis {
         ]),
         probe: |aspect, variant| {
             let levels = [0.0, 4.0, 4.0 + CELL * aspect, 8.0, 12.0];
-            let case = usual_case(&levels, RING, shape_for(&variant.settings))?;
+            let case = default_case(&levels, RING, shape_for(&variant.settings))?;
             found(case, jaw(shift(moved())), variant)
         },
         truth: |aspect| match aspect {
-            0.5 => finer(usual_case(&LEVELS, RING, CellShape::Tet4), jaw(shift(moved()))),
+            0.5 => finer(default_case(&LEVELS, RING, CellShape::Tet4), jaw(shift(moved()))),
             flatter if flatter > 0.0 => Truth::First { times: 1.0 },
             _ => Truth::Impossible,
         },
@@ -222,13 +222,13 @@ fn stiffness_contrast() -> Axis {
         truth: |contrast| finer(stiff_case(contrast, CellShape::Tet4), jaw(shift(moved()))),
         finite_truth: Some(|contrast, laws| {
             let case = stiff_case(contrast, CellShape::Tet4);
-            finer_at_finite_strain(case, jaw(shift(moved())), laws)
+            fine_finite_strain_truth(case, jaw(shift(moved())), laws)
         }),
     }
 }
 
 fn stiff_case(contrast: f64, shape: CellShape) -> Result<Case, Refusal> {
-    let mut case = with_region(usual_case(&LEVELS, RING, shape)?, 1, "stiff");
+    let mut case = with_region(default_case(&LEVELS, RING, shape)?, 1, "stiff");
     let stiff = material(YOUNG_MODULUS * contrast, POISSON_RATIO, "stiff")?;
     case.materials.insert("stiff".to_owned(), stiff);
     Ok(case)
@@ -246,11 +246,13 @@ fn jump() -> Axis {
         bound_mm: HALF_A_MILLIMETRE,
         values: numbers(&[0.5, 1.0, 2.0, 3.0, 4.0, 8.0, 16.0, 25.0]),
         probe: |by, variant| {
-            let case = usual_case(&LEVELS, CELL, shape_for(&variant.settings))?;
+            let case = default_case(&LEVELS, CELL, shape_for(&variant.settings))?;
             found(case, jaw(shift(Vector::x() * by)), variant)
         },
         truth: |by| match by {
-            0.5 => finer(usual_case(&LEVELS, CELL, CellShape::Tet4), jaw(shift(Vector::x() * by))),
+            0.5 => {
+                finer(default_case(&LEVELS, CELL, CellShape::Tet4), jaw(shift(Vector::x() * by)))
+            }
             more => Truth::First { times: more / 0.5 },
         },
         finite_truth: None,
@@ -282,7 +284,7 @@ fn loose_parts() -> Axis {
 
 /// A tetrahedron stands on three nodes in the middle of the skin, the first `shared` of them the skin's own.
 fn case_with_part(shared: usize, shape: CellShape) -> Result<Case, Refusal> {
-    let mut case = usual_case(&LEVELS, RING, shape)?;
+    let mut case = default_case(&LEVELS, RING, shape)?;
     let mesh = Arc::make_mut(&mut case.volume);
     let foot = [Vector::zeros(), Vector::x(), Vector::x() + Vector::y()];
     let mut nodes = Vec::new();
@@ -324,7 +326,7 @@ fn contradiction() -> Axis {
             (25.0, "25"),
         ]),
         probe: |apart, variant| {
-            let mut case = usual_case(&LEVELS, RING, shape_for(&variant.settings))?;
+            let mut case = default_case(&LEVELS, RING, shape_for(&variant.settings))?;
             let mesh = Arc::make_mut(&mut case.volume);
             let shared = mesh.node_sets["patch"][0];
             mesh.node_sets.insert("shared".to_owned(), vec![shared]);
@@ -336,7 +338,7 @@ fn contradiction() -> Axis {
         },
         // A nanometre is a difference of rounding.
         truth: |apart| match apart {
-            0.0 => finer(usual_case(&LEVELS, RING, CellShape::Tet4), jaw(shift(moved()))),
+            0.0 => finer(default_case(&LEVELS, RING, CellShape::Tet4), jaw(shift(moved()))),
             rounding if rounding < 1e-9 => Truth::First { times: 1.0 },
             _ => Truth::Impossible,
         },

@@ -1,4 +1,4 @@
-//! Common parts of the axes of the map of failures: scenes, truths and the values they go through.
+//! Common parts of the axes of the map of failures: scenes, reference solutions and values.
 
 use super::scenes::{POISSON_RATIO, YOUNG_MODULUS, halved, layer, on_bone, tissue};
 use super::{Probe, Refusal, Truth, Variant};
@@ -61,7 +61,11 @@ pub(super) fn finer(case: Result<Case, Refusal>, plan: Plan) -> Truth {
 }
 
 /// The same at finite strain, of the law that a method with such laws solves where none is stated.
-pub(super) fn finer_at_finite_strain(case: Result<Case, Refusal>, plan: Plan, laws: Laws) -> Truth {
+pub(super) fn fine_finite_strain_truth(
+    case: Result<Case, Refusal>,
+    plan: Plan,
+    laws: Laws,
+) -> Truth {
     let (method, element) = (Method::FemNonlinear, ElementChoice::Stabilised);
     let case = case.and_then(|case| match laws {
         Laws::SaintVenantKirchhoff => of_saint_venant_kirchhoff(case),
@@ -86,7 +90,7 @@ fn halved_by(case: Result<Case, Refusal>, plan: Plan, settings: Settings) -> Tru
     })
 }
 
-pub(super) fn usual_case(levels: &[f64], ring: f64, shape: CellShape) -> Result<Case, Refusal> {
+pub(super) fn default_case(levels: &[f64], ring: f64, shape: CellShape) -> Result<Case, Refusal> {
     let material = material(YOUNG_MODULUS, POISSON_RATIO, "*")?;
     Ok(on_bone(layer(levels, ring, shape), tissue(material)))
 }

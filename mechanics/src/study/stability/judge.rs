@@ -1,4 +1,4 @@
-//! Each probe solved within its time, and its answer held against the truth.
+//! Assessment of each probe: solved within its time, and compared with the reference solution.
 
 use std::collections::BTreeMap;
 use std::rc::Rc;
@@ -11,7 +11,7 @@ use crate::solver::SolverError;
 use crate::study::deadline::Deadline;
 use crate::validation::Statistics;
 
-/// Positions are told apart down to this, in mm.
+/// Positions are distinguished down to this, in mm.
 const APART: f64 = 1e-4;
 
 /// Every axis with every variant. `told` hears the name of each axis before it is begun.

@@ -1,5 +1,5 @@
-//! Map of failures: each axis turns one thing up until an answer can no longer be right, and each probe says
-//! what the method did about it.
+//! Map of failures: each axis increases one parameter until an answer can no longer be right, and each probe records
+//! how the method reacted.
 //!
 //! A probe is judged by the 95th percentile of |u - u*| over the skin, by area, against a bound stated for its
 //! axis. The one verdict that must never appear is `Wrong`: an answer beyond the bound without a word.
@@ -51,14 +51,14 @@ impl Axis {
     }
 }
 
-/// What a method is given.
+/// Input of a method.
 pub struct Probe {
     pub case: Case,
     pub plan: Plan,
     pub settings: Settings,
 }
 
-/// What an answer is held against.
+/// Reference of an answer.
 pub enum Truth {
     /// Displacement in mm at a point.
     Formula(Box<dyn Fn(&Vector) -> Vector + Send + Sync>),
@@ -78,7 +78,7 @@ pub struct Refusal {
     pub detail: String,
 }
 
-/// What a method did about a probe.
+/// Outcome of a probe.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Verdict {
     /// An answer within the bound, and no warning.
@@ -118,7 +118,7 @@ pub struct Finding {
     pub refusal: Option<Refusal>,
 }
 
-/// What is measured of an answer.
+/// Measured errors of an answer.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Answer {
     /// 95th percentile over the skin by area, in mm; none where there is no truth.

@@ -3,7 +3,8 @@
 use std::collections::BTreeMap;
 
 use super::axis::{
-    FINER, ProbeOutcome, RING, TENTH_OF_MOVEMENT, finer, found, moved, numbers, usual_case, values,
+    FINER, ProbeOutcome, RING, TENTH_OF_MOVEMENT, default_case, finer, found, moved, numbers,
+    values,
 };
 use super::scenes::{LEVELS, POISSON_RATIO, YOUNG_MODULUS, jaw, shape_for, shift, with_region};
 use super::{Axis, Probe, Refusal, Truth, Variant};
@@ -65,7 +66,7 @@ fn fibred(ratio: f64, law: FibreLaw, shape: CellShape) -> Result<Case, Refusal> 
     let refused = |error: MaterialError| {
         Refusal::new("/case/materials/muscle/fibre", "out-of-range", &error.to_string())
     };
-    let mut case = with_region(usual_case(&LEVELS, RING, shape)?, 1, "muscle");
+    let mut case = with_region(default_case(&LEVELS, RING, shape)?, 1, "muscle");
     let young_modulus = YOUNG_MODULUS * ratio;
     let across = LinearElastic::new(YOUNG_MODULUS, POISSON_RATIO, 1.0).map_err(refused)?;
     let fibre = Fibre { young_modulus, shear_modulus: None, law };
@@ -152,7 +153,7 @@ fn spline(clock: Option<Clock>) -> Result<Probe, Refusal> {
         ..Settings::default()
     };
     Ok(Probe {
-        case: usual_case(&LEVELS, RING, CellShape::Tet4)?,
+        case: default_case(&LEVELS, RING, CellShape::Tet4)?,
         plan: jaw(shift(moved())),
         settings,
     })

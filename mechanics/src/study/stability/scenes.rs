@@ -1,4 +1,4 @@
-//! Small scenes that a probe turns something up in: a layer of 12 mm on bone, and a swelling thick sphere.
+//! Small scenes whose parameters a probe varies: a layer of 12 mm on bone, and a swelling thick sphere.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;

@@ -37,7 +37,7 @@ fn a_bone_of_another_frame_is_refused_with_both_places() {
 }
 
 #[test]
-fn a_bone_that_reaches_out_of_the_skin_is_told_with_its_share_and_its_distance() {
+fn a_bone_that_reaches_out_of_the_skin_is_reported_with_its_share_and_its_distance() {
     // The lens of two balls of radii a > b: (a + b - d)² (d² + 2 d (a + b) - 3 (a - b)²) / (16 d b³) of b is inside.
     for (x, out) in [(60.0, 0.4263), (40.0, 0.0789), (29.0, 0.0)] {
         let warnings = outside(&body(70.0, 40.0, x).unwrap());

@@ -26,7 +26,7 @@ fn balls(count: usize) -> Result<ImageDomain, ImageDomainError> {
 }
 
 #[test]
-fn a_second_body_is_told_with_its_size_and_its_place() {
+fn a_second_body_is_reported_with_its_size_and_its_place() {
     let domain = balls(2).unwrap();
     let left = domain.left_out();
     let ball = 4.0 / 3.0 * std::f64::consts::PI * 27.0;

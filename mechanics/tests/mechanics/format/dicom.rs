@@ -84,7 +84,7 @@ fn slices_stand_in_the_order_of_their_places() {
 }
 
 #[test]
-fn a_tilted_gantry_is_told_and_every_voxel_stands_where_it_was_scanned() {
+fn a_tilted_gantry_is_reported_and_every_voxel_stands_where_it_was_scanned() {
     let mut scan = scan();
     // 15 degrees: slices go on along z while their normal leans back.
     scan.placement.steps[0] = Vector::x() * 1.5;

@@ -301,7 +301,7 @@ fn names_that_are_too_long_or_stand_twice_are_refused() {
 }
 
 #[test]
-fn files_of_other_kinds_are_told_apart_by_their_content() {
+fn files_of_other_kinds_are_distinguished_by_their_content() {
     let others: [(&[u8], &str); 9] = [
         (b"\x89PNG\r\n\x1a\n\0\0", "PNG"),
         (b"%PDF-1.7\n", "PDF"),

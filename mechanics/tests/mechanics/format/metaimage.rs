@@ -67,7 +67,7 @@ fn a_header_without_its_voxels_is_refused_and_read_with_them_beside_it() {
 }
 
 #[test]
-fn letters_that_contradict_the_matrix_are_told() {
+fn letters_that_contradict_the_matrix_are_reported() {
     // Axes that grow to the left, to the back and upwards come from right, anterior, inferior.
     let read = |letters: &str| {
         let line = format!("AnatomicalOrientation = {letters}\nElementType");

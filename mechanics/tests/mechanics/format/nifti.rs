@@ -56,7 +56,7 @@ fn a_quaternion_places_an_image_by_its_rotation_and_the_sign_of_its_third_axis()
 }
 
 #[test]
-fn rows_have_the_last_word_and_a_quaternion_that_differs_is_told() {
+fn rows_have_the_last_word_and_a_quaternion_that_differs_is_reported() {
     let bytes = changed(&[(252, &[1, 0]), (268, &floats(&[10.0, -20.25, 3.5]))]);
     let read = read_default(&bytes);
     assert_eq!(warning_codes(&read), ["image-place-doubtful"]);
@@ -158,7 +158,7 @@ fn a_header_that_is_wrong_is_refused_with_its_byte() {
 }
 
 #[test]
-fn bytes_behind_the_last_voxel_are_told() {
+fn bytes_behind_the_last_voxel_are_reported() {
     let more = [file(), vec![0; 5]].concat();
     for bytes in [more.clone(), gzip(&more)] {
         let read = read_default(&bytes);

@@ -315,7 +315,7 @@ fn a_hexahedron_with_a_dented_corner_is_kept_with_a_warning() {
 }
 
 #[test]
-fn a_cell_that_stands_twice_is_told() {
+fn a_cell_that_stands_twice_is_reported() {
     let points = [[0.0; 3], [9.0, 0.0, 0.0], [0.0, 9.0, 0.0], [0.0, 0.0, 9.0], [9.0, 9.0, 9.0]];
     let once: [(u8, &[u32]); 2] = [(10, &[0, 1, 2, 3]), (10, &[1, 2, 3, 4])];
     let twice: [(u8, &[u32]); 3] = [once[0], once[1], (10, &[1, 2, 0, 3])];

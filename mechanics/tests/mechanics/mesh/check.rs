@@ -58,7 +58,7 @@ fn open_nonmanifold_and_separate_parts_are_counted() {
 }
 
 #[test]
-fn cells_that_stand_twice_are_told_with_the_first_of_them() {
+fn cells_that_stand_twice_are_reported_with_the_first_of_them() {
     let mut mesh = mixed_mesh();
     assert_eq!(duplicate_cells(&mesh), None);
     let (shape, first) = mesh.cells.iter().next().map(|(s, nodes)| (s, nodes.to_vec())).unwrap();
@@ -94,7 +94,7 @@ fn a_face_in_metres_is_suspected_and_the_factor_named() {
 }
 
 #[test]
-fn parts_that_share_no_node_are_told_and_those_that_touch_in_one_are_not() {
+fn parts_that_share_no_node_are_reported_and_those_that_touch_in_one_are_not() {
     let told = |shared: usize| {
         let mut mesh = sample::block(Vector::new(1.0, 1.0, 1.0), [2, 2, 2], CellShape::Tet4);
         let first: Vec<u32> = mesh.cells.nodes(0).to_vec();

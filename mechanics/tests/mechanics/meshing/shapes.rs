@@ -88,7 +88,7 @@ fn skin_and_bone_of_a_shell_lie_where_they_are_and_all_of_them_is_there() {
 }
 
 #[test]
-fn the_boundaries_of_a_box_are_told_apart() {
+fn the_boundaries_of_a_box_are_distinguished() {
     let half = Vector::new(20.0, 16.0, 12.0);
     let tissue = meshed(&block(half), &uniform(3.0));
     assert_sound(&tissue);

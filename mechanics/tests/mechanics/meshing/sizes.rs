@@ -89,7 +89,7 @@ fn thin_tissue_is_kept_by_the_thickness_rule() {
 }
 
 #[test]
-fn tissue_too_thin_for_its_cells_is_told_of() {
+fn tissue_too_thin_for_its_cells_is_reported() {
     let tissue = meshed(
         &shell_of_known_thickness(18.4),
         &MeshingSettings { keep_pieces: true, ..uniform(2.5) },
@@ -102,7 +102,7 @@ fn tissue_too_thin_for_its_cells_is_told_of() {
 }
 
 #[test]
-fn a_gap_thinner_than_a_cell_is_told_of_by_its_place() {
+fn a_gap_thinner_than_a_cell_is_reported_by_its_place() {
     // Half balls, 0.4 mm apart.
     let body = Body::skin(20.0, |x| (20.0 - x.norm()).min(x.z.abs() - 0.2));
     let tissue = meshed(&body, &uniform(3.0));
@@ -114,7 +114,7 @@ fn a_gap_thinner_than_a_cell_is_told_of_by_its_place() {
 }
 
 #[test]
-fn balls_that_are_joined_though_they_do_not_touch_are_told_of() {
+fn balls_that_are_joined_though_they_do_not_touch_are_reported() {
     let at = Vector::new(20.2, 0.0, 0.0);
     let tissue = meshed(&balls(vec![(at, 20.0), (-at, 20.0)]), &uniform(3.0));
     assert!(tissue.report.dropped.is_empty() && tissue.report.volume > 60_000.0);

@@ -374,7 +374,7 @@ fn bones_that_fold_a_cell_between_them_are_refused_before_anything_is_solved() {
 }
 
 #[test]
-fn a_law_that_collapses_is_told_where_it_came_to_a_standstill() {
+fn a_law_that_collapses_is_reported_where_it_came_to_a_standstill() {
     let (lambda, mu) = lame(0.46);
     let law = Law::SaintVenantKirchhoff(SaintVenantKirchhoff { lambda, mu });
     let (mesh, held) = hard_block([20, 20, 4], 1.0, RING);

@@ -16,7 +16,7 @@ fn hardest(progress: &dyn Progress) -> Result<mechanics::model::problem::Equilib
 }
 
 #[test]
-fn a_movement_without_rest_at_once_rests_in_parts_which_are_told() {
+fn a_movement_without_rest_at_once_rests_in_parts_which_are_reported() {
     let moved = hardest(&Unobserved).unwrap();
     let newton = moved.solver.newton.unwrap();
     let shares: Vec<f64> = newton.parts.iter().map(|rest| rest.share).collect();
@@ -64,7 +64,7 @@ impl Progress for StopsInParts {
 }
 
 #[test]
-fn a_movement_in_parts_stops_when_told() {
+fn a_movement_in_parts_stops_when_cancelled() {
     let progress = StopsInParts { told: Mutex::default(), later: 5 };
     let ended = hardest(&progress);
     assert!(matches!(ended, Err(ModelError::Solver(SolverError::Stopped))));

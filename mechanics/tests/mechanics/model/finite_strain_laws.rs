@@ -181,7 +181,7 @@ fn stretch_beyond_the_range_of_an_exponential_is_named_with_its_cells() {
 }
 
 #[test]
-fn tissue_that_escapes_its_stiffness_by_swelling_is_told_with_its_volume() {
+fn tissue_that_escapes_its_stiffness_by_swelling_is_reported_with_its_volume() {
     let swollen = |stretch: f64| {
         let moved = pulled(&fung(40.0, 100.0), &[("x_max", 0)], stretch);
         moved.warnings.into_iter().find(|warning| warning.code == "volume-not-kept")

@@ -356,7 +356,7 @@ fn rest_that_is_not_found_is_an_error_with_its_history() {
 }
 
 #[test]
-fn both_searches_stop_when_they_are_told_to() {
+fn both_searches_stop_when_cancelled() {
     let case = slab(CellShape::Tet4, 0.25);
     for search in [Search::Newton, Search::Direct] {
         let settings = Settings { relative_residual: 1e-13, ..springs(search) };

@@ -156,7 +156,7 @@ fn gauss_seidel_gives_the_same_bits_on_one_two_and_three_threads() {
 }
 
 #[test]
-fn iterations_stop_when_they_are_told_to_and_end_where_they_are_too_many() {
+fn iterations_stop_when_cancelled_and_end_where_they_are_too_many() {
     let system = paper_block(0.46);
     let right = forces(&system, 0);
     for iteration in [Iteration::GaussSeidel, Iteration::DampedJacobi, Iteration::Jacobi] {

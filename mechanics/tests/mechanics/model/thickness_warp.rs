@@ -142,7 +142,7 @@ fn a_blend_radius_softens_the_jump_between_bones() {
 }
 
 #[test]
-fn what_a_warp_ignores_is_told_and_what_it_cannot_do_is_refused() {
+fn what_a_warp_ignores_is_reported_and_what_it_cannot_do_is_refused() {
     let mut case = two_bones(CellShape::Tet4);
     let before = solve(&case, &plan(turned()), &with(0.0));
     let sliding = Sliding { nodes: set("y_min"), normal: SlidingNormal::Surface, segment: None };
@@ -183,7 +183,7 @@ fn tissue_without_a_face_on_bone_is_refused() {
 }
 
 #[test]
-fn held_nodes_that_bound_no_bone_face_are_told() {
+fn held_nodes_that_bound_no_bone_face_are_reported() {
     let mut case = two_bones(CellShape::Tet4);
     let mesh = std::sync::Arc::make_mut(&mut case.volume);
     let corner = mesh.node_sets["z_max"][0];

@@ -222,7 +222,7 @@ fn touching(neck: f64) -> ImageVolume {
 }
 
 #[test]
-fn bones_that_touch_are_parted_where_their_contact_is_dimmest_and_it_is_told() {
+fn bones_that_touch_are_parted_where_their_contact_is_dimmest_and_it_is_reported() {
     let segments = || {
         vec![segment("one", &[], &[[4.0, 5.0, 6.0]]), segment("other", &[], &[[16.0, 5.0, 6.0]])]
     };
@@ -294,7 +294,7 @@ fn seeds_that_mean_no_bone_are_refused_by_name() {
 }
 
 #[test]
-fn bone_that_a_segment_does_not_reach_is_told() {
+fn bone_that_a_segment_does_not_reach_is_reported() {
     // An island of eight voxels beside the block.
     let island = scan([20, 14, 20], |x| {
         let block = (2.0..=11.0).contains(&x.x) && (2.0..=11.0).contains(&x.y);

@@ -200,7 +200,7 @@ fn elements_without_an_estimate_are_never_called_adequate() {
 }
 
 #[test]
-fn a_search_for_a_model_stops_when_it_is_told_to() {
+fn a_search_for_a_model_stops_when_cancelled() {
     let case = slab(CellShape::Tet4, 0.45);
     let plan = plan_of(&case, &movements(1.0));
     let scene = Scene::new(&case, &plan, &Settings::default()).unwrap();

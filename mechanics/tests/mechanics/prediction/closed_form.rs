@@ -122,7 +122,7 @@ fn tractions_and_pressures_and_gravity_balance_with_the_reactions() {
 }
 
 #[test]
-fn a_load_on_held_nodes_alone_is_told() {
+fn a_load_on_held_nodes_alone_is_reported() {
     let mesh = block(Vector::new(4.0, 5.0, 6.0), [2, 2, 3], CellShape::Hex8);
     let mut case = case_of(mesh, material(15.0, 0.3));
     case.fixed.push(set("z_min"));

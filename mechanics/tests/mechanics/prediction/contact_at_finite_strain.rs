@@ -97,7 +97,7 @@ fn holds_of_tissue_in_contact_at_finite_strain_are_in_balance() {
 
 /// Bone of 2 mm between nodes of tissue that are 5 mm apart is faced by none of them.
 #[test]
-fn a_blade_that_passes_between_the_nodes_of_tissue_is_told() {
+fn a_blade_that_passes_between_the_nodes_of_tissue_is_reported() {
     let tissue =
         at(block(Vector::new(60.0, 20.0, 10.0), [12, 4, 2], CellShape::Hex8), [0.0, 0.0, -10.0]);
     let blade =

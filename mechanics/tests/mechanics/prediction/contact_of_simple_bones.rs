@@ -166,7 +166,7 @@ fn wedge() -> TriangleSurface {
 
 /// Nodes are 2 mm apart, and a needle and a wedge go in halfway between them.
 #[test]
-fn bone_that_goes_in_between_the_nodes_of_tissue_is_told() {
+fn bone_that_goes_in_between_the_nodes_of_tissue_is_reported() {
     for (name, bone) in [("needle", needle()), ("wedge", wedge())] {
         for settings in both() {
             let case = under(bone.clone(), [15.0, 15.0], CellShape::Hex8);
@@ -190,7 +190,7 @@ fn bone_that_goes_in_between_the_nodes_of_tissue_is_told() {
 
 /// Bone that lies in tissue at rest, as scans have it, and hardly moves is not told.
 #[test]
-fn bone_that_lies_in_tissue_at_rest_is_told_by_what_it_moves() {
+fn bone_that_lies_in_tissue_at_rest_is_reported_by_what_it_moves() {
     let sunk = map(&needle(), |x| x - Vector::new(0.0, 0.0, ABOVE + 1.0));
     for settings in both() {
         let mut case = under(needle(), [15.0, 15.0], CellShape::Hex8);

@@ -257,7 +257,7 @@ fn every_method_without_growth_refuses_it_by_name() {
 }
 
 #[test]
-fn what_is_wrong_with_growth_is_told_with_its_place() {
+fn what_is_wrong_with_growth_is_reported_with_its_place() {
     let case = layers(CellShape::Hex8, 0);
     let refused = |growth: Vec<Growth>| {
         let plan = Plan { growth, ..Plan::default() };

@@ -198,7 +198,7 @@ fn a_muscle_that_cannot_shorten_pulls_with_stress_times_area_at_finite_strain() 
 }
 
 #[test]
-fn growth_and_muscles_go_over_into_those_of_small_strain_and_what_that_leaves_out_is_told() {
+fn growth_and_muscles_go_over_into_those_of_small_strain_and_what_that_leaves_out_is_reported() {
     let length = |values: &[Vector]| values.iter().map(Vector::norm_squared).sum::<f64>().sqrt();
     let minus = |a: &[Vector], b: &[Vector]| -> Vec<Vector> {
         a.iter().zip(b).map(|(a, b)| a - b).collect()

@@ -233,7 +233,7 @@ fn lines_are_tissue_by_the_share_with_which_they_pull() {
 }
 
 #[test]
-fn broad_muscles_far_ones_and_what_cannot_be_mixed_are_told_with_their_place() {
+fn broad_muscles_far_ones_and_what_cannot_be_mixed_are_reported_with_their_place() {
     let strap = || BodyFibres::Box { halvings: 0 };
     let plate = boxed([0.0, 0.0, 3.0], [12.0, 12.0, 6.0]);
     let broad = scene(&held(vec![muscle("plate", plate.clone(), strap())]));

@@ -289,7 +289,7 @@ fn every_method_without_muscles_refuses_them_by_name() {
 }
 
 #[test]
-fn what_is_wrong_with_muscles_is_told_with_its_place() {
+fn what_is_wrong_with_muscles_is_reported_with_its_place() {
     let refused = |muscle: Muscle, plan: &Plan| {
         let mut case = arched(CellShape::Hex8, 0);
         case.muscles = vec![muscle];
@@ -321,7 +321,7 @@ fn what_is_wrong_with_muscles_is_told_with_its_place() {
 }
 
 #[test]
-fn a_muscle_of_few_cells_is_told() {
+fn a_muscle_of_few_cells_is_reported() {
     let mut case = arched(CellShape::Hex8, 0);
     let short = vec![Vector::new(3.0, 3.0, 20.0), Vector::new(9.0, 3.0, 20.0)];
     case.muscles = vec![around("short", vec![short], 3.0)];
@@ -331,7 +331,7 @@ fn a_muscle_of_few_cells_is_told() {
 }
 
 #[test]
-fn a_muscle_in_cells_too_coarse_for_its_width_is_told_with_how_much_of_it_pulls() {
+fn a_muscle_in_cells_too_coarse_for_its_width_is_reported_with_how_much_of_it_pulls() {
     let told = |cells: [usize; 3], at: f64| {
         let mesh = block(Vector::new(120.0, 30.0, 30.0), cells, CellShape::Hex8);
         let line = vec![Vector::new(0.0, at, at), Vector::new(120.0, at, at)];
@@ -349,7 +349,7 @@ fn a_muscle_in_cells_too_coarse_for_its_width_is_told_with_how_much_of_it_pulls(
 }
 
 #[test]
-fn lines_that_leave_the_tissue_are_told_with_how_much_of_them_lies_in_it() {
+fn lines_that_leave_the_tissue_are_reported_with_how_much_of_them_lies_in_it() {
     let told = |from: f64| {
         let mesh = block(Vector::new(60.0, 30.0, 30.0), [24, 12, 12], CellShape::Hex8);
         let line = vec![Vector::new(from, 15.0, 15.0), Vector::new(from + 60.0, 15.0, 15.0)];

@@ -70,7 +70,7 @@ fn lips(gap: f64) -> Case {
 }
 
 #[test]
-fn a_lip_pushed_into_the_other_is_told_with_how_deep_it_reaches() {
+fn a_lip_pushed_into_the_other_is_reported_with_how_deep_it_reaches() {
     let case = lips(1.0);
     assert_eq!(told(&solve(&case, &lifted("jaw", 0.9), &exact()).warnings, "skin-overlaps"), None);
     let found = solve(&case, &lifted("jaw", 3.0), &exact()).warnings;
@@ -139,7 +139,7 @@ fn two_bones() -> Case {
 }
 
 #[test]
-fn segments_whose_sets_are_swapped_are_told_with_both_distances() {
+fn segments_whose_sets_are_swapped_are_reported_with_both_distances() {
     let mut case = two_bones();
     assert_eq!(told(&warnings(&case), "segment-far-from-bone"), None);
     case.segments[0].nodes = set("right");
@@ -155,7 +155,7 @@ fn segments_whose_sets_are_swapped_are_told_with_both_distances() {
 }
 
 #[test]
-fn skin_that_is_held_or_faces_the_bone_is_told_with_its_share() {
+fn skin_that_is_held_or_faces_the_bone_is_reported_with_its_share() {
     let mut case = two_bones();
     let found = warnings(&case);
     assert!(
@@ -176,7 +176,7 @@ fn skin_that_is_held_or_faces_the_bone_is_told_with_its_share() {
 }
 
 #[test]
-fn a_skin_that_faces_what_holds_the_tissue_is_told() {
+fn a_skin_that_faces_what_holds_the_tissue_is_reported() {
     // A sheet above a bone of its own: the side that looks at it is the inner one.
     let sheet = block(Vector::new(40.0, 40.0, 4.0), [8, 8, 2], CellShape::Hex8);
     let bone = block(Vector::new(40.0, 40.0, 4.0), [8, 8, 2], CellShape::Hex8);
@@ -196,7 +196,7 @@ fn a_skin_that_faces_what_holds_the_tissue_is_told() {
 }
 
 #[test]
-fn a_skin_that_nobody_named_is_told_with_its_area_and_its_parts() {
+fn a_skin_that_nobody_named_is_reported_with_its_area_and_its_parts() {
     let mut case = two_bones();
     case.skin = None;
     let found = warnings(&case);

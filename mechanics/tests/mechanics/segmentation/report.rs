@@ -31,7 +31,7 @@ fn a_good_scan_of_a_head_is_cut_at_the_neck_and_nothing_else() {
 }
 
 #[test]
-fn a_head_that_leaves_the_image_at_the_side_is_told_with_the_side() {
+fn a_head_that_leaves_the_image_at_the_side_is_reported_with_the_side() {
     for (aside, side) in [(45.0, "left_mm2"), (-45.0, "right_mm2")] {
         let report = scan_report(&made(Made { aside, ..PLAIN }), Frame::Lps);
         let cut = finding(&report, "field-of-view-cut");
@@ -40,7 +40,7 @@ fn a_head_that_leaves_the_image_at_the_side_is_told_with_the_side() {
 }
 
 #[test]
-fn an_open_mouth_is_told_with_its_gap() {
+fn an_open_mouth_is_reported_with_its_gap() {
     for gap in [4.0, 10.0] {
         let report = scan_report(&made(Made { gap, ..PLAIN }), Frame::Lps);
         let found = number(finding(&report, "mouth-open"), "gap_mm");
@@ -49,7 +49,7 @@ fn an_open_mouth_is_told_with_its_gap() {
 }
 
 #[test]
-fn a_table_is_told_with_its_volume() {
+fn a_table_is_reported_with_its_volume() {
     let report = scan_report(&made(Made { table: true, ..PLAIN }), Frame::Lps);
     let table = finding(&report, "objects-beside-head");
     assert_eq!(number(table, "objects"), 1.0);
@@ -58,20 +58,20 @@ fn a_table_is_told_with_its_volume() {
 }
 
 #[test]
-fn teeth_that_join_the_jaws_are_told() {
+fn teeth_that_join_the_jaws_are_reported() {
     let report = scan_report(&made(Made { bite: true, ..PLAIN }), Frame::Lps);
     assert!(codes(&report).contains(&"jaws-touch"), "{report:?}");
 }
 
 #[test]
-fn metal_is_told_where_it_throws_streaks() {
+fn metal_is_reported_where_it_throws_streaks() {
     let report = scan_report(&made(Made { metal: true, ..PLAIN }), Frame::Lps);
     let metal = finding(&report, "metal-streaks");
     assert!(number(metal, "near_hu") > 5.0 * number(metal, "far_hu"), "{metal:?}");
 }
 
 #[test]
-fn coarse_voxels_are_told() {
+fn coarse_voxels_are_reported() {
     let fine = made(PLAIN);
     let mut placement = *fine.placement();
     placement.steps[2] *= 1.5;
@@ -81,7 +81,7 @@ fn coarse_voxels_are_told() {
 }
 
 #[test]
-fn values_that_are_no_hounsfield_units_are_told_and_nothing_is_read_into_them() {
+fn values_that_are_no_hounsfield_units_are_reported_and_nothing_is_read_into_them() {
     let shifted = |by: f32| {
         let scan = made(PLAIN);
         let Voxels::F32(values) = scan.voxels() else { panic!() };

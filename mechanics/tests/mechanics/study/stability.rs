@@ -214,7 +214,7 @@ fn a_flat_wall_is_never_left() {
 }
 
 #[test]
-fn a_stiff_layer_of_one_linear_cell_is_told_of_and_one_of_two_is_not() {
+fn a_stiff_layer_of_one_linear_cell_is_reported_and_one_of_two_is_not() {
     let told = |variant: &Variant, layers: usize, stiffness: f64, along: f64| {
         let mut mesh = block(Vector::new(20.0, 20.0, 12.0), [4, 4, 6], shape_for(variant));
         let height = |cell: usize| {
@@ -428,7 +428,7 @@ fn what_nothing_holds_or_two_segments_hold_is_refused_for_every_variant() {
 
 /// Tissue of 3 mm, a patch of its base moved by 25 mm: an answer that nobody may take for one.
 #[test]
-fn a_movement_of_25_mm_under_3_mm_of_tissue_is_told_with_its_numbers() {
+fn a_movement_of_25_mm_under_3_mm_of_tissue_is_reported_with_its_numbers() {
     for variant in variants() {
         let mut mesh = block(Vector::new(60.0, 40.0, 3.0), [15, 10, 1], shape_for(&variant));
         let inside = |node: &u32| {

@@ -14,7 +14,7 @@ use mechanics::prediction::{
 };
 use mechanics::progress::{Phase, Progress, Unobserved};
 use mechanics::study::report::Solved;
-use mechanics::study::scenes::{SCENES, scene_of, slab, slab_hex, sphere_of, usual_truth};
+use mechanics::study::scenes::{SCENES, default_truth, scene_of, slab, slab_hex, sphere_of};
 use mechanics::study::sweep::{Judged, SweepError, Values, best, combinations};
 use mechanics::study::{
     ClosedForm, Errors, LINEAR_TRUTH, Materials, NOT_RUN, Outcome, Report, Row, Stopwatch, Strain,
@@ -250,7 +250,7 @@ impl Progress for Meshes {
 }
 
 #[test]
-fn what_a_truth_costs_is_known_before_and_told_while_it_is_solved() {
+fn what_a_truth_costs_is_known_before_and_reported_while_it_is_solved() {
     let plain = || vec![variant("plain", ElementChoice::Plain)];
     let study = study(slab_with(|name| name != "patch 1 mm"), plain(), &[0]);
     let scene = &study.scenes[0];
@@ -652,7 +652,7 @@ fn every_scene_of_the_program_is_accepted_with_each_of_its_plans_and_materials()
 fn a_case_without_a_truth_of_its_own_gets_a_finer_mesh() {
     let of = |shape| {
         let mesh = block(Vector::new(4.0, 4.0, 4.0), [2, 2, 2], shape);
-        usual_truth(&case_of(mesh, material(15.0, 0.46)))
+        default_truth(&case_of(mesh, material(15.0, 0.46)))
     };
     let quadratic = ElementChoice::Quadratic;
     assert!(
@@ -783,7 +783,7 @@ fn rows_with_contact_beside_a_formula_without_are_marked() {
 }
 
 #[test]
-fn levels_that_are_the_truth_are_told_as_skipped() {
+fn levels_that_are_the_truth_are_reported_as_skipped() {
     let scene = slab_with(|name| name == "patch 4 mm");
     let variants = vec![
         variant("stabilised", ElementChoice::Stabilised),

@@ -55,7 +55,7 @@ fn a_known_matrix_moves_the_actual_surface_and_nothing_else_does() {
 }
 
 #[test]
-fn a_surface_that_faces_inwards_and_one_of_another_frame_are_told() {
+fn a_surface_that_faces_inwards_and_one_of_another_frame_are_reported() {
     let prediction = head(4);
     let larger = map(&prediction, |point| point * 1.03);
     let mut turned = larger.clone();

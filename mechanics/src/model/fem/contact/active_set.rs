@@ -1,4 +1,4 @@
-//! Primal-dual active set: the passes that find which rows press, over equations that stay as they are.
+//! Primal-dual active set: passes that find the active contact constraints of fixed equations.
 
 use crate::progress::Progress;
 use crate::solver::SolverError;

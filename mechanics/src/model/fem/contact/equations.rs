@@ -22,7 +22,8 @@ impl<'a> FreeUnknowns<'a> {
         FreeUnknowns { numbering, partly_constrained }
     }
 
-    /// What a row takes of free unknowns, along the axes of their nodes; nothing where both sides are held.
+    /// Coefficients of a contact constraint on free unknowns, along the axes of their nodes; none where both sides are
+    /// constrained.
     pub fn equation(&self, row: &ContactRow) -> Equation {
         let mut equation = Equation::new();
         for (node, along) in &row.terms {

@@ -1,5 +1,5 @@
-//! Rows of contact over rounds: those that say the same as before stay as they are, so that what slides over an edge does not
-//! flicker.
+//! Contact constraints kept between rounds: unchanged ones stay as they are, so that a point that slides over an edge
+//! does not alternate between faces.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -15,7 +15,7 @@ pub(in crate::model::fem) struct KeptRows {
     pub pressing: BTreeSet<u32>,
 }
 
-/// What a round found.
+/// Result of a round.
 pub(in crate::model::fem) struct Round {
     /// For each row its number of before, where it stays as it was.
     pub same: Vec<Option<usize>>,
@@ -53,7 +53,7 @@ impl KeptRows {
         round
     }
 
-    /// What rows with these numbers and forces in mN press on each of so many nodes.
+    /// Nodal forces in mN of contact constraints with these numbers and multipliers, for so many nodes.
     pub fn forces(&self, pressed: impl Iterator<Item = (usize, f64)>, nodes: usize) -> Vec<Vector> {
         let mut forces = vec![Vector::zeros(); nodes];
         for (row, force) in pressed {

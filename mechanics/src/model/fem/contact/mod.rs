@@ -1,4 +1,5 @@
-//! Unilateral contact without friction, in linear elasticity and for the steps of Newton's method: gaps g >= 0, pressing forces m >= 0, m g = 0.
+//! Unilateral contact without friction, in linear elasticity and for the steps of Newton's method: gaps g >= 0, contact
+//! forces m >= 0, m g = 0.
 //!
 //! Primal-dual active set (Hintermueller, Ito, Kunisch, SIAM J. Optim. 13, 2003): the rows that press are equations,
 //! K u = f + G^T m with g = 0, and the others are left out; a row presses in the next pass where m - c g > 0, whatever c is,

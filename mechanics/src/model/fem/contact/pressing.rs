@@ -1,5 +1,5 @@
-//! An answer of linear elasticity in which nothing passes through what it faces: closest points and the set that presses, along
-//! the movement in steps, and at its end until closest points stay.
+//! Contact in linear elasticity: closest points and active set, in steps along the movement, and at its end until the
+//! closest points no longer change.
 
 use std::collections::BTreeMap;
 
@@ -133,7 +133,7 @@ impl Pressing<'_> {
     }
 }
 
-/// What is known of contact while its points are looked for.
+/// State of the search for contact points.
 struct Rounds<'a, 'b> {
     problem: &'b ContactProblem<'a>,
     unknowns: FreeUnknowns<'a>,
@@ -145,7 +145,7 @@ struct Rounds<'a, 'b> {
     /// The answer so far, and the part of the movement that it is of.
     displacement: Vec<Vector>,
     reached: f64,
-    /// What contact adds to the answer without it, and the multipliers of the rows that press.
+    /// Change of the solution by contact, and the multipliers of the active constraints.
     added: Point,
     active: Vec<usize>,
     /// The same by node, whatever rows are found next.

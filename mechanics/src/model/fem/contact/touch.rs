@@ -1,4 +1,4 @@
-//! Contact of an answer: what presses with which force, what does not, and what it took to find out.
+//! Contact result of a solution: contact forces, gaps, and the work of the search.
 
 use std::collections::BTreeMap;
 
@@ -28,7 +28,7 @@ pub struct Contact {
     pub relative_residual: f64,
 }
 
-/// What the search for what presses took.
+/// Cost of the search for the active set.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Effort {
     /// Solutions for a set, in all; how many of them changed the set.

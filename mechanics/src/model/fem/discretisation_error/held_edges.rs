@@ -1,4 +1,4 @@
-//! Edges of the boundary that are held: those of faces all of whose nodes are, as in `quadratic`.
+//! Constrained edges of the boundary: those of faces all of whose nodes are constrained, as in `quadratic`.
 
 use nalgebra::Matrix3;
 

@@ -1,4 +1,4 @@
-//! Error indicators of cells for a goal: residuals of edges, weighted by what the goal feels of them.
+//! Error indicators of cells for a goal functional: residuals of edges, weighted by the dual solution.
 //!
 //! A goal is a weighted mean J(v) = int w . v dA over a surface. With the answer z of its dual problem a(v, z) = J(v), which
 //! has the same matrix, the functions of the edges change the goal by

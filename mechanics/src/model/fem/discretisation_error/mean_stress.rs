@@ -1,4 +1,4 @@
-//! The stress that comes of the mean volume change of wedges, made smooth.
+//! Smoothed stress of the mean volume change of wedges.
 //!
 //! There are two wedges for each node, and with one volume change each their pressures alternate between neighbours in patterns
 //! that grow with lambda. Edge functions see such a pattern as a load. Its mean around the nodes of a kind of tissue, and of these over the
@@ -24,7 +24,7 @@ pub(in crate::model::fem) struct Weighted<T> {
     pub volume: f64,
 }
 
-/// What can be averaged: a pressure, a stress.
+/// Quantity to be averaged: a pressure, a stress.
 pub(in crate::model::fem) trait Averaged:
     Copy + Send + AddAssign + Sum + Mul<f64, Output = Self> + Div<f64, Output = Self>
 {

@@ -56,11 +56,11 @@ const TIGHTER: f64 = 0.01;
 const CONTRAST: f64 = 3.0;
 const LOCKING: f64 = 0.495;
 
-/// What e is multiplied by: without it e falls short by about this (docs/estimates.md).
+/// Factor of e: without it e falls short by about this (docs/estimates.md).
 const PLAIN_FACTOR: f64 = 1.2;
 const MIXED_FACTOR: f64 = 1.3;
 
-/// What an answer was made of.
+/// Input of the estimate: a solution and its problem.
 pub struct Estimate<'a> {
     pub tissue: Tissue<'a>,
     pub system: &'a LinearSystem<'a>,
@@ -69,7 +69,7 @@ pub struct Estimate<'a> {
     pub loads: &'a DistributedLoads,
 }
 
-/// What the mesh cannot show of an answer, as an estimate.
+/// Estimated discretisation error of a solution.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DiscretisationError {
     /// For each node what its displacement lacks, in mm.
@@ -160,7 +160,7 @@ pub(super) fn tolerance(materials: &[LinearElastic], has_pressures: bool) -> f64
     if most > CONTRAST * least || locks { TIGHTER } else { LOOSE }
 }
 
-/// What e is multiplied by.
+/// Factor of e.
 pub(super) fn factor(has_pressures: bool) -> f64 {
     if has_pressures { MIXED_FACTOR } else { PLAIN_FACTOR }
 }

@@ -1,4 +1,5 @@
-//! The two-level step with functions of edges: b of every edge by itself, and what it does to the equations of the corners.
+//! Two-level step with functions of edges: the coefficient of every edge by itself, and its effect on the equations of
+//! the corners.
 
 use super::edge_equations::{EdgeEquation, EdgeEquations};
 use super::edge_functions::MAX_EDGES;
@@ -32,7 +33,7 @@ pub(in crate::model::fem) trait EnrichedCells: Sync {
     /// Writes r and D of each edge of a cell.
     fn equations(&self, cell: usize, of_edges: &mut OfEdges) -> Result<(), InvertedCell>;
 
-    /// What coefficients of its edges do to the corners of a cell.
+    /// Forces of edge coefficients on the corners of a cell.
     fn at_corners(
         &self,
         cell: usize,
@@ -95,7 +96,7 @@ impl<C: EnrichedCells> TwoLevel<'_, C> {
         Some(Sheet::new((skin, self.tissue.mesh), moved, edges, is_edge))
     }
 
-    /// What the edge functions do to the equations of the corners, and their squared energy norm in mN mm.
+    /// Forces of the edge functions in the equations of the corners, and their squared energy norm in mN mm.
     pub fn at_corners(&self) -> Result<(Residual, f64), InvertedCell> {
         // 1. The equations of the edges, and b.
         let (mesh, cells, edges) = (self.tissue.mesh, self.cells, self.edges());

@@ -1,4 +1,5 @@
-//! Force series of one cell: its points at rest, how states strain it, and the second and third order of its forces.
+//! Force series of one cell: its quadrature points at rest, the strains of displacement states, and the second and
+//! third order of its forces.
 
 use nalgebra::Matrix3;
 
@@ -35,7 +36,7 @@ pub(super) struct Cell {
     of_mean: Option<CellModuli>,
     /// Means of the gradients of the shape functions, where they are used.
     mean_gradients: [Vector; MAX_NODES],
-    /// What the stated law adds at each point.
+    /// Terms of the stated law at each point.
     law: Option<LawSeries>,
     /// eps_g, and S in kPa where a muscle pulls.
     growth: f64,
@@ -277,7 +278,7 @@ impl Cell {
         }
     }
 
-    /// What growth and muscles add to the second order along a path.
+    /// Contribution of growth and muscles to the second order along a path.
     pub fn second_order_of_inner(&self, strained: &CellStrains, terms: &mut CellTerms) {
         if self.growth != 0.0 {
             self.add_growth(strained, &[self.growth], terms);
@@ -288,7 +289,7 @@ impl Cell {
         }
     }
 
-    /// What they add to the third.
+    /// Their contribution to the third order.
     pub fn third_order_of_inner(&self, strained: &CellStrains, terms: &mut CellTerms) {
         let growth = self.growth;
         if growth != 0.0 {

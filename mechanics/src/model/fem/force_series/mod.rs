@@ -49,7 +49,7 @@ pub struct ForceSeries<'a> {
     pub tissue: Tissue<'a>,
     pub pressures_of_cell: Vec<Option<[u32; 4]>>,
     pub pressure_count: usize,
-    /// What grows and pulls along the path.
+    /// Growth and muscle stress along the path.
     pub inner: InnerStress,
 }
 

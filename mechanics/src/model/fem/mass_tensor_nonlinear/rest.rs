@@ -1,4 +1,4 @@
-//! Rest of the nonlinear mass-tensor: the movement in parts, each brought to rest by Newton's method before the next one.
+//! Equilibrium of the nonlinear mass-tensor model: load steps, each solved by Newton's method before the next one.
 //!
 //! A part begins with the step that its tangent asks for, K d_f = -f_f - K_fb d_b, and goes on with steps in which the energy
 //! falls (Nocedal, Wright 2006, section 3.1). A part that comes to no rest is halved, one that does is doubled.
@@ -168,7 +168,7 @@ impl Search<'_> {
         None
     }
 
-    /// What is left of a share of movement and load.
+    /// Residual at a share of movement and load.
     fn remaining(&self, at: &State, share: f64) -> LoadCase {
         let holds = self.constrained.holds.iter().zip(&self.case.held);
         let held = holds.map(|(hold, target)| {
@@ -243,7 +243,7 @@ impl Search<'_> {
     }
 }
 
-/// What a part of the movement is to reach.
+/// Target of a load step.
 struct Goal {
     share: f64,
     /// Relative residual.

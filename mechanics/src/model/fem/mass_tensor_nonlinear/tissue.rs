@@ -1,4 +1,4 @@
-//! The tensors of all tetrahedra of a mesh, and what displacements do to them.
+//! Tensors of all tetrahedra of a mesh, with their forces and tangent.
 
 use rayon::prelude::*;
 

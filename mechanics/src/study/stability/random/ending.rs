@@ -1,4 +1,4 @@
-//! Ending of a random scene, and what an answer has to be.
+//! Outcome of a random scene, and the conditions that an answer has to meet.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 

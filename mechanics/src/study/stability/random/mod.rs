@@ -1,4 +1,4 @@
-//! The map of failures over random scenes: how each of many ends, counted by method and by law.
+//! Map of failures over random scenes: outcomes counted by method and by law.
 
 mod ending;
 mod scene;
