@@ -10,6 +10,7 @@ mod learn;
 mod optimise;
 mod own_iterations;
 mod planning;
+mod predicted_head;
 mod refined;
 mod reproduce_damage;
 mod results;
