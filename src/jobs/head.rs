@@ -128,19 +128,21 @@ impl Head {
         self.norms.get(measure).cloned().or(built_in)
     }
 
-    /// Every pair and every landmark of the middle, against the mid-sagittal plane before the operation; none without that plane.
+    /// Every pair and every landmark of the middle, against the mid-sagittal plane before the operation: that of bone, or else that
+    /// of the skin; none without either.
     pub fn symmetry(&self) -> Vec<SymmetryDocument> {
-        let bone = Landmarks(&self.bone.before);
-        let Some(plane) = MidSagittal::of(&bone) else { return Vec::new() };
-        let of_skin = Landmarks(&self.skin.before).symmetric().into_iter();
-        let of_skin = of_skin.map(|own| (Tissue::Skin, own));
-        let all = bone.symmetric().into_iter().map(|own| (Tissue::Bone, own)).chain(of_skin);
+        let (bone, skin) = (Landmarks(&self.bone.before), Landmarks(&self.skin.before));
+        let of_bone = MidSagittal::of(&bone).map(|plane| (Tissue::Bone, plane));
+        let of_skin = || MidSagittal::of_skin(&skin).map(|plane| (Tissue::Skin, plane));
+        let Some(plane) = of_bone.or_else(of_skin) else { return Vec::new() };
+        let own_of_skin = skin.symmetric().into_iter().map(|own| (Tissue::Skin, own));
+        let all = bone.symmetric().into_iter().map(|own| (Tissue::Bone, own)).chain(own_of_skin);
         all.filter_map(|(tissue, own)| self.symmetric(&plane, tissue, &own)).collect()
     }
 
     fn symmetric(
         &self,
-        plane: &MidSagittal,
+        (of_plane, plane): &(Tissue, MidSagittal),
         tissue: Tissue,
         own: &Symmetric,
     ) -> Option<SymmetryDocument> {
@@ -148,6 +150,7 @@ impl Head {
         Some(SymmetryDocument {
             landmark: own.name.clone(),
             tissue: name_of(tissue),
+            plane: name_of(*of_plane),
             before: stages.before.into(),
             planned: stages.planned.map(Into::into),
             predicted: stages.predicted.map(Into::into),

@@ -1,9 +1,9 @@
 """Proof that other programs read what facies writes, and files of theirs for facies to read.
 
-check FOLDER: reads every file in FOLDER with vtk, meshio and trimesh and compares it with the
-              JSON description beside it.
-write FOLDER: writes one mesh and one surface in every encoding that vtk and meshio know, and
-              list.json with what facies should find in each.
+check FOLDER: reads every file in FOLDER with vtk, meshio, trimesh or SimpleITK and compares it with
+              the JSON description beside it.
+write FOLDER: writes one mesh and one surface in every encoding that vtk and meshio know, transforms
+              by SimpleITK, and list.json and movements.json with what facies should find in each.
 """
 
 import sys

@@ -7,6 +7,7 @@ import struct
 
 import meshio
 import numpy as np
+import SimpleITK as sitk
 import trimesh
 import vtk
 from vtk.util.numpy_support import vtk_to_numpy
@@ -269,6 +270,40 @@ def check_csv(path, wanted):
     same(path.name, np.hstack(columns), table)
 
 
+def check_transform(path, wanted):
+    """ITK's rule: a transform takes a point of the resampled image to where its value comes from."""
+    transform = sitk.ReadTransform(str(path))
+    for place, moved in zip(wanted["places"], wanted["moved"]):
+        close(f"{path.name} in ITK", place, transform.TransformPoint(moved), 1e-12)
+        close(f"{path.name} turned round in ITK", moved, transform.GetInverse().TransformPoint(place), 1e-12)
+        close(f"what {path.name} resamples", moved, brightest(sitk.Resample(image_at(place), transform)), 0.05)
+
+
+def image_at(place):
+    """A spot of 2 mm in an image of 1 mm voxels."""
+    origin = [-60.0, -55.0, -60.0]
+    spot = sitk.GaussianImageSource()
+    spot.SetOutputPixelType(sitk.sitkFloat64)
+    spot.SetSize([121, 111, 121])
+    spot.SetOrigin(origin)
+    spot.SetSigma([2.0] * 3)
+    # ITK measures its mean from the origin of space, as it does all places.
+    spot.SetMean(place)
+    return spot.Execute()
+
+
+def brightest(image):
+    """The middle of what an image holds, in space."""
+    values = sitk.GetArrayFromImage(image)
+    places = np.indices(values.shape).reshape(3, -1)[::-1]
+    middle = (places * values.ravel()).sum(axis=1) / values.sum()
+    return image.TransformContinuousIndexToPhysicalPoint(middle.tolist())
+
+
+def check_matrix(path, wanted):
+    same(path.name, np.reshape(wanted["matrix4x4"], (4, 4)), np.loadtxt(path))
+
+
 def check_all(folder):
     files = 0
     for description in sorted(folder.glob("*.json")):
@@ -290,6 +325,10 @@ def check_all(folder):
                     check_glb(path, wanted)
                 case ".csv":
                     check_csv(path, wanted)
+                case ".tfm":
+                    check_transform(path, wanted)
+                case ".txt":
+                    check_matrix(path, wanted)
                 case ".json":
                     continue
                 case other:

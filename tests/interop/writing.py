@@ -1,4 +1,4 @@
-"""Writes one mesh and one surface in every encoding that vtk and meshio know.
+"""Writes one mesh and one surface in every encoding that vtk and meshio know, and transforms of ITK.
 
 All numbers are multiples of a quarter, so that text and 32 bits hold them exactly.
 """
@@ -8,6 +8,7 @@ import json
 
 import meshio
 import numpy as np
+import SimpleITK as sitk
 import vtk
 from vtk.util.numpy_support import numpy_to_vtk
 
@@ -274,6 +275,21 @@ def write_meshio_surfaces(folder):
         note(folder, name, surface())
 
 
+def write_transforms(folder):
+    """A turn and a shift of ITK, whose way resampling goes: the movement of bone leads back."""
+    turn = sitk.Euler3DTransform([0.0] * 3, 0.1, -0.2, 0.3, [4.0, -3.0, 2.0])
+    listed = []
+    for name, centre in (("origin", [0.0] * 3), ("centre", [5.0, 60.0, -7.0])):
+        transform = sitk.AffineTransform(turn.GetMatrix(), turn.GetTranslation(), centre)
+        for suffix in ("tfm", "txt"):
+            file = f"itk_{name}.{suffix}"
+            sitk.WriteTransform(transform, str(folder / file))
+            moved = [[10.0, -12.0, 20.0], [-31.0, 4.5, -7.0], [0.0, 0.0, 0.0]]
+            places = [transform.TransformPoint(at) for at in moved]
+            listed.append({"file": file, "places": places, "moved": moved})
+    (folder / "movements.json").write_text(json.dumps(listed))
+
+
 def write_all(folder):
     folder.mkdir(parents=True, exist_ok=True)
     write_vtk_xml(folder)
@@ -282,5 +298,6 @@ def write_all(folder):
     write_meshio_volumes(folder)
     write_meshio_gmsh(folder)
     write_meshio_surfaces(folder)
+    write_transforms(folder)
     (folder / "list.json").write_text(json.dumps(files))
     print(f"{len(files)} files written for facies")

@@ -1,8 +1,10 @@
 //! Symmetry of a head: how pairs of landmarks and landmarks of the middle lie to its mid-sagittal plane.
 //!
 //! The plane goes through the mean of the middles of the pairs Po and Or, which no operation on the jaws moves, and across the mean of
-//! their differences without its part along the normal of the Frankfort plane; never through single points. A pair (l, r) is
-//! symmetric where the mirror image of l is r: what lies between them is
+//! their differences without its part along the normal of the Frankfort plane; never through single points. A skin without landmarks
+//! of bone has a plane of its own, by the pairs of the eyes and the ears, and across the mean of their differences; upwards is then
+//! from menton to nasion, without its part across the plane. A pair (l, r) is symmetric where the mirror image of l is r: what lies
+//! between them is
 //!   left = (l - o).n + (r - o).n,   up = (l - r).u,   forwards = (l - r).f
 //! with n to the patient's left, u upwards and f forwards.
 
@@ -13,6 +15,12 @@ use crate::mesh::Vector;
 const SAME_PLACE: f64 = 1e-6;
 
 const BASE: [[&str; 2]; 2] = [["Po_L", "Po_R"], ["Or_L", "Or_R"]];
+
+/// Pairs of the skin above the mouth, which operations on the jaws leave in their places.
+const SKIN_BASE: [&str; 5] = ["exocanthion", "endocanthion", "orbitale", "zygion", "tragion"];
+
+/// One pair of the skin says how wide a face is, and not how it is turned.
+const FEWEST_PAIRS: usize = 2;
 
 /// How names of pairs end.
 const SIDES: [[&str; 2]; 3] = [["_L", "_R"], ["_l", "_r"], ["_left", "_right"]];
@@ -85,11 +93,25 @@ impl MidSagittal {
         let up = landmarks.head()?.up;
         let pair = |names: &[&str; 2]| Some([landmarks.at(names[0])?, landmarks.at(names[1])?]);
         let pairs: Vec<[Vector; 2]> = BASE.iter().map(pair).collect::<Option<_>>()?;
-        let across: Vector = pairs.iter().map(|[left, right]| left - right).sum();
+        let across = across(&pairs);
         let left = (across - up * across.dot(&up)).try_normalize(SAME_PLACE)?;
-        let middles = pairs.iter().map(|[left, right]| (left + right) * 0.5);
-        let through = middles.sum::<Vector>() / pairs.len() as f64;
-        Some(MidSagittal { through, left, up, forwards: left.cross(&up) })
+        Some(MidSagittal { through: middle(&pairs), left, up, forwards: left.cross(&up) })
+    }
+
+    /// By landmarks of the skin alone. None where fewer than two pairs of eyes, cheekbones and ears are there, or nasion or menton
+    /// are missing.
+    pub fn of_skin(landmarks: &Landmarks) -> Option<Self> {
+        let pair = |stem: &&str| {
+            let sides = SIDES.iter();
+            let pairs = sides.map(|own| own.map(|side| landmarks.at(&format!("{stem}{side}"))));
+            pairs.into_iter().find_map(|[left, right]| Some([left?, right?]))
+        };
+        let pairs: Vec<[Vector; 2]> = SKIN_BASE.iter().filter_map(pair).collect();
+        let left = across(&pairs).try_normalize(SAME_PLACE)?;
+        let upwards = landmarks.at("nasion")? - landmarks.at("menton")?;
+        let up = (upwards - left * upwards.dot(&left)).try_normalize(SAME_PLACE)?;
+        let plane = MidSagittal { through: middle(&pairs), left, up, forwards: left.cross(&up) };
+        (pairs.len() >= FEWEST_PAIRS).then_some(plane)
     }
 
     /// None where one of the landmarks is missing.
@@ -106,6 +128,16 @@ impl MidSagittal {
             },
         })
     }
+}
+
+/// The sum of what leads from the right to the left.
+fn across(pairs: &[[Vector; 2]]) -> Vector {
+    pairs.iter().map(|[left, right]| left - right).sum()
+}
+
+fn middle(pairs: &[[Vector; 2]]) -> Vector {
+    let middles = pairs.iter().map(|[left, right]| (left + right) * 0.5);
+    middles.sum::<Vector>() / pairs.len() as f64
 }
 
 impl Landmarks<'_> {

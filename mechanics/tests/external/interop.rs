@@ -1,7 +1,7 @@
 //! Files for other programs and files from them.
 //!
 //! `tests/interop/run` calls these tests with `FACIES_INTEROP` set to a folder: what is written to
-//! `from_facies` is read there by vtk, meshio and trimesh, and what these write to `from_others` is
+//! `from_facies` is read there by vtk, meshio, trimesh and SimpleITK, and what these write to `from_others` is
 //! read here. Every file has a plain JSON description beside it.
 
 use std::collections::BTreeMap;
@@ -13,6 +13,7 @@ use mechanics::format::{
     ArrayValues, Mesh, NamedValues, SurfaceOutput, VolumeInLps, VolumeOutput, csv, glb, ply, stl,
 };
 use mechanics::mesh::{Frame, TriangleSurface, Vector, VolumeMesh};
+use mechanics::plan::RigidMovement;
 use serde_json::{Value, json};
 
 use crate::samples::{mixed_mesh, read_default};
@@ -21,6 +22,7 @@ use crate::support::external::{Missing, trials};
 trials! {
     samples_of_every_written_format_lie_ready_for_other_programs
     files_of_other_programs_hold_what_these_wrote
+    transforms_of_other_programs_move_bone_back_along_their_own_way
     a_sample_file_reads_as_its_description
 }
 
@@ -78,6 +80,7 @@ fn samples_of_every_written_format_lie_ready_for_other_programs() {
     fs::create_dir_all(&folder).unwrap();
     put_volumes(&folder);
     put_surfaces(&folder);
+    put_movement(&folder);
     let count = fs::read_dir(&folder).unwrap().count();
     assert!(count >= 10, "{count} files");
 }
@@ -163,11 +166,53 @@ fn put_surfaces(folder: &Path) {
     }
 }
 
-fn files_of_other_programs_hold_what_these_wrote() -> Result<(), Missing> {
+/// A movement of bone for navigation: where it takes some places, and the files that are to say so.
+fn put_movement(folder: &Path) {
+    let angles = Vector::new(7.0, -5.0, 11.0).map(f64::to_radians);
+    let pivot = Vector::new(3.0, 40.0, -50.0);
+    let movement = RigidMovement::about_pivot(angles, pivot, Vector::new(6.5, -3.7, 5.0));
+    let places = [[10.0, -12.0, 20.0], [-31.0, 4.5, -7.0], [0.0; 3]].map(Vector::from);
+    let moved: Vec<Vector> = places.iter().map(|at| movement.apply(at)).collect();
+    put(folder, "movement.tfm", movement.to_itk_text("mandible").as_bytes());
+    put(folder, "movement.txt", movement.to_matrix_text("mandible").as_bytes());
+    let description = json!({
+        "matrix4x4": movement.matrix4(),
+        "places": vectors_of(&places),
+        "moved": vectors_of(&moved),
+    });
+    put_json(folder, "movement.json", &description);
+}
+
+/// The folder of what other programs wrote, and one of its lists.
+fn from_others(list: &str) -> Result<(PathBuf, Vec<Value>), Missing> {
     let why = "FACIES_INTEROP is not set; tests/interop/run sets it".to_owned();
     let folder = interop_folder().ok_or(Missing { why, required_by: None })?.join("from_others");
-    let list: Vec<Value> =
-        serde_json::from_slice(&fs::read(folder.join("list.json")).unwrap()).unwrap();
+    let list = serde_json::from_slice(&fs::read(folder.join(list)).unwrap()).unwrap();
+    Ok((folder, list))
+}
+
+/// Who resamples goes from where bone came to back to where it was, and what is read moves bone.
+fn transforms_of_other_programs_move_bone_back_along_their_own_way() -> Result<(), Missing> {
+    let (folder, list) = from_others("movements.json")?;
+    assert!(list.len() >= 3, "{} files", list.len());
+    for expected in list {
+        let file = expected["file"].as_str().unwrap();
+        let text = fs::read_to_string(folder.join(file)).unwrap();
+        let read = RigidMovement::from_itk_text(&text);
+        let movement = read.unwrap_or_else(|error| panic!("{file}: {error}"));
+        let places = |name: &str| -> Vec<[f64; 3]> {
+            serde_json::from_value(expected[name].clone()).unwrap()
+        };
+        for (at, moved) in places("places").into_iter().zip(places("moved")) {
+            let off = movement.apply(&Vector::from(at)) - Vector::from(moved);
+            assert!(off.norm() < 1e-11, "{file}: {off}");
+        }
+    }
+    Ok(())
+}
+
+fn files_of_other_programs_hold_what_these_wrote() -> Result<(), Missing> {
+    let (folder, list) = from_others("list.json")?;
     assert!(list.len() > 50, "{} files", list.len());
     for expected in list {
         let file = expected["file"].as_str().unwrap();

@@ -3,7 +3,8 @@
 use std::collections::BTreeMap;
 
 use mechanics::cephalometry::{Landmarks, MEASURES, MidSagittal, NORMS, z_score};
-use mechanics::mesh::{Frame, Vector};
+use mechanics::mesh::generic_face::{FaceSettings, Lips, generic_face};
+use mechanics::mesh::{CellShape, Frame, Vector};
 
 type Named = BTreeMap<String, Vector>;
 
@@ -171,6 +172,30 @@ fn what_is_moved_on_one_side_is_off_by_that() {
         let off = asymmetry(name, &base, &planned);
         let error = off.iter().zip(wanted).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
         assert!(error < 1e-10, "{name}: {off:?}");
+    }
+}
+
+#[test]
+fn the_skin_of_the_generic_face_has_its_plane_in_the_middle_however_it_lies() {
+    let settings = FaceSettings { lips: Lips::Closed, fineness: 1, shape: CellShape::Hex8 };
+    let face: Named = generic_face(settings).landmarks.into_iter().collect();
+    let turn = nalgebra::Rotation3::from_euler_angles(0.4, -0.7, 1.9);
+    let shift = Vector::new(300.0, -20.0, 7.0);
+    for (turn, shift) in [(nalgebra::Rotation3::identity(), Vector::zeros()), (turn, shift)] {
+        let lies = |at: &Vector| turn * at + shift;
+        let moved: Named = face.iter().map(|(name, at)| (name.clone(), lies(at))).collect();
+        let plane = MidSagittal::of_skin(&Landmarks(&moved)).unwrap();
+        assert!((plane.left - turn * Vector::x()).norm() < 1e-12);
+        assert!((lies(&Vector::zeros()) - plane.through).dot(&plane.left).abs() < 1e-10);
+        // It looks along -y, and its chin lies below its eyes.
+        assert!(plane.forwards.dot(&(turn * -Vector::y())) > 0.9);
+        assert!(plane.up.dot(&(turn * Vector::z())) > 0.9);
+        // What the operation is to change does not turn the plane: it hangs on no pair below the eyes.
+        let mut operated = moved.clone();
+        for name in ["cheilion_left", "gonion_left", "alare_left"] {
+            *operated.get_mut(name).unwrap() += Vector::new(4.0, 3.0, 2.0);
+        }
+        assert_eq!(MidSagittal::of_skin(&Landmarks(&operated)), Some(plane));
     }
 }
 

@@ -90,9 +90,10 @@ pub struct ContactRegionDocument {
 }
 
 /// `bone` or `skin`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum TissueName {
+    #[default]
     Bone,
     Skin,
 }
@@ -151,6 +152,10 @@ pub struct SymmetryDocument {
     /// The landmark, or the pair without what says left or right.
     pub landmark: String,
     pub tissue: TissueName,
+    /// Whose landmarks make the plane: those of the skin where `Po_L`, `Po_R`, `Or_L`, `Or_R`, `N` or `Me` of bone are missing.
+    #[serde(default)]
+    #[schema(required)]
+    pub plane: TissueName,
     pub before: AsymmetryDocument,
     /// Of bone, where the plan takes it.
     #[serde(default, skip_serializing_if = "Option::is_none")]

@@ -11,6 +11,7 @@ mod load_steps;
 mod optimise;
 mod own_iterations;
 mod planning;
+mod predicted_head;
 mod refined;
 mod reproduce_damage;
 mod results;

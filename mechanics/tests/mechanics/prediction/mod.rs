@@ -13,6 +13,7 @@ pub mod elements;
 mod fibres;
 mod generic_face;
 pub mod growth;
+mod imaged_muscles;
 mod inner_at_finite_strain;
 mod jump;
 mod membrane_at_finite_strain;
