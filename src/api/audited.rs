@@ -88,11 +88,14 @@ impl Drop for Client {
     }
 }
 
-/// The id of what a request made.
+/// The id of what a request made, also of a job that ended while its client waited and is answered in its place.
 fn made(response: &Response) -> Option<&str> {
-    let place = response.headers().get(header::LOCATION)?;
-    let is_made = response.status() == StatusCode::CREATED;
-    place.to_str().ok()?.rsplit('/').next().filter(|_| is_made)
+    let place = match response.status() {
+        StatusCode::CREATED => header::LOCATION,
+        StatusCode::OK => header::CONTENT_LOCATION,
+        _ => return None,
+    };
+    response.headers().get(place)?.to_str().ok()?.rsplit('/').next()
 }
 
 /// The parts of a path that stand for an id in its route, behind their patterns.

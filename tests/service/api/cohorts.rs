@@ -335,7 +335,14 @@ async fn a_job_uses_no_member_that_is_not_to_be_used_so() {
     let both = json!({"kind": "learn", "cohort": cohort, "virtual": {"patients": 3}});
     let groups = json!({"a": [operated.members[0]["prediction"]]});
     let nobody = uuid::Uuid::now_v7();
+    // And the other way round: what may be learned from is not yet to be compared.
+    document["members"][1]["consent"] = json!({"statement": "models only", "uses": ["learn"]});
+    let learning = kept(&server, &document).await;
+    learned(&server, &learning).await;
+    let view = show(&server, &learning).await;
+    assert_eq!(view["members"][1]["member"]["consent"], document["members"][1]["consent"]);
     for (name, job, pointer, code) in [
+        ("not compared", json!({"kind": "cohort", "cohort": learning}), "/cohort", "not-consented"),
         ("not asked", json!({"kind": "learn", "cohort": cohort}), "/cohort", "not-consented"),
         ("no such cohort", json!({"kind": "learn", "cohort": nobody}), "/cohort", "unknown-cohort"),
         ("two", both, "", "one-of"),
@@ -429,4 +436,84 @@ async fn a_cohort_is_its_tenants_and_what_is_done_to_it_is_noted() {
     ] {
         assert!(actions.contains(&wanted), "{wanted:?} is not in {actions:?}");
     }
+}
+
+#[tokio::test]
+async fn a_case_goes_out_of_every_model_and_the_log_says_who_learned_and_who_erased() {
+    let hospital = Hospital::open();
+    let all = ["read", "write", "run", "admin"];
+    let (learner, eraser) = (hospital.key("a", &all).await, hospital.key("a", &all).await);
+    let theirs = hospital.key("b", &all).await;
+    let operated = Operated::by(&hospital.server, &learner, 4).await;
+    let job = async |key: &str, spec: Value| {
+        let request = hospital.server.post("/v1/jobs").bearer_auth(key);
+        ask(request.header("prefer", "wait=30").json(&spec)).await
+    };
+    let mut cohorts = Vec::new();
+    for members in [&[0, 1, 2][..], &[0, 1, 3], &[1, 2, 3]] {
+        let cohort = hospital.post(&learner, "/v1/cohorts", &operated.cohort(members)).await;
+        cohorts.push(id(&cohort.expect(StatusCode::CREATED)));
+    }
+    // Models of each rule, of cohorts and of cases by themselves: those of the last cohort know nothing of the first case.
+    let member = |index: usize| {
+        let own = &operated.members[index];
+        json!({"prediction": own["prediction"], "actual": own["actual"]})
+    };
+    let specs = [
+        json!({"kind": "learn", "cohort": cohorts[0]}),
+        json!({"kind": "learn", "cohort": cohorts[0], "learner": "deformation_model"}),
+        json!({"kind": "learn", "cohort": cohorts[1], "target": "displacement"}),
+        json!({"kind": "learn", "cases": [member(0), member(2), member(3)]}),
+        json!({"kind": "learn", "cohort": cohorts[2]}),
+    ];
+    let mut models = Vec::new();
+    for spec in specs {
+        let learned = job(&learner, spec).await.expect(StatusCode::OK);
+        assert_eq!(learned["status"], "successful", "{learned}");
+        models.push(id(&learned));
+    }
+    let [last, gone @ ..] = [4, 0, 1, 2, 3].map(|index: usize| models[index].as_str());
+
+    // A model is its tenant's, and so is what it would correct.
+    let foreign = Operated::by(&hospital.server, &theirs, 1).await;
+    let mut spec = linear(&foreign.cases[0], 2.2);
+    spec["correction"] = json!({"model": last});
+    refused("theirs", &job(&theirs, spec).await, "/correction/model", "unknown-job");
+
+    let path = format!("/v1/cases/{}", operated.cases[0]);
+    let erased = hospital.server.delete(&path).bearer_auth(&eraser).header("if-match", "*");
+    assert_eq!(ask(erased).await.status, StatusCode::NO_CONTENT);
+    for model in gone {
+        hospital.get(&learner, &format!("/v1/jobs/{model}")).await.problem(410, "gone");
+    }
+    hospital.get(&learner, &format!("/v1/jobs/{last}")).await.expect(StatusCode::OK);
+    let erased = |model: &str| json!({"job": model, "version": 1, "state": "erased", "left": [operated.cases[0]]});
+    for (cohort, version, models) in [
+        (&cohorts[0], 2, vec![erased(gone[1]), erased(gone[0])]),
+        (&cohorts[1], 2, vec![erased(gone[2])]),
+        (&cohorts[2], 1, vec![json!({"job": last, "version": 1, "state": "current"})]),
+    ] {
+        let view = hospital.get(&learner, &format!("/v1/cohorts/{cohort}")).await;
+        let view = view.expect(StatusCode::OK);
+        assert_eq!((&view["version"], &view["models"]), (&json!(version), &json!(models)));
+    }
+
+    let log = hospital.get(&learner, "/v1/audit?limit=200").await.expect(StatusCode::OK);
+    let rows = log["items"].as_array().unwrap();
+    let of = |action: &str, object: &str| {
+        let is = |row: &&Value| row["action"] == action && row["object"] == object;
+        rows.iter().find(is).unwrap_or_else(|| panic!("{action} of {object:?} in {rows:?}"))
+    };
+    let keeper = &of("POST /v1/cohorts", &cohorts[0])["actor"];
+    for model in &models {
+        let learned = of("POST /v1/jobs", model);
+        assert_eq!((&learned["actor"], &learned["tenant"]), (keeper, &json!("a")));
+    }
+    let erased = of("DELETE /v1/cases/{id}", &operated.cases[0]);
+    assert_eq!(erased["outcome"], "204");
+    assert_ne!(&erased["actor"], keeper, "another key");
+    // Nothing of it is in the log of another tenant.
+    let log = hospital.get(&theirs, "/v1/audit?limit=200").await.expect(StatusCode::OK);
+    let rows = log["items"].as_array().unwrap();
+    assert!(rows.iter().all(|row| models.iter().all(|model| row["object"] != model.as_str())));
 }
