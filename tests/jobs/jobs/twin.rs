@@ -396,6 +396,53 @@ fn a_registration_that_leaves_more_than_constants_change_is_told_to_determine_no
     assert!(codes.iter().any(|code| code == "before-operation-suspect"), "{codes:?}");
 }
 
+/// The meshes with some of them changed, each point taken elsewhere.
+fn changed(sources: &Meshes, names: &[&str], to: impl Fn(&Vector) -> Vector) -> Meshes {
+    let mut sources = Meshes(sources.0.clone());
+    for name in names {
+        let own = sources.0[*name].surface_in_mm().unwrap();
+        let points = own.points.iter().map(&to).collect();
+        let shape = TriangleSurface { points, ..(*own).clone() };
+        sources.0.insert((*name).to_owned(), surface(shape));
+    }
+    sources
+}
+
+/// What a study says of whose scan its truth is: the numbers of the warnings that doubt it, by code.
+fn doubts(sources: &Meshes, plan: &Value, truth: Value) -> Vec<(String, Value)> {
+    // A stiffer layer would carry all of the skin along.
+    let sweep = json!({"outer": {"young_modulus_kpa": [15, 30], "poisson_ratio": [0.38, 0.46]}});
+    let (report, codes, _) = swept(case(PLANTED), sources, (plan, sweep), truth).unwrap();
+    let told = report.scenes[0].warnings.iter().map(|own| (own.code.clone(), json!(own)));
+    let told = told.filter(|(code, _)| DOUBTS.contains(&code.as_str()));
+    let told: Vec<(String, Value)> = told.collect();
+    assert!(told.iter().all(|(code, _)| codes.contains(code)), "{codes:?}");
+    told
+}
+
+const DOUBTS: [&str; 2] = ["mirrored?", "another-person-suspect"];
+
+#[test]
+fn a_scan_with_its_sides_exchanged_or_of_somebody_else_is_named_with_its_numbers() {
+    let (_, done, sources, _) = twin();
+    let plan = json!({"segments": [{"name": "jaw", "matrix4x4": done.matrix4()}]});
+    assert_eq!(doubts(&sources, &plan, by_bone()), []);
+
+    // An axis that was turned round at the export, of bone and skin.
+    let mirrored = changed(&sources, &["after", "scan"], |at| Vector::new(-at.x, at.y, at.z));
+    let told = doubts(&mirrored, &plan, by_bone());
+    let (_, warning) = told.iter().find(|(code, _)| code == DOUBTS[0]).expect("a mirror image");
+    let number = |name: &str| warning[name].as_f64().unwrap();
+    assert!(number("mirrored_rms_mm") < 0.7 * number("rms_mm"), "{warning}");
+
+    // Somebody whose head is an eighth larger: bone does not fit.
+    let other = changed(&sources, &["after", "scan"], |at| at * 1.12);
+    let told = doubts(&other, &plan, by_bone());
+    let (_, warning) = told.iter().find(|(code, _)| code == DOUBTS[1]).expect("somebody else");
+    let number = |name: &str| warning[name].as_f64().unwrap();
+    assert!(number("share_above_1_mm") > 0.25 && number("rms_mm") > 0.3, "{warning}");
+}
+
 #[test]
 fn a_scan_that_cannot_be_the_truth_is_refused_where_it_stands() {
     let (_, _, sources, _) = twin();
