@@ -194,26 +194,21 @@ impl OptimisedPlan {
         let mut folder = ResultFolder::open(place.out)?;
         for name in input.files() {
             let bytes = match name {
-                OutputName::BonesVtp => bones_file(&planned.case, scene, &field_data)?,
-                OutputName::GapsSvg => match gaps_picture(&planned.case, scene)? {
-                    Some(picture) => picture.into_bytes(),
-                    None => continue,
-                },
-                OutputName::MusclesSvg => match muscles_picture(&planned.case, scene)? {
-                    Some(picture) => picture.into_bytes(),
-                    None => continue,
-                },
-                OutputName::ClassesSvg => planned.classes_picture()?.into_bytes(),
+                OutputName::BonesVtp => Some(bones_file(&planned.case, scene, &field_data)?),
+                OutputName::GapsSvg => gaps_picture(&planned.case, scene)?.map(String::into_bytes),
+                OutputName::MusclesSvg => {
+                    muscles_picture(&planned.case, scene)?.map(String::into_bytes)
+                }
+                OutputName::ClassesSvg => Some(planned.classes_picture()?.into_bytes()),
                 OutputName::DisplacementSvg => {
                     let (shown, of) = ((frame, input.spec.range_mm()), &statistics.skin.nodes);
-                    displacement_picture(scene, &skin.surface, shown, of)?.into_bytes()
+                    Some(displacement_picture(scene, &skin.surface, shown, of)?.into_bytes())
                 }
-                skin_file => match skin.encode(skin_file, frame, &field_data)? {
-                    Some(bytes) => bytes,
-                    None => continue,
-                },
+                skin_file => skin.encode(skin_file, frame, &field_data)?,
             };
-            folder.add(name, &bytes)?;
+            if let Some(bytes) = bytes {
+                folder.add(name, &bytes)?;
+            }
         }
         let mut provenance = origin.provenance(clock);
         let mesh = mesh_summary(&scene.mesh, &planned.quality);

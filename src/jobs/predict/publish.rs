@@ -217,32 +217,28 @@ impl Finished<'_> {
     ) -> Result<(), JobError> {
         let solver = solver_document(&self.prediction.solver, &self.prediction.elements);
         let field_data = self.origin.field_data(self.method(), self.model(), &solver);
-        let scene = &self.prepared.scene;
+        let (case, scene) = (&self.prepared.case, &self.prepared.scene);
         let frame = self.origin.frame;
         for name in input.files() {
             let bytes = match name {
-                OutputName::VolumeVtu => encode_volume(scene, self.prediction, frame, &field_data)?,
-                OutputName::BonesVtp => bones_file(&self.prepared.case, scene, &field_data)?,
-                OutputName::GapsSvg => match gaps_picture(&self.prepared.case, scene)? {
-                    Some(picture) => picture.into_bytes(),
-                    None => continue,
-                },
-                OutputName::MusclesSvg => match muscles_picture(&self.prepared.case, scene)? {
-                    Some(picture) => picture.into_bytes(),
-                    None => continue,
-                },
-                OutputName::ClassesSvg => self.prepared.classes_picture()?.into_bytes(),
+                OutputName::VolumeVtu => {
+                    Some(encode_volume(scene, self.prediction, frame, &field_data)?)
+                }
+                OutputName::BonesVtp => Some(bones_file(case, scene, &field_data)?),
+                OutputName::GapsSvg => gaps_picture(case, scene)?.map(String::into_bytes),
+                OutputName::MusclesSvg => muscles_picture(case, scene)?.map(String::into_bytes),
+                OutputName::ClassesSvg => Some(self.prepared.classes_picture()?.into_bytes()),
                 OutputName::DisplacementSvg => {
                     let (shown, numbers) =
                         ((frame, input.spec.range_mm()), &self.statistics.skin.nodes);
-                    displacement_picture(scene, &self.skin.surface, shown, numbers)?.into_bytes()
+                    let picture = displacement_picture(scene, &self.skin.surface, shown, numbers)?;
+                    Some(picture.into_bytes())
                 }
-                skin => match self.skin.encode(skin, frame, &field_data)? {
-                    Some(bytes) => bytes,
-                    None => continue,
-                },
+                skin => self.skin.encode(skin, frame, &field_data)?,
             };
-            folder.add(name, &bytes)?;
+            if let Some(bytes) = bytes {
+                folder.add(name, &bytes)?;
+            }
         }
         let corrected = self.correction.as_ref().and_then(|own| own.skin.as_ref());
         if let Some(bytes) = corrected {

@@ -8,7 +8,7 @@ use mechanics::format::{
     ArrayValues, NamedValues, SurfaceOutput, VolumeInLps, VolumeOutput, WriteError,
 };
 use mechanics::mesh::{Frame, TriangleSurface, Vector};
-use mechanics::prediction::{Case, ImagedTissue, NumericalError, Prediction, Scene};
+use mechanics::prediction::{Case, ImagedTissue, Prediction, Scene};
 
 /// `segment` of a point of a bone that moves with no segment.
 const NO_SEGMENT: i64 = -1;
@@ -26,8 +26,7 @@ pub fn encode_volume(
 ) -> Result<Vec<u8>, WriteError> {
     let written = VolumeInLps::new(&scene.mesh, frame);
     let (mesh, frame) = (&*written.mesh, written.frame);
-    let displacement: Vec<Vector> =
-        prediction.displacement.iter().map(|moved| written.turned(moved)).collect();
+    let displacement = turned(&written, &prediction.displacement);
     let positions: Vec<Vector> =
         mesh.nodes.iter().zip(&displacement).map(|(node, moved)| node + moved).collect();
     let magnitude: Vec<f64> = displacement.iter().map(Vector::norm).collect();
@@ -67,10 +66,7 @@ pub fn encode_volume(
         point_arrays.extend(stress.of_nodes());
     }
     let error = prediction.numerical_error.as_ref().ok();
-    let turned = |error: &NumericalError| -> Vec<Vector> {
-        error.missing.iter().map(|missing| written.turned(missing)).collect()
-    };
-    let missing = error.map(turned);
+    let missing = error.map(|error| turned(&written, &error.missing));
     let error =
         missing.as_ref().map(|missing| missing.iter().map(Vector::norm).collect::<Vec<f64>>());
     if let (Some(missing), Some(error)) = (&missing, &error) {
@@ -87,6 +83,11 @@ pub fn encode_volume(
         cell_arrays,
         field_data,
     })
+}
+
+/// Vectors in the frame that is written.
+fn turned(written: &VolumeInLps, vectors: &[Vector]) -> Vec<Vector> {
+    vectors.iter().map(|vector| written.turned(vector)).collect()
 }
 
 /// What an image says about each cell: its mean, -32768 where the cell reaches beyond the image; the number of

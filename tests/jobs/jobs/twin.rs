@@ -410,7 +410,6 @@ fn changed(sources: &Meshes, names: &[&str], to: impl Fn(&Vector) -> Vector) -> 
 
 /// What a study says of whose scan its truth is: the numbers of the warnings that doubt it, by code.
 fn doubts(sources: &Meshes, plan: &Value, truth: Value) -> Vec<(String, Value)> {
-    // A stiffer layer would carry all of the skin along.
     let sweep = json!({"outer": {"young_modulus_kpa": [15, 30], "poisson_ratio": [0.38, 0.46]}});
     let (report, codes, _) = swept(case(PLANTED), sources, (plan, sweep), truth).unwrap();
     let told = report.scenes[0].warnings.iter().map(|own| (own.code.clone(), json!(own)));

@@ -134,10 +134,10 @@ fn methods_of_finite_strain_are_held_against_their_own_law() {
     axes[0].values.truncate(1);
     let clock = Clock(Instant::now());
     let found = map(&variants, &axes, &Bounds { stopwatch: &clock, seconds: 60.0 }, &|_| ());
-    for variant in 0..2 {
-        let finding = at(&found, variant, 0.3);
+    for (place, variant) in variants.iter().enumerate() {
+        let finding = at(&found, place, 0.3);
         let error = finding.answer.as_ref().and_then(|answer| answer.error_mm).unwrap();
-        assert!(error < 0.12, "{}: {finding:?}", variants[variant].label);
+        assert!(error < 0.12, "{}: {finding:?}", variant.label);
     }
 }
 
