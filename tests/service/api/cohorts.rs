@@ -438,23 +438,24 @@ async fn a_cohort_is_its_tenants_and_what_is_done_to_it_is_noted() {
     }
 }
 
-#[tokio::test]
-async fn a_case_goes_out_of_every_model_and_the_log_says_who_learned_and_who_erased() {
-    let hospital = Hospital::open();
-    let all = ["read", "write", "run", "admin"];
-    let (learner, eraser) = (hospital.key("a", &all).await, hospital.key("a", &all).await);
-    let theirs = hospital.key("b", &all).await;
-    let operated = Operated::by(&hospital.server, &learner, 4).await;
-    let job = async |key: &str, spec: Value| {
-        let request = hospital.server.post("/v1/jobs").bearer_auth(key);
-        ask(request.header("prefer", "wait=30").json(&spec)).await
-    };
+/// A job of a key, ended.
+async fn waited(hospital: &Hospital, key: &str, spec: Value) -> Answer {
+    let request = hospital.server.post("/v1/jobs").bearer_auth(key);
+    ask(request.header("prefer", "wait=30").json(&spec)).await
+}
+
+/// Three cohorts of four cases, and models of each rule, of cohorts and of cases by themselves: those of the last cohort, made
+/// last, know nothing of the first case.
+async fn models_of(
+    hospital: &Hospital,
+    key: &str,
+    operated: &Operated,
+) -> (Vec<String>, Vec<String>) {
     let mut cohorts = Vec::new();
     for members in [&[0, 1, 2][..], &[0, 1, 3], &[1, 2, 3]] {
-        let cohort = hospital.post(&learner, "/v1/cohorts", &operated.cohort(members)).await;
+        let cohort = hospital.post(key, "/v1/cohorts", &operated.cohort(members)).await;
         cohorts.push(id(&cohort.expect(StatusCode::CREATED)));
     }
-    // Models of each rule, of cohorts and of cases by themselves: those of the last cohort know nothing of the first case.
     let member = |index: usize| {
         let own = &operated.members[index];
         json!({"prediction": own["prediction"], "actual": own["actual"]})
@@ -468,17 +469,29 @@ async fn a_case_goes_out_of_every_model_and_the_log_says_who_learned_and_who_era
     ];
     let mut models = Vec::new();
     for spec in specs {
-        let learned = job(&learner, spec).await.expect(StatusCode::OK);
+        let learned = waited(hospital, key, spec).await.expect(StatusCode::OK);
         assert_eq!(learned["status"], "successful", "{learned}");
         models.push(id(&learned));
     }
+    (cohorts, models)
+}
+
+#[tokio::test]
+async fn a_case_goes_out_of_every_model_and_the_log_says_who_learned_and_who_erased() {
+    let hospital = Hospital::open();
+    let all = ["read", "write", "run", "admin"];
+    let (learner, eraser) = (hospital.key("a", &all).await, hospital.key("a", &all).await);
+    let theirs = hospital.key("b", &all).await;
+    let operated = Operated::by(&hospital.server, &learner, 4).await;
+    let (cohorts, models) = models_of(&hospital, &learner, &operated).await;
     let [last, gone @ ..] = [4, 0, 1, 2, 3].map(|index: usize| models[index].as_str());
 
     // A model is its tenant's, and so is what it would correct.
     let foreign = Operated::by(&hospital.server, &theirs, 1).await;
     let mut spec = linear(&foreign.cases[0], 2.2);
     spec["correction"] = json!({"model": last});
-    refused("theirs", &job(&theirs, spec).await, "/correction/model", "unknown-job");
+    let corrected = waited(&hospital, &theirs, spec).await;
+    refused("theirs", &corrected, "/correction/model", "unknown-job");
 
     let path = format!("/v1/cases/{}", operated.cases[0]);
     let erased = hospital.server.delete(&path).bearer_auth(&eraser).header("if-match", "*");
