@@ -15,7 +15,7 @@ pub struct LogAxis {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tick {
     pub value: f64,
-    /// Whether it is reported; the others are fine lines.
+    /// Whether it is labelled; the others are fine lines.
     pub labelled: bool,
 }
 

@@ -46,7 +46,7 @@ fn is_wide(axis: &ContourAxis) -> bool {
     low > 0.0 && high / low > WIDE
 }
 
-/// The values that are reported: those of the axis, without any that would stand too near to the one before.
+/// The values that are labelled: those of the axis, without any that would stand too near to the one before.
 pub(super) fn labelled(axis: &ContourAxis, ends: [f64; 2]) -> Vec<f64> {
     let mut told: Vec<f64> = Vec::new();
     for &value in &axis.values {

@@ -8,7 +8,7 @@ use super::raster::{ColouredSurface, Panel, PngError, Shot, draw_all};
 use super::svg::svg;
 use super::view::FaceDirection;
 
-/// What the picture shows.
+/// Content of the picture.
 pub struct MusclesPicture<'a> {
     pub title: &'a str,
     pub subtitle: &'a str,

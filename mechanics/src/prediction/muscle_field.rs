@@ -21,7 +21,7 @@ pub struct MuscleField {
     pub stiffens: bool,
 }
 
-/// Cells inside the closed surface of a muscle.
+/// Measures of the closed surface of a muscle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MuscleBody {
     /// That it encloses, in mm³.

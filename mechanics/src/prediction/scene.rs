@@ -145,7 +145,7 @@ impl Scene {
         (self.tetrahedron() == Tetrahedron::Quadratic).then(|| EdgeNodes::new(&self.mesh))
     }
 
-    /// Measures of the tissue after the plan.
+    /// Prescribed displacements, forces and grown volumes of the plan.
     pub fn load_case(&self) -> LoadCase {
         let held = self.conditions.holds.iter().map(|hold| *hold.values()).collect();
         // A cell without volume is refused where its matrix is made.

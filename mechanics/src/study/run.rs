@@ -19,7 +19,7 @@ use std::collections::{BTreeMap, BTreeSet};
 pub const NOT_RUN: &str = "not-run";
 
 /// Runs every scene with every plan, material, level and variant. The same study gives the same report but for times
-/// and memory. Combinations that are the truth themselves have no row, nor have variants that do not serve a scene: both named
+/// and memory. Combinations that are the truth themselves have no row, nor have variants that do not serve a scene: both are named
 /// as skipped.
 pub fn run(
     study: &Study,

@@ -1,6 +1,5 @@
 //! Plan response: its sum of columns is the direct solution, for every movement.
 
-use mechanics::mesh::half_head::half_head;
 use mechanics::mesh::{CellShape, Vector, VolumeMesh, sample};
 use mechanics::model::fem::mass_tensor::MassTensorSettings;
 use mechanics::optimisation::{
@@ -20,7 +19,7 @@ use mechanics::response::{
 };
 use mechanics::study::methods;
 
-use crate::scenes::{case_of, material, set, solve};
+use crate::scenes::{case_of, half_head_case, material, set, solve};
 use crate::support::responses::{at_rest, columns, differences, direct, movements, plan_of, tight};
 
 fn segment(name: &str) -> CaseSegment {
@@ -50,16 +49,6 @@ fn block(shape: CellShape) -> Case {
     }
 }
 
-/// The half head of the demo in one material.
-fn head() -> Case {
-    Case {
-        skin: Some(set("skin")),
-        segments: vec![segment("maxilla"), segment("mandible")],
-        fixed: vec![set("skull"), set("rim")],
-        ..case_of(half_head(2).mesh, material(15.0, 0.45))
-    }
-}
-
 #[test]
 fn the_sum_of_columns_is_the_direct_solution_with_sliding_walls() {
     for shape in [CellShape::Tet4, CellShape::Hex8] {
@@ -72,13 +61,13 @@ fn the_sum_of_columns_is_the_direct_solution_with_sliding_walls() {
 
 #[test]
 fn the_sum_of_columns_is_the_direct_solution_on_a_half_head() {
-    let [in_f64, in_f32] = differences(&head());
+    let [in_f64, in_f32] = differences(&half_head_case(0.45));
     assert!(in_f64 < 1e-7 && in_f32 < 1e-4, "{in_f64:e} {in_f32:e}");
 }
 
 #[test]
 fn columns_solved_to_the_usual_tolerance_serve_to_a_ten_thousandth_of_a_millimetre() {
-    let case = head();
+    let case = half_head_case(0.45);
     let usual = columns(&case, &Settings::default()).to_response().apply(&movements());
     let exact = columns(&case, &tight()).apply(&movements());
     let largest = exact.iter().zip(&usual).map(|(u, v)| (u - v).norm()).fold(0.0, f64::max);
@@ -149,7 +138,7 @@ fn what_no_response_can_follow_is_refused_with_its_numbers() {
     assert_eq!(refused(&case, &still, &[]), ResponseError::NoSegments);
 
     let small = Settings { memory_mb: 0.5, ..Settings::default() };
-    let error = build(&at_rest(&head(), &small), &[], &Unobserved).unwrap_err();
+    let error = build(&at_rest(&half_head_case(0.45), &small), &[], &Unobserved).unwrap_err();
     let ResponseError::Prediction(ModelError::Solver(SolverError::OverBudget {
         needed_mb,
         allowed_mb,
@@ -287,7 +276,7 @@ fn what_linearity_leaves_out_is_told_of_the_skin_that_moves() {
 
 /// The half head with a muscle around lines on each side, and fat of which there is less.
 fn head_with_muscles() -> Case {
-    let case = head();
+    let case = half_head_case(0.45);
     let [low, high] = case.volume.bounds();
     let at = |a: f64, b: f64, c: f64| low + (high - low).component_mul(&Vector::new(a, b, c));
     let line = |x: f64| vec![at(0.5, x, 0.2), at(0.6, x, 0.5), at(0.5, x, 0.8)];

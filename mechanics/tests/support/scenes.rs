@@ -6,8 +6,11 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use mechanics::boundary::NodeSelection;
 use mechanics::material::LinearElastic;
+use mechanics::mesh::half_head::half_head;
 use mechanics::mesh::{CellShape, Vector, VolumeMesh};
-use mechanics::prediction::{Case, Plan, Prediction, Prescribed, Scene, Settings, predict};
+use mechanics::prediction::{
+    Case, CaseSegment, Plan, Prediction, Prescribed, Scene, Settings, predict,
+};
 use mechanics::progress::{Phase, Progress, Unobserved};
 
 pub const SHAPES: [CellShape; 3] = [CellShape::Tet4, CellShape::Hex8, CellShape::Wedge6];
@@ -24,6 +27,17 @@ pub fn material(young_modulus: f64, poisson_ratio: f64) -> LinearElastic {
 pub fn case_of(mesh: VolumeMesh, material: LinearElastic) -> Case {
     let materials = BTreeMap::from([("*".to_owned(), material)]);
     Case { volume: Arc::new(mesh), materials, ..Case::default() }
+}
+
+/// The half head of the demo in one material of 15 kPa, with both jaws as segments.
+pub fn half_head_case(poisson_ratio: f64) -> Case {
+    let segment = |name: &str| CaseSegment { name: name.to_owned(), nodes: set(name) };
+    Case {
+        skin: Some(set("skin")),
+        segments: vec![segment("maxilla"), segment("mandible")],
+        fixed: vec![set("skull"), set("rim")],
+        ..case_of(half_head(2).mesh, material(15.0, poisson_ratio))
+    }
 }
 
 /// Settings tight enough for facts that hold to rounding.

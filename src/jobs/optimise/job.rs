@@ -8,13 +8,9 @@ use super::tissue::TissueConstant;
 use crate::jobs::clock::Observed;
 use crate::jobs::failure::JobError;
 use crate::jobs::output::{JobContext, JobOutput};
-use crate::jobs::predict::{
-    PredictInput, Predicted, Prepared, bones_file, gaps_picture, statistics,
-};
+use crate::jobs::predict::{PredictInput, Predicted, Prepared, statistics};
 use crate::jobs::report::{PredictionFacts, write_reports};
 use crate::jobs::result::folder::ResultFolder;
-use crate::jobs::result::muscles::muscles_picture;
-use crate::jobs::result::pictures::displacement_picture;
 use crate::jobs::result::provenance::{
     Origin, add_method, encode_result, mesh_summary, solver_document,
 };
@@ -193,19 +189,7 @@ impl OptimisedPlan {
         let field_data = origin.field_data(input.spec.method, None, &self.solver);
         let mut folder = ResultFolder::open(place.out)?;
         for name in input.files() {
-            let bytes = match name {
-                OutputName::BonesVtp => Some(bones_file(&planned.case, scene, &field_data)?),
-                OutputName::GapsSvg => gaps_picture(&planned.case, scene)?.map(String::into_bytes),
-                OutputName::MusclesSvg => {
-                    muscles_picture(&planned.case, scene)?.map(String::into_bytes)
-                }
-                OutputName::ClassesSvg => Some(planned.classes_picture()?.into_bytes()),
-                OutputName::DisplacementSvg => {
-                    let (shown, of) = ((frame, input.spec.range_mm()), &statistics.skin.nodes);
-                    Some(displacement_picture(scene, &skin.surface, shown, of)?.into_bytes())
-                }
-                skin_file => skin.encode(skin_file, frame, &field_data)?,
-            };
+            let bytes = planned.encode(name, (&skin, &statistics.skin.nodes), &field_data)?;
             if let Some(bytes) = bytes {
                 folder.add(name, &bytes)?;
             }

@@ -8,15 +8,13 @@ use super::comparison::compare_skin;
 use super::correction::{CORRECTED_FILE, Correction, corrected};
 use super::density::default_density;
 use super::input::{PredictInput, Prepared};
-use super::overlap::{Collision, bones_file, collisions, gaps_picture, through_skin};
+use super::overlap::{Collision, collisions, through_skin};
 use super::planned::{in_numbers, suspect_landmarks};
 use crate::jobs::clock::Observed;
 use crate::jobs::failure::JobError;
 use crate::jobs::output::{JobOutput, MadeMesh};
 use crate::jobs::report::{PredictionFacts, write_reports};
 use crate::jobs::result::folder::ResultFolder;
-use crate::jobs::result::muscles::muscles_picture;
-use crate::jobs::result::pictures::displacement_picture;
 use crate::jobs::result::provenance::{
     Origin, add_method, encode_result, laws, mesh_summary, presets, rest_on_the_way,
     solver_document,
@@ -217,24 +215,15 @@ impl Finished<'_> {
     ) -> Result<(), JobError> {
         let solver = solver_document(&self.prediction.solver, &self.prediction.elements);
         let field_data = self.origin.field_data(self.method(), self.model(), &solver);
-        let (case, scene) = (&self.prepared.case, &self.prepared.scene);
+        let scene = &self.prepared.scene;
         let frame = self.origin.frame;
+        let skin = (self.skin, &self.statistics.skin.nodes);
         for name in input.files() {
             let bytes = match name {
                 OutputName::VolumeVtu => {
                     Some(encode_volume(scene, self.prediction, frame, &field_data)?)
                 }
-                OutputName::BonesVtp => Some(bones_file(case, scene, &field_data)?),
-                OutputName::GapsSvg => gaps_picture(case, scene)?.map(String::into_bytes),
-                OutputName::MusclesSvg => muscles_picture(case, scene)?.map(String::into_bytes),
-                OutputName::ClassesSvg => Some(self.prepared.classes_picture()?.into_bytes()),
-                OutputName::DisplacementSvg => {
-                    let (shown, numbers) =
-                        ((frame, input.spec.range_mm()), &self.statistics.skin.nodes);
-                    let picture = displacement_picture(scene, &self.skin.surface, shown, numbers)?;
-                    Some(picture.into_bytes())
-                }
-                skin => self.skin.encode(skin, frame, &field_data)?,
+                other => self.prepared.encode(other, skin, &field_data)?,
             };
             if let Some(bytes) = bytes {
                 folder.add(name, &bytes)?;

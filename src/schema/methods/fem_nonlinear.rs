@@ -1,4 +1,4 @@
-//! Nonlinear finite elements: what a spec tells them, and what is told of them.
+//! Nonlinear finite elements: parameters and description.
 
 use std::num::NonZeroU32;
 

@@ -4,7 +4,6 @@ use mechanics::material::LinearElastic;
 use mechanics::material::hyperelastic::{
     Fibres, Fung, Law, NeoHookean, SaintVenantKirchhoff, Volumetric,
 };
-use mechanics::mesh::half_head::half_head;
 use mechanics::mesh::sample::{self, block};
 use mechanics::mesh::{CellShape, Vector};
 use mechanics::plan::RigidMovement;
@@ -16,7 +15,7 @@ use mechanics::progress::Unobserved;
 use mechanics::response::{Columns, ResponseError, ResponseOrder, build_to, check_order};
 use mechanics::study::methods;
 
-use crate::scenes::{case_of, material, set};
+use crate::scenes::{case_of, half_head_case, material, set};
 use crate::support::responses::{at_rest, plan_of};
 
 /// A slab of 60 x 60 x 14 mm on two bones, its rim fixed below; the skin is its top.
@@ -216,13 +215,7 @@ fn the_estimate_is_what_newton_changes_on_the_hard_block_up_to_eleven_millimetre
 
 #[test]
 fn the_estimate_is_what_newton_changes_on_a_half_head_whose_jaws_move_by_up_to_ten_millimetres() {
-    let segment = |name: &str| CaseSegment { name: name.to_owned(), nodes: set(name) };
-    let case = Case {
-        skin: Some(set("skin")),
-        segments: vec![segment("maxilla"), segment("mandible")],
-        fixed: vec![set("skull"), set("rim")],
-        ..case_of(half_head(2).mesh, material(15.0, 0.45))
-    };
+    let case = half_head_case(0.45);
     let [low, high] = case.volume.bounds();
     for share in [0.2, 1.0] {
         let pivot = (low + high) * 0.5;

@@ -3,7 +3,6 @@
 use std::sync::Arc;
 
 use mechanics::material::{LinearElastic, MaterialError, PlaneStress, Sheet};
-use mechanics::mesh::half_head::half_head;
 use mechanics::mesh::{CellShape, Vector, Warning, sample::block};
 use mechanics::model::fem::mass_tensor::{Iterations, MassTensorSettings};
 use mechanics::model::mass_spring::{MassSpringSettings, Search};
@@ -15,7 +14,7 @@ use mechanics::prediction::{
 use mechanics::progress::Unobserved;
 use mechanics::solver::stationary::{Iteration, Stationary};
 
-use crate::scenes::{case_of, material, set, solve};
+use crate::scenes::{case_of, half_head_case, material, set, solve};
 use crate::support::responses::plan_of;
 
 fn layer() -> Case {
@@ -68,13 +67,7 @@ fn tissue_at_rest_is_not_told_to_be_pressed() {
 
 #[test]
 fn skin_that_moves_farther_than_bone_is_told_with_its_place() {
-    let segment = |name: &str| CaseSegment { name: name.to_owned(), nodes: set(name) };
-    let case = Case {
-        skin: Some(set("skin")),
-        segments: vec![segment("maxilla"), segment("mandible")],
-        fixed: vec![set("skull"), set("rim")],
-        ..case_of(half_head(2).mesh, material(15.0, 0.45))
-    };
+    let case = half_head_case(0.45);
     let back = RigidMovement::about_pivot(Vector::zeros(), Vector::zeros(), Vector::y() * 4.0);
     let plan = plan_of(&case, &[RigidMovement::default(), back]);
     let told = |method| {

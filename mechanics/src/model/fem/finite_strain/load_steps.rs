@@ -40,7 +40,7 @@ impl<'a> FiniteStrain<'a> {
     }
 }
 
-/// What is told of rest at the end of a load step that began after so many residuals.
+/// Report of rest at the end of a load step that began after so many residuals.
 fn load_step(question: Question, rest: &Rest, begun: usize) -> Option<LoadStep> {
     let loads = question.case.forces.iter().map(|force| force * question.share);
     let acting: Vec<Vector> = loads.collect();
