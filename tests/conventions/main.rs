@@ -11,6 +11,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::Path;
 
+use sha2::{Digest, Sha256};
 use source::{Crate, Module, rust_files};
 
 /// Modules of the numerics, and those that each may use.
@@ -319,5 +320,17 @@ fn files_stay_below_400_lines() {
     for file in sources() {
         let lines = fs::read_to_string(&file).unwrap().lines().count();
         assert!(lines <= 400, "{} has {lines} lines", file.display());
+    }
+}
+
+/// A page that was built before its last change would end the check of the page, half an hour after the tests began.
+#[test]
+fn the_page_is_built_of_its_sources() {
+    for line in fs::read_to_string("web/sources.sha256").unwrap().lines() {
+        let (hash, path) = line.split_once("  ").unwrap();
+        let bytes = fs::read(Path::new("web").join(path)).unwrap_or_default();
+        let found: String =
+            Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect();
+        assert_eq!(found, hash, "run web/build: web/{path} changed since");
     }
 }
