@@ -74,7 +74,7 @@ impl Declared {
             return Ok(RouteAccess { access, is_answered: true });
         }
         let methods = self.0.get(route).ok_or_else(|| {
-            ApiError::internal(format!("nobody declared what {method} {route} takes"))
+            ApiError::internal(format!("no scope is declared for {method} {route}"))
         })?;
         let is_open = methods.values().all(|access| *access == Access::Open);
         let access = if is_open { Access::Open } else { for_unknown_route(method) };

@@ -82,7 +82,7 @@ impl FromRequestParts<Service> for Caller {
         match (parts.extensions.get::<Access>(), caller) {
             (Some(Access::Key { .. }), Some(caller)) => Ok(caller.clone()),
             (Some(Access::Key { .. }), None) | (Some(Access::Open) | None, _) => {
-                Err(ApiError::internal("a request that nobody let in"))
+                Err(ApiError::internal("a request whose caller was not established"))
             }
         }
     }

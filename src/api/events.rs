@@ -51,7 +51,7 @@ pub fn router() -> Resources {
     ),
     responses(
         (status = 200, description = "the events", content((String = "text/event-stream"))),
-        (status = 204, description = "the job has ended and everything was told"),
+        (status = 204, description = "the job has ended and there are no more events"),
     )
 )]
 async fn follow(
@@ -158,7 +158,7 @@ impl EventStream {
             self.after = row.number;
             match event(row) {
                 Ok(event) => self.waiting.push_back(event),
-                Err(error) => tracing::error!(job.id = %self.job, %error, "an event is not told"),
+                Err(error) => tracing::error!(job.id = %self.job, %error, "an event was not sent"),
             }
         }
         // A job that failed may have been accepted once more, so only its last state can be the end.

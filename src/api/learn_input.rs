@@ -88,7 +88,7 @@ pub async fn learned_from(service: &Service, model: &str, case: &str) -> ApiResu
     match cases.iter().any(|own| own == case) {
         true => {
             let detail =
-                "the model was learned from this case: what it says of it is what it was told";
+                "the model was learned from this case: its correction repeats what it was trained with";
             Err(fault(AT, ErrorCode::DuplicateName, detail))
         }
         false => Ok(cases),

@@ -153,7 +153,7 @@ impl Server {
             tracing::warn!("requests were cut off");
         }
         if let Err(error) = store.write_outcomes().await {
-            tracing::error!(%error, "the audit log is not told how requests ended");
+            tracing::error!(%error, "the outcomes of requests are not written to the audit log");
         }
         Ok(self.workers)
     }

@@ -98,7 +98,7 @@ pub const SETTINGS: &[Setting] = &[
     setting(
         "requests-per-minute",
         "60000",
-        "requests of one client in a minute, above which it is told to wait; 0 to 10000000, 0 counts nobody",
+        "requests of one client in a minute, above which it gets 429 with Retry-After; 0 to 10000000, 0 for no limit",
     ),
     setting("event-streams", "8", "streams of events that one client may have open; 1 to 10000"),
     setting("keys", "100", "keys in force that a tenant may have; 1 to 100000"),

@@ -48,7 +48,7 @@ pub(super) async fn end(
     }
     if has_begun {
         // It is in the chain as unknown, or a crash took it: how it ended becomes a row of its own.
-        tracing::error!(request = %open.audited.request, "a deed had no row that could tell its end");
+        tracing::error!(request = %open.audited.request, "an audited action has no row for its outcome");
     }
     let AuditedAction { tenant, actor, action, request, .. } = &open.audited;
     let row = query(WHOLE).bind(id).bind(open.at).bind(tenant).bind(actor).bind(action);

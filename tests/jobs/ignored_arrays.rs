@@ -207,7 +207,7 @@ fn more_regions_than_are_numbered_are_refused_and_none_is_taken_for_another() {
     let mut mesh = block(Vector::new(100.0, 100.0, 100.0), [33, 32, 32], CellShape::Hex8);
     mesh.cell_labels.insert("ids".to_owned(), (0..mesh.cells.len() as i64).collect());
     let problems = details(problems(mesh));
-    let detail = "33792 regions, at most 32768 are told apart".to_owned();
+    let detail = "33792 regions; at most 32768 are distinguished".to_owned();
     assert_eq!(problems[0], ("too-many-regions", detail));
 }
 

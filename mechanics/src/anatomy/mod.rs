@@ -222,7 +222,7 @@ fn uncut() -> Warning {
 
 /// Surfaces, and label maps without teeth, do not tell teeth from bone.
 fn teeth_joined() -> Warning {
-    let detail = "nothing tells teeth from bone: tissue is joined to the teeth of segments, and does not slide on them";
+    let detail = "teeth cannot be distinguished from bone: tissue is joined to the teeth of segments, and does not slide on them";
     Warning::new("teeth-joined", detail)
 }
 

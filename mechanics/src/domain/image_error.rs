@@ -16,7 +16,7 @@ pub enum ImageDomainError {
     Length { name: &'static str, value: f64, least: f64 },
     #[error("no voxel lies between {skin} and {bone}: the image has values from {low} to {high}")]
     NoTissue { skin: f64, bone: f64, low: f64, high: f64 },
-    #[error("no label is soft tissue that hangs together with the body")]
+    #[error("no label is soft tissue connected with the body")]
     NoSoftLabel,
     #[error("the label map has {voxels} voxels, and at most {most} are possible: resample it")]
     TooManyVoxels { voxels: usize, most: usize },

@@ -21,8 +21,8 @@ pub enum MaterialError {
         "the shear modulus along the fibre is {0} kPa, and has to be at least 1e-9 and at most 1e9 kPa"
     )]
     FibreShear(f64),
-    #[error("the law of Kim et al. 2012 takes its shear modulus from E and nu, and no other one")]
-    ShearOfPaper002,
+    #[error("the law of Kim et al. 2012 takes its shear modulus from E and nu: none may be stated")]
+    ShearModulusOfKimLaw,
     #[error(
         "Young's modulus is {along} kPa along the fibre and {across} kPa across, and along it has to be above \
          (1 - nu)/2 of that across, {least} kPa"

@@ -62,7 +62,7 @@ impl TransverselyIsotropic {
         let stiffness = match fibre.law {
             FibreLaw::Engineering => engineering(across, fibre)?,
             FibreLaw::Kim2012 if fibre.shear_modulus.is_some() => {
-                return Err(MaterialError::ShearOfPaper002);
+                return Err(MaterialError::ShearModulusOfKimLaw);
             }
             FibreLaw::Kim2012 => kim_2012(across, fibre),
         };

@@ -52,7 +52,7 @@ pub enum ModelError {
     ContactUnsettled { passes: usize, moved_mm: f64 },
     /// Before anything is solved.
     #[error(
-        "cell {cell} is turned inside out by its held nodes alone, det F {det_f:.3}: these movements fold the tissue between bones"
+        "cell {cell} is inverted by the movements prescribed at its nodes, det F {det_f:.3}: these movements fold the tissue between bones"
     )]
     Folded { cell: usize, det_f: f64 },
     /// Of tissue at finite strain whose bones pass through each other (`boundary::tearing::turned_edges`), which is told.

@@ -195,7 +195,7 @@ impl Warped<'_> {
         corners.for_each(|&corner| alone[corner as usize] = false);
         let count = alone.into_iter().filter(|alone| *alone).count();
         let detail = format!(
-            "{count} held nodes bound no face whose nodes are all held: nothing around follows them"
+            "{count} moved or fixed nodes bound no face whose nodes are all moved or fixed: the tissue around does not follow them"
         );
         (count > 0).then(|| Warning::new("held-off-bone", detail).with("nodes", count as f64))
     }

@@ -119,7 +119,7 @@ impl Check<'_> {
             }
         };
         if let Some((node, _)) = normals.iter().find(|(_, normals)| normals.is_empty()) {
-            let detail = format!("node {node} has no normal to be held across");
+            let detail = format!("node {node} has no normal for its sliding condition");
             let pointer = format!("/case/sliding/{index}/normal");
             self.problems.add(pointer, SceneErrorCode::SlidingNormalZero, detail);
         }

@@ -32,7 +32,7 @@ pub struct Pairwise {
     pub rows: usize,
     /// Pairs of rows that are left out because one of them failed.
     pub unsolved: usize,
-    /// Pairs of rows that are left out because one of them is held against a truth with contact and the other is not.
+    /// Pairs of rows that are left out because the truth of one has contact and that of the other has none.
     pub other_truths: usize,
     /// Of first minus second over the scenes.
     pub median_difference_mm: f64,
@@ -153,7 +153,7 @@ impl Pairwise {
             }
             Err(PairedError::Empty) if self.other_truths > 0 => {
                 return format!(
-                    "{first} and {second} are not compared: one is held against a truth with contact, the other is not"
+                    "{first} and {second} are not compared: the truth of one has contact, that of the other has none"
                 );
             }
             Err(error) => return format!("{first} and {second} are not compared: {error}"),

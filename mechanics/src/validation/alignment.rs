@@ -200,7 +200,7 @@ fn another_bone(report: &AlignmentReport) -> Option<Warning> {
     let (rms, share) = (report.rms?, report.share_far?);
     let percent = share * 100.0;
     let detail = format!(
-        "{percent:.0} % of the bone is left more than {FAR} mm from its partner, rms {rms:.2} mm: is it somebody else's, or not the same bone?"
+        "{percent:.0} % of the bone is left more than {FAR} mm from its partner, rms {rms:.2} mm: is it of another person, or not the same bone?"
     );
     let warning = Warning::new("another-person-suspect", detail);
     let warning = warning.with("share_above_1_mm", share).with("rms_mm", rms);

@@ -32,7 +32,7 @@ pub(super) fn another_person(
     let median = distances.both.unsigned.median;
     if report.method == Alignment::ICP && median > SKIN_MEDIAN {
         let detail = format!(
-            "aligned by their shapes half of the surfaces is still more than {median:.1} mm apart: is the scan somebody else's?"
+            "aligned by their shapes half of the surfaces is still more than {median:.1} mm apart: is the scan of another person?"
         );
         let warning = Warning::new("another-person-suspect", detail);
         return Some(warning.with("median_mm", median).with("rms_mm", rms));

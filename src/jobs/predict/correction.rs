@@ -97,7 +97,7 @@ pub fn corrected(
             None
         }
         Ok(found) if found.distance == 0.0 => {
-            let detail = "the model was learned from this very prediction: what it says of it is what it was told";
+            let detail = "the model was learned from this very prediction: its correction repeats what it was trained with";
             return Err(Problem::at(&at, ErrorCode::DuplicateName, detail).into());
         }
         Ok(found) => {

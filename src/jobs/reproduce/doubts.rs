@@ -36,7 +36,7 @@ pub(super) fn base_warnings(
     let mut warnings = Vec::new();
     if found.share_far > MISFIT {
         let detail = format!(
-            "{:.0} % of the base is left more than 1 mm from the bone after the operation, rms {:.2} mm: is it somebody else's, or was the base moved?",
+            "{:.0} % of the base is left more than 1 mm from the bone after the operation, rms {:.2} mm: is it of another person, or was the base moved?",
             100.0 * found.share_far,
             found.rms
         );

@@ -16,7 +16,7 @@ const REASON: usize = 110;
 pub const MARKED: [(&str, &str); 3] = [
     (
         LINEAR_TRUTH,
-        "answers of finite strain are held against a linear truth: what linearity leaves out of it counts as their error.",
+        "Answers of finite strain are compared with a linear truth: what linearity leaves out of it counts as their error.",
     ),
     (
         TRUTH_WITHOUT_CONTACT,

@@ -42,7 +42,7 @@ pub struct FibreDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false, minimum = 1e-6, maximum = 1e3)]
     pub k2: Option<f64>,
-    /// Default `engineering`; `paper_002` is the law of Kim et al. 2012.
+    /// Default `engineering`; `kim_2012` is the law of Kim et al. 2012.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub law: Option<FibreLawName>,
@@ -58,7 +58,7 @@ pub enum FibreLawName {
     /// Lamé constants from each modulus with the same Poisson's ratio nu (Kim et al. 2012, eq. 33, corrected:
     /// docs/methods.md#fibres); only where the ratio of moduli along
     /// and across is below (1 - nu) / (2 nu^2).
-    #[serde(rename = "paper_002")]
+    #[serde(rename = "kim_2012", alias = "paper_002")]
     Kim2012,
 }
 

@@ -167,7 +167,7 @@ impl CohortDocument {
         }
         self.check_subjects(subjects, &at, limits, faults);
         if self.region.is_some() && self.distance != CohortDistance::ClosestPoint {
-            let detail = "of a region closest points are told, and nothing else";
+            let detail = "a region has distances by closest points only";
             faults.add(&at.key("region"), ErrorCode::UnknownField, detail);
         }
     }

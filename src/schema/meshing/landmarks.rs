@@ -41,7 +41,7 @@ impl SkinLandmarksDocument {
         faults: &mut Faults,
     ) -> Option<GivenLandmarks> {
         if frame == Frame::Unspecified {
-            let detail = "what is meshed does not say in which frame it is, so that nothing tells up from front";
+            let detail = "the input states no frame, so that up and front are not known";
             faults.add(at, ErrorCode::FrameConflict, detail);
             return None;
         }

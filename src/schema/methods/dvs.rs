@@ -84,7 +84,7 @@ pub struct DvsDocument {
     pub control_points: Option<[u32; 3]>,
     #[serde(default)]
     pub bone: DvsBone,
-    /// Stiffness of what holds held nodes, over that of the tissue around a control point. A large one brings
+    /// Penalty stiffness of fixed and moved nodes, over that of the tissue around a control point. A large one brings
     /// held nodes nearer to where they have to be, and leaves less freedom beside them.
     #[serde(default = "default_hold")]
     #[schema(default = 5.0, minimum = 1.0, maximum = 1e6)]
@@ -322,7 +322,7 @@ pub(super) fn description() -> Description {
 fn parameters() -> Vec<ParameterDocument> {
     let chosen = "the finest of at least 1.5 mean edges that leaves at most 4000 control points";
     vec![
-        parameter("stiffness", "what ties control points", json!("galerkin"), "galerkin | lattice"),
+        parameter("stiffness", "coupling of control points", json!("galerkin"), "galerkin | lattice"),
         parameter("degree", "of the B-splines", json!(3), "2 | 3"),
         parameter("control_spacing_mm", "between control points", json!(chosen), "[0.1, 1000]"),
         parameter("degrees", "of each axis", json!("`degree`"), "1 to 3 each"),
@@ -340,7 +340,7 @@ fn parameters() -> Vec<ParameterDocument> {
         ),
         parameter(
             "hold_weight",
-            "stiffness of what holds held nodes over that of the tissue around a control point",
+            "penalty stiffness of fixed and moved nodes over that of the tissue around a control point",
             json!(5.0),
             "[1, 1e6]",
         ),

@@ -64,7 +64,7 @@ pub(super) fn description() -> Description {
             "the mesh shows in the answer: its edges are the only directions in which forces run, and how \
                 stiff it is in which direction depends on how it was cut",
             "springs know lengths and not volumes: rotations cost nothing, and under large pressure the network \
-                gives way sideways and cells turn inside out, which is told by `cells-inverted`. There are then \
+                buckles sideways and cells are inverted (warning `cells-inverted`). There are then \
                 several states of rest, and `newton` and `direct` may end in different ones",
         ],
         reads: &[
@@ -94,7 +94,7 @@ pub(super) fn description() -> Description {
             ParameterDocument {
                 name: "max_iterations".to_owned(),
                 meaning: format!(
-                    "steps or sweeps after which it is told that rest was not found; default \
+                    "steps or sweeps after which the solution ends without an equilibrium; default \
                      {NEWTON_ITERATIONS} with newton, {DIRECT_ITERATIONS} with direct"
                 ),
                 default: json!(NEWTON_ITERATIONS),

@@ -143,7 +143,7 @@ pub(super) fn parameters() -> Vec<ParameterDocument> {
         },
         ParameterDocument {
             name: "max_iterations".to_owned(),
-            meaning: "iterations after which it is told that rest was not found; not with fast".to_owned(),
+            meaning: "iterations after which the solution ends without an equilibrium; not with fast".to_owned(),
             default: json!(USUAL_ITERATIONS),
             range: "[1, 1000000]".to_owned(),
         },

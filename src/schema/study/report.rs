@@ -270,7 +270,7 @@ pub struct VariantComparisonDocument {
     pub rows: u64,
     /// Pairs of rows left out because one failed.
     pub unsolved: u64,
-    /// Pairs of rows left out because one is held against a truth with contact and the other is not.
+    /// Pairs of rows left out because the truth of one has contact and that of the other has none.
     #[serde(default)]
     #[schema(required = false)]
     pub other_truths: u64,

@@ -33,9 +33,12 @@ fn fibres_of_a_document_are_those_of_the_material() {
     let uniform = case(&with(stated)).unwrap().0;
     assert_eq!(uniform.materials["*"], muscle(110.0, Some(3.0), FibreLaw::Engineering));
     assert_eq!(uniform.fibres["*"], FibreDirection::Uniform(Vector::z() * 2.0));
-    let paper = r#"{"young_modulus_kpa":6.3,"direction":[1,0,0],"law":"paper_002"}"#;
-    let paper = case(&with(paper)).unwrap().0;
-    assert_eq!(paper.materials["*"], muscle(6.3, None, FibreLaw::Kim2012));
+    // The second is its name of before.
+    for name in ["kim_2012", "paper_002"] {
+        let text = format!(r#"{{"young_modulus_kpa":6.3,"direction":[1,0,0],"law":"{name}"}}"#);
+        let of_kim = case(&with(&text)).unwrap().0;
+        assert_eq!(of_kim.materials["*"], muscle(6.3, None, FibreLaw::Kim2012));
+    }
 }
 
 #[test]
@@ -72,13 +75,13 @@ fn fibres_that_cannot_be_are_refused_at_their_place() {
             "/shear_modulus_kpa",
         ),
         (
-            r#"{"young_modulus_kpa":6,"shear_modulus_kpa":1,"array":"f","law":"paper_002"}"#,
+            r#"{"young_modulus_kpa":6,"shear_modulus_kpa":1,"array":"f","law":"kim_2012"}"#,
             "not-in-law",
             "/shear_modulus_kpa",
         ),
         (r#"{"young_modulus_kpa":1.5,"array":"f"}"#, "not-positive-definite", "/young_modulus_kpa"),
         (
-            r#"{"young_modulus_kpa":110,"array":"f","law":"paper_002"}"#,
+            r#"{"young_modulus_kpa":110,"array":"f","law":"kim_2012"}"#,
             "not-positive-definite",
             "/young_modulus_kpa",
         ),
@@ -86,14 +89,14 @@ fn fibres_that_cannot_be_are_refused_at_their_place() {
     for (fibre, code, field) in wrong {
         assert_eq!(refused(case(&with(fibre))), one(FAILED, code, &at(field)), "{fibre}");
     }
-    let indefinite = with(r#"{"young_modulus_kpa":110,"array":"f","law":"paper_002"}"#);
+    let indefinite = with(r#"{"young_modulus_kpa":110,"array":"f","law":"kim_2012"}"#);
     let detail = case(&indefinite).err().unwrap().detail;
     assert!(detail.contains("(1-nu)/(2 nu^2) = 1.0621") && detail.contains("-1646"), "{detail}");
     let unknown = with(r#"{"young_modulus_kpa":110,"array":"f","law":"eq33"}"#);
     let place = "/materials/*/fibre/law";
     assert_eq!(refused(case(&unknown)), one(FAILED, "unknown-word", place));
     // The ratio of moduli may come from the spec.
-    let text = with(r#"{"young_modulus_kpa":6.3,"direction":[1,0,0],"law":"paper_002"}"#);
+    let text = with(r#"{"young_modulus_kpa":6.3,"direction":[1,0,0],"law":"kim_2012"}"#);
     let spec = r#"{"materials":{"*":{"young_modulus_kpa":3}}}"#;
     let place = "/spec/materials/*/fibre/young_modulus_kpa";
     assert_eq!(refused(case_with(&text, spec, None)), one(FAILED, "not-positive-definite", place));

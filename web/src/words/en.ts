@@ -241,7 +241,7 @@ export const en = {
     "landmarks-swapped": "left and right are swapped", "large-rotation": "the tissue turns more than a linear answer bears",
     "large-strain": "the tissue stretches more than a linear answer bears", "law-at-rest": "the law of the tissue is taken as at rest",
     "learning-does-not-help": "what was learned is worse than mechanics alone", "linear-truth": "the truth of the study is linear",
-    "load-on-held": "a load acts on held nodes alone", locking: "cells lock: the skin moves too little",
+    "load-on-held": "a load acts on fixed or moved nodes only", locking: "cells lock: the skin moves too little",
     "made-case-refused": "the case that was made is refused", "material-serves-nothing": "a material reaches no tissue",
     "materials-ignored": "the model knows no materials", "mesh-inverted-elements": "cells of the mesh are inverted",
     "mesh-jacobian-undecided": "cells are too flat to be told", "mesh-repaired": "nodes were moved to mend cells",

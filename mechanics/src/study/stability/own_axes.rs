@@ -39,7 +39,7 @@ fn fibre_ratio() -> Axis {
 
 fn fibre_ratio_of_kim() -> Axis {
     Axis {
-        name: "fibre_ratio_paper_002",
+        name: "fibre_ratio_kim_2012",
         title: "Fibres, Kim et al.",
         unit: "E along / E across",
         scene: "the same with the stiffness of Kim et al. 2012",

@@ -329,5 +329,5 @@ fn engineering_constants_are_positive_definite_wherever_they_are_taken() {
         assert!(matches!(refused, Err(MaterialError::FibreShear(_))));
     }
     let refused = stated(6.0, Some(2.0), FibreLaw::Kim2012);
-    assert_eq!(refused, Err(MaterialError::ShearOfPaper002));
+    assert_eq!(refused, Err(MaterialError::ShearModulusOfKimLaw));
 }
