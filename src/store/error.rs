@@ -4,6 +4,11 @@
 pub enum StoreError {
     #[error("database: {0}")]
     Database(#[from] sqlx::Error),
+    #[error(
+        "the database {file} cannot be opened or brought up to date: {source}. A full disk, a folder that cannot be written \
+         and a limit on the size of files below 1 MB (ulimit -f) end so"
+    )]
+    CannotOpen { file: std::path::PathBuf, source: sqlx::Error },
     #[error("blobs: {0}")]
     Blobs(#[from] object_store::Error),
     #[error("file system: {0}")]
@@ -45,6 +50,14 @@ pub enum StoreError {
 }
 
 impl StoreError {
+    /// The same error, with the file of the embedded database that it arose from.
+    pub(super) fn of_file(self, file: &std::path::Path) -> StoreError {
+        match self {
+            StoreError::Database(source) => StoreError::CannotOpen { file: file.to_owned(), source },
+            other => other,
+        }
+    }
+
     /// True when the disk or the quota is full.
     pub fn is_full(&self) -> bool {
         match self {
@@ -81,6 +94,7 @@ impl StoreError {
     pub fn is_setting(&self) -> bool {
         match self {
             StoreError::InUse
+            | StoreError::CannotOpen { .. }
             | StoreError::Files(_)
             | StoreError::SchemaTooNew { .. }
             | StoreError::SchemaTooOld { .. }

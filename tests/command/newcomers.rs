@@ -52,6 +52,19 @@ fn a_file_larger_than_the_limit_on_files_is_an_error_that_names_it() {
 }
 
 #[test]
+fn a_database_that_cannot_be_made_is_named_with_what_may_be_the_reason() {
+    let data = tempfile::tempdir().unwrap();
+    let program = env!("CARGO_BIN_EXE_facies");
+    let mut limited = std::process::Command::new("prlimit");
+    limited.args(["--fsize=200000", program, "serve", "--bind", "127.0.0.1:0", "--data"]);
+    let done = limited.arg(data.path()).output().unwrap();
+    assert_eq!(done.status.code(), Some(78), "{:?} {}", done.status, text(&done.stderr));
+    let error = text(&done.stderr);
+    let file = data.path().join("facies.db");
+    assert!(error.contains(path(&file)) && error.contains("ulimit -f"), "{error}");
+}
+
+#[test]
 fn a_folder_holds_the_files_of_one_answer_and_the_plan_that_it_answers() {
     let out = tempfile::tempdir().unwrap();
     let own = out.path().join("notes.txt");

@@ -75,7 +75,9 @@ impl Database {
     pub async fn open(address: Address) -> Result<Database, StoreError> {
         let database = Database::connect(address, "write").await?;
         match &database.address {
-            Address::File(_) => drop(schema::migrate(&database.writer).await?),
+            Address::File(file) => {
+                schema::migrate(&database.writer).await.map_err(|error| error.of_file(file))?;
+            }
             Address::Server { .. } => schema::check(&database.writer).await?,
         }
         Ok(database)
@@ -112,7 +114,9 @@ impl Database {
     async fn connect(address: Address, what: &'static str) -> Result<Database, StoreError> {
         let (writer, reader) = match &address {
             Address::File(file) => {
-                let (writer, reader) = sqlite::connect(file).await?;
+                let connected = sqlite::connect(file).await;
+                let (writer, reader) =
+                    connected.map_err(|error| StoreError::from(error).of_file(file))?;
                 (Arc::new(Pool::Sqlite(writer)), Arc::new(Pool::Sqlite(reader)))
             }
             Address::Server { options, connections } => {
