@@ -70,7 +70,10 @@ fn describe() {
         Unit::Bytes,
         "memory of this process that is in use, without its slots"
     );
-    describe_counter!(LINES_DROPPED, "lines of the log that were dropped because standard error was not read in time");
+    describe_counter!(
+        LINES_DROPPED,
+        "lines of the log that were dropped because standard error was not read in time"
+    );
 }
 
 /// Everything that was counted, as text for Prometheus; empty before `start`.

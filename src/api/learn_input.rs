@@ -87,8 +87,7 @@ pub async fn learned_from(service: &Service, model: &str, case: &str) -> ApiResu
     let cases = service.store.cases_of_job(&row.id).await?;
     match cases.iter().any(|own| own == case) {
         true => {
-            let detail =
-                "the model was learned from this case: its correction repeats what it was trained with";
+            let detail = "the model was learned from this case: its correction repeats what it was trained with";
             Err(fault(AT, ErrorCode::DuplicateName, detail))
         }
         false => Ok(cases),

@@ -242,7 +242,10 @@ impl Arguments {
         let Some(path) = &self.baseline else { return Ok(None) };
         spec.baseline = Some(path.to_string_lossy().into_owned());
         if !path.exists() {
-            eprintln!("baseline   {} is not there: the outcome will be `no-baseline`", path.display());
+            eprintln!(
+                "baseline   {} is not there: the outcome will be `no-baseline`",
+                path.display()
+            );
             return Ok(None);
         }
         read_report(path).map(|report| Some(Box::new(report)))

@@ -53,7 +53,9 @@ impl StoreError {
     /// The same error, with the file of the embedded database that it arose from.
     pub(super) fn of_file(self, file: &std::path::Path) -> StoreError {
         match self {
-            StoreError::Database(source) => StoreError::CannotOpen { file: file.to_owned(), source },
+            StoreError::Database(source) => {
+                StoreError::CannotOpen { file: file.to_owned(), source }
+            }
             other => other,
         }
     }

@@ -4,21 +4,9 @@
 //! Go_L and Go_R gonion, Po_L and Po_R porion, Or_L and Or_R orbitale, U1 and L1 the edges of upper and lower central
 //! incisor, Oc a point on the occlusal plane behind U1. Left and right are the patient's. Of skin: glabella, columella,
 //! pronasale, subnasale, labrale_superius, stomion_superius, stomion_inferius, labrale_inferius, pogonion, menton.
-//!
-//! The Frankfort plane is the one nearest to both poria and both orbitalia in the sense of least squares, its normal n
-//! upwards. Left is the mean of the differences of the pairs, without its part along n, never a single point; forwards
-//! is left x n. So nothing depends on how the head lies in the scanner. An angle between a line and the plane is
-//! asin(d . n / |d|).
 
-use std::collections::BTreeMap;
-use std::fmt;
-
-use nalgebra::Matrix3;
-
-use crate::mesh::{Frame, Vector};
-
-/// Landmarks nearer to each other than this, in mm, have no direction.
-const SAME_PLACE: f64 = 1e-6;
+use super::landmarks::{Landmarks, SAME_PLACE};
+use super::symmetry::MidSagittal;
 
 /// The golden ratio.
 const GOLDEN: f64 = 1.618_033_988_749_895;
@@ -47,9 +35,6 @@ pub struct Measure {
     value: fn(&Landmarks) -> Option<f64>,
 }
 
-/// Landmarks in mm by their names.
-pub struct Landmarks<'a>(pub &'a BTreeMap<String, Vector>);
-
 /// Every measure, in the order in which they are reported.
 pub const MEASURES: [Measure; 20] = [
     bone("sna", Unit::Degrees, "Riedel 1952", |l| l.angle("S", "N", "A")),
@@ -61,10 +46,10 @@ pub const MEASURES: [Measure; 20] = [
     bone("fma", Unit::Degrees, "Tweed 1946", |l| {
         l.above_frankfort(l.at("Me")?, (l.at("Go_L")? + l.at("Go_R")?) * 0.5)
     }),
-    bone("sn_to_frankfort", Unit::Degrees, "Steiner 1953", |l| {
+    bone("sn_to_frankfort", Unit::Degrees, "S-N above Frankfort", |l| {
         l.above_frankfort(l.at("S")?, l.at("N")?)
     }),
-    bone("wits", Unit::Millimetres, "Jacobson 1975", |l| {
+    bone("wits", Unit::Millimetres, "Jacobson 1975, along U1-Oc", |l| {
         Some((l.at("B")? - l.at("A")?).dot(&l.direction("U1", "Oc")?))
     }),
     bone("overjet", Unit::Millimetres, "along Frankfort", |l| {
@@ -90,9 +75,12 @@ pub const MEASURES: [Measure; 20] = [
     bone("golden_height_error", Unit::Ratio, "N-Me to ANS-Me less 1.618, Ricketts 1982", |l| {
         Some(l.length("N", "Me")? / l.length("ANS", "Me")? - GOLDEN)
     }),
-    skin("facial_convexity", Unit::Degrees, "Legan, Burstone 1980", |l| {
-        Some(180.0 - l.angle("glabella", "subnasale", "pogonion")?)
-    }),
+    skin(
+        "facial_convexity",
+        Unit::Degrees,
+        "Legan, Burstone 1980, positive where convex",
+        convexity,
+    ),
     skin("nasolabial_angle", Unit::Degrees, "Legan, Burstone 1980", |l| {
         l.angle("columella", "subnasale", "labrale_superius")
     }),
@@ -119,6 +107,25 @@ pub const MEASURES: [Measure; 20] = [
     ),
 ];
 
+/// Between G-Sn and Sn-Pg in the mid-sagittal plane, in degrees: positive where subnasale lies in front of the line from glabella to
+/// pogonion. None where neither bone, nor pairs of the skin, nor the tip of the nose say where the front is.
+fn convexity(landmarks: &Landmarks) -> Option<f64> {
+    let [glabella, subnasale, pogonion] =
+        [landmarks.at("glabella")?, landmarks.at("subnasale")?, landmarks.at("pogonion")?];
+    let plane = MidSagittal::of(landmarks).or_else(|| MidSagittal::of_skin(landmarks));
+    let (forwards, up) = match plane {
+        Some(plane) => (plane.forwards, plane.up),
+        None => {
+            let up = (glabella - subnasale).try_normalize(SAME_PLACE)?;
+            let nose = landmarks.at("pronasale")? - subnasale;
+            ((nose - up * nose.dot(&up)).try_normalize(SAME_PLACE)?, up)
+        }
+    };
+    let [upper, lower] = [glabella - subnasale, subnasale - pogonion]
+        .map(|part| part.dot(&forwards).atan2(part.dot(&up)).to_degrees());
+    Some(lower - upper)
+}
+
 const fn bone(
     name: &'static str,
     unit: Unit,
@@ -141,93 +148,6 @@ impl Measure {
     /// Nothing where a landmark is missing or two of them coincide.
     pub fn of(&self, landmarks: &Landmarks) -> Option<f64> {
         (self.value)(landmarks).filter(|value| value.is_finite())
-    }
-}
-
-/// The directions of a head, each of length 1.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct HeadAxes {
-    pub up: Vector,
-    pub left: Vector,
-    pub forwards: Vector,
-}
-
-/// Why landmarks are doubted.
-#[derive(Clone, Debug, PartialEq)]
-pub struct SwappedSides {
-    pub left: String,
-    pub right: String,
-    /// How far the left one lies to the right of the right one, in mm.
-    pub by: f64,
-}
-
-impl fmt::Display for SwappedSides {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let SwappedSides { left, right, by } = self;
-        write!(f, "landmark {left} lies {by:.1} mm to the right of {right}: are the sides swapped?")
-    }
-}
-
-const PAIRS: [[&str; 2]; 3] = [["Po_L", "Po_R"], ["Or_L", "Or_R"], ["Go_L", "Go_R"]];
-
-impl Landmarks<'_> {
-    pub(super) fn at(&self, name: &str) -> Option<Vector> {
-        self.0.get(name).copied()
-    }
-
-    fn direction(&self, from: &str, to: &str) -> Option<Vector> {
-        (self.at(to)? - self.at(from)?).try_normalize(SAME_PLACE)
-    }
-
-    fn length(&self, from: &str, to: &str) -> Option<f64> {
-        Some((self.at(to)? - self.at(from)?).norm())
-    }
-
-    /// At the middle one of three landmarks, in degrees.
-    fn angle(&self, one: &str, at: &str, other: &str) -> Option<f64> {
-        let (a, b) = (self.direction(at, one)?, self.direction(at, other)?);
-        Some(a.cross(&b).norm().atan2(a.dot(&b)).to_degrees())
-    }
-
-    fn distance_from_line(&self, point: &str, from: &str, to: &str) -> Option<f64> {
-        let along = self.direction(from, to)?;
-        Some((self.at(point)? - self.at(from)?).cross(&along).norm())
-    }
-
-    /// Of the line between two places, in degrees; positive where the second is higher.
-    fn above_frankfort(&self, from: Vector, to: Vector) -> Option<f64> {
-        let direction = (to - from).try_normalize(SAME_PLACE)?;
-        Some(direction.dot(&self.head()?.up).clamp(-1.0, 1.0).asin().to_degrees())
-    }
-
-    /// The directions of the head; nothing where poria, orbitalia, N or Me are missing.
-    pub fn head(&self) -> Option<HeadAxes> {
-        let plane = [self.at("Po_L")?, self.at("Po_R")?, self.at("Or_L")?, self.at("Or_R")?];
-        let middle = plane.iter().sum::<Vector>() / 4.0;
-        let moments = plane.iter().map(|p| (p - middle) * (p - middle).transpose());
-        let modes = moments.sum::<Matrix3<f64>>().symmetric_eigen();
-        let normal = modes.eigenvectors.column(modes.eigenvalues.imin()).into_owned();
-        let upwards = self.at("N")? - self.at("Me")?;
-        let up = if normal.dot(&upwards) < 0.0 { -normal } else { normal };
-        let pairs = PAIRS.iter().filter_map(|[left, right]| Some(self.at(left)? - self.at(right)?));
-        let across = pairs.sum::<Vector>();
-        let left = (across - up * across.dot(&up)).try_normalize(SAME_PLACE)?;
-        Some(HeadAxes { up, left, forwards: left.cross(&up) })
-    }
-
-    /// Pairs whose left one lies on the right, by the frame: x points to the left in LPS, to the right in RAS.
-    pub fn swapped_sides(&self, frame: Frame) -> Vec<SwappedSides> {
-        let sign = match frame {
-            Frame::Lps => 1.0,
-            Frame::Ras => -1.0,
-            Frame::Unspecified => return Vec::new(),
-        };
-        let swapped = |[left, right]: &[&str; 2]| {
-            let by = sign * (self.at(right)?.x - self.at(left)?.x);
-            let (left, right) = ((*left).to_owned(), (*right).to_owned());
-            (by > 0.0).then_some(SwappedSides { left, right, by })
-        };
-        PAIRS.iter().filter_map(swapped).collect()
     }
 }
 

@@ -8,11 +8,8 @@
 //!   left = (l - o).n + (r - o).n,   up = (l - r).u,   forwards = (l - r).f
 //! with n to the patient's left, u upwards and f forwards.
 
-use super::measures::Landmarks;
+use super::landmarks::{Landmarks, SAME_PLACE};
 use crate::mesh::Vector;
-
-/// Landmarks nearer to each other than this, in mm, have no direction.
-const SAME_PLACE: f64 = 1e-6;
 
 const BASE: [[&str; 2]; 2] = [["Po_L", "Po_R"], ["Or_L", "Or_R"]];
 

@@ -1,7 +1,7 @@
 //! Matches between a sheet of the template as it lies and a surface of the patient, in both directions.
 //!
 //! A match does not count where the normals disagree, where it is farther than three robust standard deviations
-//! (1.4826 median), or where it lies on the open border of the other surface: what has no partner follows. Only
+//! (1.4826 median) and than a limit that shrinks with the lattice, or where it lies on the open border of the other surface: what has no partner follows. Only
 //! what lies on the rim of the sheet may meet that border, and is then drawn straight to it.
 
 use rayon::prelude::*;

@@ -2,9 +2,10 @@
 //!
 //! With y_-i what is predicted of the new case without training case i, and r_i what that misses of case i, the band of the new
 //! case is between the values at the places 0.1 (n + 1) and 0.9 (n + 1) of the ordered y_-i + r_i, between places by
-//! interpolation (jackknife+: Barber, Candes, Ramdas, Tibshirani, Predictive inference with the jackknife+, Annals of
-//! Statistics 49, 2021; the place: Hyndman, Fan, Sample quantiles in statistical packages, 1996, type 6). The residuals of the
-//! training cases about one prediction, without the y_-i, give bands that are too wide: 84 % of 11 cases instead of 80 %.
+//! interpolation (after the jackknife+, with signed residuals: Barber, Candes, Ramdas, Tibshirani, Predictive inference with the
+//! jackknife+, Annals of Statistics 49, 2021; the place: Hyndman, Fan, Sample quantiles in statistical packages, 1996, type 6).
+//! The residuals of the training cases about one prediction, without the y_-i, give bands that are too wide: 84 % of 11 cases
+//! instead of 80 %.
 //! Fewer than 9 training cases have no band.
 
 use std::ops::Range;

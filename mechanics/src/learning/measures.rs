@@ -3,7 +3,8 @@
 //! Three blocks: the deviatoric Cauchy stress at each skin node over the shear modulus of the whole face, its mean by volume (no
 //! unit, six numbers, the mean over the cells of the node by volume); the displacement of each skin node in mm; and twelve numbers
 //! for each segment in mm: where its centre goes, and (R - I) by rows, times the radius of the segment about it, so that turning
-//! counts by what it moves. At small strain dev sigma = 2 mu dev eps with the shear modulus mu of the cell.
+//! counts by what it moves. At small strain dev sigma = 2 mu dev eps with the shear modulus mu of the cell; what fibres,
+//! muscle pull and growth add is left out.
 //! Source of the first block: Zhang et al. 2016, section 2.4, whose theta scales it as a whole.
 
 use nalgebra::{Matrix3, Vector6};

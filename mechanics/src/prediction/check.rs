@@ -82,7 +82,8 @@ impl<'a> Check<'a> {
         }
         let (names, region_of_value) = name_regions(stated, &values);
         if names.len() > MOST_REGIONS {
-            let detail = format!("{} regions; at most {MOST_REGIONS} are distinguished", names.len());
+            let detail =
+                format!("{} regions; at most {MOST_REGIONS} are distinguished", names.len());
             self.problems.add("/case/regions/array", SceneErrorCode::TooManyRegions, detail);
             return (vec!["tissue".to_owned()], vec![0; cells]);
         }
@@ -358,7 +359,8 @@ fn load_on_constrained(nodes: &[u32], holds: &[Hold], pointer: &str) -> Option<W
     let held: BTreeSet<u32> =
         holds.iter().filter(|hold| hold.count() == 3).map(|hold| hold.node).collect();
     let all = !nodes.is_empty() && nodes.iter().all(|node| held.contains(node));
-    let detail = format!("the load at {pointer} acts on fixed or moved nodes only: it moves nothing");
+    let detail =
+        format!("the load at {pointer} acts on fixed or moved nodes only: it moves nothing");
     all.then(|| Warning::new("load-on-held", detail).with("nodes", nodes.len() as f64))
 }
 

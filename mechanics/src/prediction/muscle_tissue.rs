@@ -135,8 +135,9 @@ impl Check<'_> {
         };
         let more = filled.iter().filter(is_more).count();
         if tissue.materials.len() + self.case.muscles.len() > MOST_MATERIALS {
-            let detail =
-                format!("at most {MOST_MATERIALS} tissues are distinguished, with those of muscles");
+            let detail = format!(
+                "at most {MOST_MATERIALS} tissues are distinguished, with those of muscles"
+            );
             self.problems.add("/case/muscles", SceneErrorCode::TooManyRegions, detail);
             return false;
         }

@@ -41,7 +41,9 @@ pub type ErrorOrReason = Result<NumericalError, NotEstimated>;
 pub enum NotEstimated {
     #[error("it was not asked for")]
     NotAsked,
-    #[error("there is no element of higher order that the error of quadratic tetrahedra could be estimated with")]
+    #[error(
+        "there is no element of higher order that the error of quadratic tetrahedra could be estimated with"
+    )]
     Quadratic,
     #[error("it is not estimated with the nonlinear mass-tensor")]
     NonlinearMassTensor,

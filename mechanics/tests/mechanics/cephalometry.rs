@@ -118,15 +118,33 @@ fn what_lacks_a_landmark_is_left_out_and_the_rest_is_reported() {
     assert_eq!(measure("overjet", &few), None);
     assert!((measure("sna", &few).unwrap() - 86.032_819_231).abs() < 1e-8);
     assert_eq!(measure("facial_convexity", &few), None);
-    let profile = [
-        ("glabella", [0.0, -50.0, 60.0]),
-        ("subnasale", [0.0, -60.0, 10.0]),
-        ("pogonion", [0.0, -50.0, -40.0]),
-    ];
-    few.extend(profile.map(|(name, at)| (name.to_owned(), Vector::from(at))));
-    // Both halves lean by atan(10/50).
-    let wanted = 2.0 * (0.2_f64).atan().to_degrees();
-    assert!((measure("facial_convexity", &few).unwrap() - wanted).abs() < 1e-9);
+}
+
+#[test]
+fn a_profile_is_convex_above_zero_and_concave_below() {
+    let profile = |chin: [f64; 3]| {
+        let at = |name: &str, at: [f64; 3]| (name.to_owned(), Vector::from(at));
+        [
+            at("glabella", [0.0, -60.0, 75.0]),
+            at("subnasale", [0.0, -60.0, 10.0]),
+            at("pogonion", chin),
+        ]
+    };
+    let angle = 0.2_f64.atan().to_degrees();
+    let chins =
+        [([0.0, -50.0, -40.0], angle), ([0.0, -70.0, -40.0], -angle), ([10.0, -60.0, -40.0], 0.0)];
+    for (chin, wanted) in chins {
+        let mut skin = Named::from(profile(chin));
+        // Nothing says yet where the front is.
+        assert_eq!(measure("facial_convexity", &skin), None);
+        let of_bone: Named = example().into_iter().chain(skin.clone()).collect();
+        let found = measure("facial_convexity", &of_bone).unwrap();
+        assert!((found - wanted).abs() < 1e-9, "{chin:?}: {found}, not {wanted}");
+        // The tip of the nose says it where bone does not.
+        skin.insert("pronasale".to_owned(), Vector::new(0.0, -80.0, 20.0));
+        let found = measure("facial_convexity", &skin).unwrap();
+        assert!((found - wanted).abs() < 1e-9, "{chin:?}: {found}, not {wanted}");
+    }
 }
 
 /// To the patient's left, up and forwards in mm, of each pair and each landmark of the middle, against the plane of the example.

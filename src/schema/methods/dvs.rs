@@ -322,7 +322,12 @@ pub(super) fn description() -> Description {
 fn parameters() -> Vec<ParameterDocument> {
     let chosen = "the finest of at least 1.5 mean edges that leaves at most 4000 control points";
     vec![
-        parameter("stiffness", "coupling of control points", json!("galerkin"), "galerkin | lattice"),
+        parameter(
+            "stiffness",
+            "coupling of control points",
+            json!("galerkin"),
+            "galerkin | lattice",
+        ),
         parameter("degree", "of the B-splines", json!(3), "2 | 3"),
         parameter("control_spacing_mm", "between control points", json!(chosen), "[0.1, 1000]"),
         parameter("degrees", "of each axis", json!("`degree`"), "1 to 3 each"),

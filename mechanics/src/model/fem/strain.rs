@@ -2,7 +2,7 @@
 //!
 //! F = I + grad u, strain (grad u + grad u^T) / 2; the rotation theta of F = R U from
 //! tan theta = |w| / (tr F - 1), w_i = -e_ijk F_jk: exact where U does not shear out of the plane in which R turns
-//! and keeps lengths across it, and otherwise exact to first order in U - I.
+//! and keeps lengths across it. A stretch of 1 + e along the axis of R changes it by -(e/2) sin theta to first order.
 
 use nalgebra::Matrix3;
 use rayon::prelude::*;

@@ -269,8 +269,8 @@ fn pressures_take_the_hard_block_to_rest_in_as_many_steps_for_every_poisson_rati
 }
 
 /// A bar of 100 mm, held at its ends, of which one goes by so many mm.
-fn bar(by_mm: f64) -> Equilibrium {
-    let mesh = block(Vector::new(100.0, 10.0, 10.0), [20, 2, 2], CellShape::Tet4);
+fn bar(shape: CellShape, by_mm: f64) -> Equilibrium {
+    let mesh = block(Vector::new(100.0, 10.0, 10.0), [20, 2, 2], shape);
     let ends = holds(&mesh, |x| match x.x {
         x if x < 1e-9 => Some(Vector::zeros()),
         x if x > 99.9 => Some(Vector::x() * by_mm),
@@ -281,13 +281,19 @@ fn bar(by_mm: f64) -> Equilibrium {
 
 #[test]
 fn a_pulled_bar_rests_in_one_way_and_a_pressed_one_that_buckled_may_in_another() {
-    let told = |by_mm: f64| {
-        let moved = bar(by_mm);
-        assert!(moved.solver.newton.unwrap().indefinite_steps > 0, "{by_mm}");
-        moved.warnings.iter().map(|warning| warning.code).collect::<Vec<_>>()
-    };
-    assert_eq!(told(100.0), [""; 0]);
-    assert_eq!(told(-30.0), ["another-equilibrium"]);
+    for shape in [CellShape::Tet4, CellShape::Hex8] {
+        let doubts = |by_mm: f64| {
+            let moved = bar(shape, by_mm);
+            assert!(moved.solver.newton.unwrap().indefinite_steps > 0, "{shape:?} {by_mm}");
+            moved.warnings
+        };
+        assert!(doubts(100.0).is_empty(), "{shape:?}");
+        let [doubt] = &doubts(-30.0)[..] else { panic!("{shape:?}: there is no one warning") };
+        assert_eq!(doubt.code, "another-equilibrium");
+        let share =
+            doubt.numbers.iter().find(|(name, _)| *name == "pressed_energy_share").unwrap().1;
+        assert!((0.5..=1.0).contains(&share), "{shape:?}: {share}");
+    }
 }
 
 #[test]
@@ -363,14 +369,19 @@ fn a_search_that_is_stopped_ends() {
 
 #[test]
 fn bones_that_fold_a_cell_between_them_are_refused_before_anything_is_solved() {
-    let mesh = block(Vector::new(10.0, 10.0, 10.0), [2, 2, 1], CellShape::Tet4);
-    let pressed = |x: &Vector| {
-        let is_top = x.z > 9.0;
-        Some(Vector::new(0.0, 0.0, if is_top { -12.0 } else { 0.0 }))
-    };
-    let refused = rest(&mesh, neo_hookean(0.3), &holds(&mesh, pressed), &StopsAfter::iterations(0));
-    let Err(ModelError::Folded { cell, det_f }) = refused else { panic!("it is not refused") };
-    assert!(cell < mesh.cells.len() && (det_f + 0.2).abs() < 1e-12, "{cell} {det_f}");
+    for shape in [CellShape::Tet4, CellShape::Hex8, CellShape::Wedge6] {
+        let mesh = block(Vector::new(10.0, 10.0, 10.0), [2, 2, 1], shape);
+        let pressed = |x: &Vector| {
+            let is_top = x.z > 9.0;
+            Some(Vector::new(0.0, 0.0, if is_top { -12.0 } else { 0.0 }))
+        };
+        let held = holds(&mesh, pressed);
+        let refused = rest(&mesh, neo_hookean(0.3), &held, &StopsAfter::iterations(0));
+        let Err(ModelError::Folded { cell, det_f }) = refused else {
+            panic!("{shape:?} is not refused")
+        };
+        assert!(cell < mesh.cells.len() && (det_f + 0.2).abs() < 1e-12, "{cell} {det_f}");
+    }
 }
 
 #[test]

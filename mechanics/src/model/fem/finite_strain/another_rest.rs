@@ -6,14 +6,10 @@
 //! most in bars of 100 x 10 x 10 mm held at their ends and pulled to 1.1 to 3 times their length, .5 and more in those that were
 //! pressed by a tenth to a half and buckled (nu .3 and .45, tetrahedra and hexahedra).
 
-use nalgebra::Matrix3;
-use rayon::prelude::*;
-
 use super::problem::FiniteStrain;
-use crate::material::hyperelastic::point::Point;
-use crate::mesh::jacobian::signed_volume;
-use crate::mesh::{Vector, Warning};
-use crate::model::fem::strain::gradient_at_centre;
+use super::tissue::Deformed;
+use crate::mesh::Warning;
+use crate::model::cell_state::CellStates;
 use crate::solver::NewtonReport;
 
 /// The pressure along an axis from which on a cell is pressed, as a share of its shear modulus.
@@ -22,18 +18,20 @@ const PRESSED: f64 = 0.1;
 /// The share of the energy that pressed cells have where tissue may buckle.
 const BUCKLES: f64 = 0.2;
 
-/// The warning of tissue that may rest in another way too, or whose rest is not stable.
+/// Whether the way to rest, or rest itself, gives reason to ask.
+pub(super) fn is_doubtful(newton: &NewtonReport) -> bool {
+    newton.indefinite_steps > 0 || newton.is_stable == Some(false)
+}
+
+/// The warning of tissue that may rest in another way too, or whose rest is not stable; `states` are those of its cells.
 pub(super) fn another_rest(
     problem: &FiniteStrain,
-    displacement: &[Vector],
+    deformed: &Deformed,
+    states: &CellStates,
     newton: &NewtonReport,
 ) -> Option<Warning> {
-    let is_unstable = newton.is_stable == Some(false);
-    if newton.indefinite_steps == 0 && !is_unstable {
-        return None;
-    }
-    let pressed = pressed_share(problem, displacement);
-    if pressed <= BUCKLES && !is_unstable {
+    let pressed = pressed_share(problem, deformed, states);
+    if pressed <= BUCKLES && newton.is_stable != Some(false) {
         return None;
     }
     let state = match newton.is_stable {
@@ -54,27 +52,17 @@ pub(super) fn another_rest(
     Some(warning.with("energy_mn_mm", newton.energy))
 }
 
-/// The share of the energy that is in pressed cells, by the deformation at their centres.
-fn pressed_share(problem: &FiniteStrain, displacement: &[Vector]) -> f64 {
+/// The share of the energy that is in pressed cells, by their mean stress: that of the elements, with their pressures.
+fn pressed_share(problem: &FiniteStrain, deformed: &Deformed, states: &CellStates) -> f64 {
     let shear_moduli: Vec<f64> = problem.laws.iter().map(|law| law.at_rest().1).collect();
-    let energies = |cell: usize| {
-        let number = problem.law_of_cell[cell];
-        let grown = problem.inner.grown(cell);
-        let f = Matrix3::identity() + gradient_at_centre(problem.mesh, displacement, cell);
-        let f = f / grown.length;
-        let along = problem.fibres.along(number, cell);
-        let point = Point::new(&problem.laws[usize::from(number)], along, f);
-        let point = point.pulled(problem.inner.pulls(cell));
-        let cauchy = point.kirchhoff() / point.volume();
-        let least = cauchy.symmetric_eigenvalues().min();
-        let corners: Vec<Vector> = problem.mesh.corners(cell).collect();
-        let volume = grown.volume * signed_volume(problem.mesh.cells.shape(cell), &corners);
-        let energy = point.energy() * volume;
-        let is_pressed = least < -PRESSED * shear_moduli[usize::from(number)];
-        [if is_pressed { energy } else { 0.0 }, energy]
+    let is_pressed = |cell: usize| {
+        let least = states.cells[cell].stress.symmetric_eigenvalues().min();
+        least < -PRESSED * shear_moduli[usize::from(problem.law_of_cell[cell])]
     };
-    let cells = (0..problem.mesh.cells.len()).into_par_iter();
-    let pairs: Vec<[f64; 2]> = cells.map(energies).collect();
-    let [pressed, all] = pairs.iter().fold([0.0; 2], |[a, b], [c, d]| [a + c, b + d]);
+    let (mut pressed, mut all) = (0.0, 0.0);
+    for (cell, energy) in deformed.energies() {
+        all += energy;
+        pressed += if is_pressed(cell) { energy } else { 0.0 };
+    }
     if all > 0.0 { pressed / all } else { 0.0 }
 }

@@ -35,18 +35,18 @@ use nalgebra::Matrix3;
 
 use crate::boundary::Hold;
 use crate::boundary::contact::FacingSurfaces;
-use crate::mesh::{CellShape, Vector};
+use crate::mesh::Vector;
 use crate::model::cell_state::CellStates;
 use crate::model::dofs::{Constrained, nodes_of_cells, number};
-use crate::model::fem::cell_stiffness::tetrahedron;
 use crate::model::fem::contact::Contact;
 use crate::model::fem::displacement::check_finite;
 use crate::model::fem::edge_nodes::WithEdges;
-use crate::model::problem::{Equilibrium, LoadCase, ModelError};
+use crate::model::problem::{Equilibrium, InvertedCell, LoadCase, ModelError};
+use crate::model::reference_cell;
 use crate::progress::{Phase, Progress};
 use crate::solver::SolverError;
 use crate::solver::element_connectivity::ElementConnectivity;
-use another_rest::another_rest;
+use another_rest::{another_rest, is_doubtful};
 use direction::{Directions, Tally};
 use elements::CellBulkModulus;
 pub use elements::Elements;
@@ -193,17 +193,17 @@ impl<'a> FiniteStrain<'a> {
         let places = numbering.layout.place.iter().zip(self.nodes);
         let displacement: Vec<Vector> =
             places.map(|(&row, rest)| positions[row as usize] - rest).collect();
-        let doubt = report.newton.as_ref().and_then(|way| another_rest(self, &displacement, way));
         let is_strained =
             report.newton.as_ref().is_some_and(|way| way.least_det_f < 1.0 - ROUNDING);
         let pressed = tissue.bulk_warning().filter(|_| is_strained);
-        let states = match self.with_states {
-            true => {
-                let by = directions.pressures.as_ref();
-                cell_states(self.mesh, &self.inner, &tissue.at(&positions, &pressures, by))
-            }
-            false => CellStates::default(),
-        };
+        let doubtful = report.newton.as_ref().filter(|newton| is_doubtful(newton));
+        let (mut doubt, mut states) = (None, CellStates::default());
+        if self.with_states || doubtful.is_some() {
+            let deformed = tissue.at(&positions, &pressures, directions.pressures.as_ref());
+            let of_cells = cell_states(self.mesh, &self.inner, &deformed);
+            doubt = doubtful.and_then(|newton| another_rest(self, &deformed, &of_cells, newton));
+            states = if self.with_states { of_cells } else { states };
+        }
         let equilibrium = Equilibrium {
             displacement,
             reactions: reactions(question.constrained, &forces, acting),
@@ -324,7 +324,7 @@ impl<'a> FiniteStrain<'a> {
         turned.map(|hold| (row(hold.node), *hold.axes())).collect()
     }
 
-    /// No movement of bones may turn a tetrahedron inside out all of whose nodes they hold.
+    /// No movement of bones may turn a cell inside out, in one of its quadrature points, all of whose nodes they hold.
     fn check_held_cells(&self, case: &LoadCase) -> Result<(), ModelError> {
         let mut held: Vec<Option<Vector>> = vec![None; self.nodes.len()];
         for (hold, value) in self.holds.iter().zip(&case.held).filter(|(hold, _)| hold.count() == 3)
@@ -332,18 +332,18 @@ impl<'a> FiniteStrain<'a> {
             held[hold.node as usize] = Some(hold.axes() * value);
         }
         for (cell, (shape, nodes)) in self.mesh.cells.iter().enumerate() {
-            if shape != CellShape::Tet4 {
-                continue;
-            }
             let moved: Option<Vec<Vector>> =
                 nodes.iter().map(|&node| held[node as usize]).collect();
             let Some(moved) = moved else { continue };
-            let (_, gradients) = tetrahedron(self.mesh, cell)?;
-            let stretch: Matrix3<f64> =
-                moved.iter().zip(&gradients).map(|(u, g)| u * g.transpose()).sum();
-            let det_f = (Matrix3::identity() + stretch).determinant();
-            if det_f <= 0.0 {
-                return Err(ModelError::Folded { cell, det_f });
+            let corners: Vec<Vector> = self.mesh.corners(cell).collect();
+            for point in &reference_cell(shape).points {
+                let at = point.at(&corners).ok_or(InvertedCell { cell })?;
+                let stretch: Matrix3<f64> =
+                    moved.iter().zip(&at.gradients).map(|(u, g)| u * g.transpose()).sum();
+                let det_f = (Matrix3::identity() + stretch).determinant();
+                if det_f <= 0.0 {
+                    return Err(ModelError::Folded { cell, det_f });
+                }
             }
         }
         Ok(())

@@ -214,6 +214,16 @@ impl Deformed<'_> {
         pressed
     }
 
+    /// Of each cell of the mesh, in mN mm: of tetrahedra with shared pressures p ln J in the place of c/2 ln² J.
+    pub fn energies(&self) -> impl Iterator<Item = (usize, f64)> {
+        let of_simplices = self.tissue.cells_of_simplices().enumerate().map(|(number, cell)| {
+            let (at_rest, point) = self.simplices.at_cell(number);
+            (cell, at_rest.volume * point.energy())
+        });
+        let of_bricks = self.tissue.cells_of_bricks();
+        of_simplices.chain(of_bricks.map(|cell| (cell, self.bricks.at_cell(cell).energy())))
+    }
+
     /// In mN mm, at these pressures.
     pub fn energy(&self, x: &[Vector]) -> f64 {
         self.simplices.energy() + self.tissue.bricks.energy(x) + self.sheet.energy()
