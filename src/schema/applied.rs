@@ -132,7 +132,7 @@ impl AppliedSummary {
             Some(second) => {
                 let detail = format!(
                     "the second order is {second:.2} mm and leaves out about {estimate:.2} mm: more than \
-                     {LINEAR_RANGE_MM} mm, or more than half of it"
+                     {LINEAR_RANGE_MM} mm, or more than {SERIES_MM} mm and half of it"
                 );
                 (Self::OUTSIDE_SECOND, detail)
             }

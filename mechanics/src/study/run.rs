@@ -18,6 +18,13 @@ use std::collections::{BTreeMap, BTreeSet};
 /// The code of rows that were not begun, because the time of the study was used up.
 pub const NOT_RUN: &str = "not-run";
 
+/// The share of the error of a truth below which an answer differs from it by rounding.
+const ROUNDING: f64 = 1e-6;
+
+/// Why an answer whose model was chosen has no row.
+const CHOSE_THE_TRUTH: &str =
+    "the model that was chosen is the truth itself, on its mesh: what it is off by is not known";
+
 /// Runs every scene with every plan, material, level and variant. The same study gives the same report but for times
 /// and memory. Combinations that are the truth themselves have no row, nor have variants that do not serve a scene: both are named
 /// as skipped.
@@ -128,7 +135,12 @@ impl<'a> SceneWork<'a> {
                     None => truths.of(self.scene, skin, (of_plan, place)),
                 };
                 for attempt in attempts.next().into_iter().flatten() {
-                    rows.push(self.row(plan, materials, attempt, &truth));
+                    let variant = attempt.variant;
+                    let row = self.row(plan, materials, attempt, &truth);
+                    match is_of_the_truth(&row) {
+                        true => skipped.push(self.skipped(variant, CHOSE_THE_TRUTH.to_owned())),
+                        false => rows.push(row),
+                    }
                 }
             }
             if let Some(Ok(scanned)) = scanned {
@@ -278,6 +290,13 @@ impl<'a> SceneWork<'a> {
             outcome,
         }
     }
+}
+
+/// Whether a model was chosen that is the one that is held for true, on its mesh: what its error would be is not known.
+fn is_of_the_truth(row: &Row) -> bool {
+    let Outcome::Solved(solved) = &row.outcome else { return false };
+    let is_same = |[own, _]: [f64; 2]| solved.error.mean <= ROUNDING * own;
+    solved.chosen.is_some() && solved.truth_error.is_some_and(is_same)
 }
 
 /// Each once, with the rows of all that are alike.

@@ -15,7 +15,8 @@ use mechanics::response::by_rule_of_thumb;
 /// The rule of thumb is made not to be too small; at most it was so many times too large (`docs/estimates.md`).
 const TOO_LARGE: f64 = 6.0;
 
-/// The third order of a plan is about so many times the square of the second over the movement.
+/// The third order of a plan is about so many times the square of the second over the largest movement, which is about twice the mean
+/// of the skin's that `adequate::climb` divides by.
 const THIRD: f64 = 3.0;
 
 impl Prepared {

@@ -45,7 +45,7 @@ pub struct CaseDocument {
     pub acquisition: Option<AcquisitionDocument>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub bones: Vec<BoneDocument>,
-    /// Named points in mm; they move with the tissue around them.
+    /// Named points in mm; each moves with the closest point of the surface.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub landmarks: BTreeMap<String, Triple>,
     /// Named points of bone, for cephalometric measures; each goes with its segment.

@@ -129,7 +129,7 @@ pub struct PredictDocument {
     pub stress: bool,
     #[serde(default)]
     pub budget: BudgetDocument,
-    /// Default: `skin.vtp` and `skin.glb`; `result.json` is always written.
+    /// Default: `skin.vtp` and `skin.glb`, and `bones.vtp` of a case with bones; `result.json` is always written.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub outputs: Option<Vec<OutputName>>,
@@ -260,10 +260,6 @@ impl PredictDocument {
             );
             faults.add(&place, ErrorCode::MethodMismatch, detail);
         }
-        if self.contact == ContactName::Unilateral {
-            let detail = "no model is chosen where tissue presses: leave out one of the two, and name `fem_linear` or `fem_nonlinear`";
-            faults.add(&place, ErrorCode::OneOf, detail);
-        }
         if self.corrected || self.estimate == EstimateName::None {
             let detail = "a model is chosen by its estimated errors, and corrected where that does: leave out `corrected` and \
                           `estimate`";
@@ -298,7 +294,8 @@ impl PredictDocument {
             faults.add(at, ErrorCode::OneOf, detail);
         }
         if self.contact.presses() {
-            let detail = "the error of a mesh is not estimated where tissue presses: leave out `contact` or `refine`";
+            let detail =
+                "meshes are not refined where tissue presses: leave out `contact` or `refine`";
             faults.add(at, ErrorCode::OneOf, detail);
         }
         if self.accept_mm.is_some() || self.estimate == EstimateName::None {
