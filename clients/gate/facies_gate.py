@@ -335,6 +335,8 @@ def run(arguments: argparse.Namespace) -> int:
         say(f"rows are those of study {rows_of.get('job')}, solved {rows_of['created']}, judged anew")
     for skipped in found.get("skipped", []):
         say(f"{skipped['label']} does not apply to {skipped['scene']}: {skipped['reason']}")
+    if within := sum("within-truth-error" in row.get("warnings", []) for row in found["rows"]):
+        say(f"{within} rows are nearer to the truth than that is known (within-truth-error): a finer truth would tell them apart")
     for line in worse(found["rows"]):
         say(line)
     for reason in verdict["reasons"]:

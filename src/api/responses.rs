@@ -41,8 +41,8 @@ pub fn router() -> Resources {
 #[serde(deny_unknown_fields)]
 #[into_params(parameter_in = Query)]
 struct ResponseParameters {
-    /// The job that built the response. Default: the newest that was built for the case as it is now,
-    /// whatever materials and segments its spec names; the answer says which.
+    /// The job that built the response. Default: the newest that was built for the case as it is now, with the materials of the
+    /// case where there is one, whatever order, membrane and segments its spec names; the answer says which.
     #[param(format = Uuid)]
     job: Option<String>,
     /// 2: in place of the columns those of second order, little-endian i16 [column][node][xyz], which `second_order` of
@@ -69,8 +69,8 @@ impl ResponseParameters {
 #[serde(deny_unknown_fields)]
 #[into_params(parameter_in = Query)]
 struct ApplyParameters {
-    /// The job that built the response. Default: the newest that was built for the case as it is now,
-    /// whatever materials and segments its spec names; the answer says which.
+    /// The job that built the response. Default: the newest that was built for the case as it is now, with the materials of the
+    /// case where there is one, whatever order, membrane and segments its spec names; the answer says which.
     #[param(format = Uuid)]
     job: Option<String>,
     /// The displacement in mm at which the colours of `model/gltf-binary` end; they begin at 0. Default: 10.

@@ -13,8 +13,8 @@ const PATIENCE: Duration = Duration::from_secs(2);
 pub enum HealthError {
     #[error(transparent)]
     Config(#[from] ConfigError),
-    #[error("the service does not answer: {0}")]
-    Silent(#[from] std::io::Error),
+    #[error("the service at {0} does not answer: {1}")]
+    Silent(SocketAddr, std::io::Error),
     #[error("the service answers `{0}`")]
     Unwell(String),
 }
@@ -30,18 +30,25 @@ impl HealthError {
 pub fn run(arguments: &Arguments) -> Result<(), HealthError> {
     let given = arguments.given()?;
     let address = Config::without_listener(|name| given.get(name))?.listen;
-    let mut connection = TcpStream::connect_timeout(&on_this_machine(address), PATIENCE)?;
+    let address = on_this_machine(address);
+    let answer = ask(&address).map_err(|error| HealthError::Silent(address, error))?;
+    let first = answer.lines().next().unwrap_or_default();
+    match first.split(' ').nth(1) {
+        Some("200") => Ok(()),
+        _ => Err(HealthError::Unwell(first.to_owned())),
+    }
+}
+
+/// At most the first 4096 bytes of the answer.
+fn ask(address: &SocketAddr) -> std::io::Result<String> {
+    let mut connection = TcpStream::connect_timeout(address, PATIENCE)?;
     connection.set_read_timeout(Some(PATIENCE))?;
     connection.set_write_timeout(Some(PATIENCE))?;
     connection
         .write_all(b"GET /healthz HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n")?;
     let mut answer = String::new();
     connection.take(4096).read_to_string(&mut answer)?;
-    let first = answer.lines().next().unwrap_or_default();
-    match first.split(' ').nth(1) {
-        Some("200") => Ok(()),
-        _ => Err(HealthError::Unwell(first.to_owned())),
-    }
+    Ok(answer)
 }
 
 fn on_this_machine(address: SocketAddr) -> SocketAddr {

@@ -154,7 +154,7 @@ fn print_result(result: &ResultDocument, before: &CheckDocument) {
     if let Some(nonlinearity) = &result.nonlinearity_mm {
         let left = &nonlinearity.skin;
         println!(
-            "left out     by linear elasticity about {:.3} mm in the mean, p95 {:.3}, max {:.3}",
+            "left out     by the model about {:.3} mm in the mean, p95 {:.3}, max {:.3}",
             left.mean, left.p95, left.max
         );
     }

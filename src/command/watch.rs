@@ -63,7 +63,7 @@ impl Bounds {
     fn broken(&self, now: Instant, bytes: Option<f64>) -> Option<String> {
         let (wall_s, memory_mb) = (self.wall_s, self.memory_mb);
         if self.until.is_some_and(|until| now > until) {
-            return Some(format!("wall ran out: {wall_s} s are allowed"));
+            return Some(format!("wall ran out: {wall_s} s are allowed by `budget`"));
         }
         let bytes = bytes.filter(|bytes| *bytes > self.most_bytes)?;
         let (taken, most) = (bytes / 1e6, self.most_bytes / 1e6);

@@ -33,7 +33,7 @@ impl std::fmt::Debug for Secret {
 
 #[derive(Debug, PartialEq, thiserror::Error)]
 pub enum ConfigError {
-    #[error("{name} is `{value}`, and has to be {wanted}")]
+    #[error("{name} is `{value}`; it takes: {wanted}")]
     Value { name: &'static str, value: String, wanted: &'static str },
     #[error("{0} has to have 16 to 255 visible characters")]
     Key(&'static str),

@@ -33,7 +33,7 @@ pub enum JobError {
     Anatomy(AnatomyError),
     #[error("the study could not be run: {0}")]
     Study(#[from] StudyError),
-    #[error("{which} ran out: {allowed} {unit} are allowed")]
+    #[error("{which} ran out: {allowed} {unit} are allowed by `budget`")]
     Budget { which: &'static str, allowed: f64, unit: &'static str },
     #[error("stopped on request")]
     Cancelled,

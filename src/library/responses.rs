@@ -12,6 +12,7 @@ use crate::schema::applied::{AppliedSummary, LinearPart};
 use crate::schema::hashes;
 use crate::schema::predict::document::{OutputName, USUAL_RANGE_MM};
 use crate::schema::predict::result::NOT_A_DEVICE;
+use crate::schema::response::ResponseDocument;
 use crate::schema::response_description::{PlanAmounts, ResponseDescription};
 use crate::schema::{CaseDocument, WarningDocument};
 use crate::store::{CaseResponses, Store, StoreError};
@@ -148,6 +149,8 @@ struct Verdict {
     version: i64,
     /// The blob of the description; `None` where the response is stale.
     description: Option<String>,
+    /// Whether its materials are those of the case.
+    has_materials_of_case: bool,
 }
 
 impl Responses {
@@ -166,7 +169,8 @@ impl Responses {
         self.memory.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// The response of a job, or else the newest one, that was built for the case as it is now.
+    /// The response of a job, or else the newest one, that was built for the case as it is now; one with the materials of the case
+    /// comes before all that were built to see what others would do.
     pub async fn find(
         &self,
         case: &str,
@@ -190,51 +194,52 @@ impl Responses {
             return Err(MissingResponse::NotOfCase { job: job.to_owned() });
         }
         let Some(newest) = built.jobs.first() else { return Err(MissingResponse::NotBuilt) };
-        for job in built.jobs.iter().filter(|built| job.is_none_or(|job| job == *built)) {
-            if let Some(description) = self.verdict(case, built.version, job).await? {
-                return Ok(FoundResponse { job: job.clone(), description });
+        let mut with_others = None;
+        for built_by in built.jobs.iter().filter(|built| job.is_none_or(|job| job == *built)) {
+            let verdict = self.verdict(case, built.version, built_by).await?;
+            let Some(description) = verdict.description else { continue };
+            let found = FoundResponse { job: built_by.clone(), description };
+            if verdict.has_materials_of_case {
+                return Ok(found);
             }
+            with_others.get_or_insert(found);
         }
-        Err(MissingResponse::Stale { job: job.unwrap_or(newest).to_owned() })
+        let stale = || MissingResponse::Stale { job: job.unwrap_or(newest).to_owned() };
+        with_others.ok_or_else(stale)
     }
 
-    /// The description of a response, where its key is that of the case as it is now. The verdict holds for
+    /// Whether a response answers, by its key and that of the case as it is now. The verdict holds for
     /// a version of the case, since meshes never change; the key is taken from documents and hashes of
     /// meshes, and no mesh is read.
-    async fn verdict(
-        &self,
-        case: &str,
-        version: i64,
-        job: &str,
-    ) -> Result<Option<String>, StoreError> {
+    async fn verdict(&self, case: &str, version: i64, job: &str) -> Result<Verdict, StoreError> {
         let known = self.memory().verdicts.get(job).cloned();
         if let Some(verdict) = known.filter(|verdict| verdict.version == version) {
-            return Ok(verdict.description);
+            return Ok(verdict);
         }
-        let Some(row) = self.store.case(case).await? else { return Ok(None) };
-        let is_current = self.is_key_current(&row.document, job).await?;
-        let file = match is_current {
-            true => self.store.job_file(job, DESCRIPTION_FILE).await?,
-            false => None,
-        };
-        let description = file.map(|file| file.blob);
-        let verdict = Verdict { version: row.version, description: description.clone() };
+        let mut verdict = Verdict { version, description: None, has_materials_of_case: false };
+        let Some(row) = self.store.case(case).await? else { return Ok(verdict) };
+        verdict.version = row.version;
+        if let Some(spec) = self.current(&row.document, job).await? {
+            let file = self.store.job_file(job, DESCRIPTION_FILE).await?;
+            verdict.description = file.map(|file| file.blob);
+            verdict.has_materials_of_case = spec.materials.is_none();
+        }
         let mut memory = self.memory();
         if memory.verdicts.len() >= MOST_VERDICTS {
             memory.verdicts.clear();
         }
-        memory.verdicts.insert(job.to_owned(), verdict);
-        Ok(description)
+        memory.verdicts.insert(job.to_owned(), verdict.clone());
+        Ok(verdict)
     }
 
-    /// Whether a job would have the same key if it were posted now. A document of an earlier program that
+    /// What a job was asked for, if it would have the same key if it were posted now. A document of an earlier program that
     /// this one cannot read is stale as well.
-    async fn is_key_current(&self, case: &str, job: &str) -> Result<bool, StoreError> {
-        let Some(row) = self.store.response(job).await? else { return Ok(false) };
+    async fn current(&self, case: &str, job: &str) -> Result<Option<ResponseDocument>, StoreError> {
+        let Some(row) = self.store.response(job).await? else { return Ok(None) };
         let case: Result<CaseDocument, _> = serde_json::from_str(case);
         let (Ok(case), Ok(JobInput::Response(input))) = (case, serde_json::from_str(&row.document))
         else {
-            return Ok(false);
+            return Ok(None);
         };
         let mut contents = BTreeMap::new();
         for id in case.mesh_ids() {
@@ -243,7 +248,8 @@ impl Responses {
             }
         }
         let content = |id: &str| contents.get(id).cloned();
-        Ok(hashes::response_key(&case, &input.spec, &content) == row.key)
+        let key = hashes::response_key(&case, &input.spec, &content);
+        Ok((key == row.key).then_some(input.spec))
     }
 
     /// A response with its columns, from memory where it is there.

@@ -9,6 +9,10 @@ pub enum StoreError {
          and a limit on the size of files below 1 MB (ulimit -f) end so"
     )]
     CannotOpen { file: std::path::PathBuf, source: sqlx::Error },
+    #[error(
+        "the database at {server} cannot be used: {source}. The setting `database` names server, port, user and database"
+    )]
+    CannotConnect { server: String, source: sqlx::Error },
     #[error("blobs: {0}")]
     Blobs(#[from] object_store::Error),
     #[error("file system: {0}")]
@@ -50,6 +54,14 @@ pub enum StoreError {
 }
 
 impl StoreError {
+    /// The same error, with the server of the database that it arose from.
+    pub(super) fn of_server(self, server: String) -> StoreError {
+        match self {
+            StoreError::Database(source) => StoreError::CannotConnect { server, source },
+            other => other,
+        }
+    }
+
     /// The same error, with the file of the embedded database that it arose from.
     pub(super) fn of_file(self, file: &std::path::Path) -> StoreError {
         match self {
@@ -63,7 +75,9 @@ impl StoreError {
     /// True when the disk or the quota is full.
     pub fn is_full(&self) -> bool {
         match self {
-            StoreError::Database(error) => super::database::is_full(error),
+            StoreError::Database(error)
+            | StoreError::CannotOpen { source: error, .. }
+            | StoreError::CannotConnect { source: error, .. } => super::database::is_full(error),
             StoreError::Files(error) => is_full(error),
             StoreError::OfMany(error) => error.is_full(),
             StoreError::Blobs(error) => {
@@ -83,7 +97,9 @@ impl StoreError {
     /// True when the store is busy or out of reach, so that the same request may succeed later.
     pub fn is_unavailable(&self) -> bool {
         match self {
-            StoreError::Database(error) => super::database::is_unavailable(error),
+            StoreError::Database(error) | StoreError::CannotConnect { source: error, .. } => {
+                super::database::is_unavailable(error)
+            }
             // A server that does not answer, a disk that errs, no descriptor left.
             StoreError::Blobs(object_store::Error::Generic { .. }) => !self.is_full(),
             StoreError::Contended | StoreError::Busy { .. } => true,
@@ -101,7 +117,9 @@ impl StoreError {
             | StoreError::SchemaTooNew { .. }
             | StoreError::SchemaTooOld { .. }
             | StoreError::Schema(_) => true,
-            StoreError::Database(error) => super::database::is_refused(error),
+            StoreError::Database(error) | StoreError::CannotConnect { source: error, .. } => {
+                super::database::is_refused(error)
+            }
             _ => false,
         }
     }

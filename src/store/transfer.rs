@@ -78,7 +78,10 @@ impl Store {
     /// Writes everything into a new folder, as it is at this moment.
     pub async fn export(&self, folder: &Path) -> Result<TransferCounts, StoreError> {
         // It holds faces of patients.
-        DirBuilder::new().mode(0o700).create(folder)?;
+        DirBuilder::new()
+            .mode(0o700)
+            .create(folder)
+            .map_err(at(folder, "it has to be a new folder"))?;
         std::fs::create_dir(folder.join("blobs"))?;
         let mut snapshot = self.database.snapshot().await?;
         let mut manifest =
@@ -103,7 +106,9 @@ impl Store {
 
     /// Takes in what was exported, all of it or nothing. Only into a deployment in which there is nothing.
     pub async fn import(&self, folder: &Path) -> Result<TransferCounts, StoreError> {
-        let text = std::fs::read(folder.join(MANIFEST))?;
+        let file = folder.join(MANIFEST);
+        let text =
+            std::fs::read(&file).map_err(at(&file, "it has to be what `admin export` wrote"))?;
         let manifest: Manifest = serde_json::from_slice(&text).map_err(unreadable)?;
         if manifest.schema != newest_step() {
             let (found, known) = (manifest.schema, newest_step());
@@ -145,6 +150,12 @@ impl Store {
         }
         Ok(())
     }
+}
+
+/// An error of the file system with its place and what has to be there.
+fn at(path: &Path, wanted: &'static str) -> impl Fn(std::io::Error) -> std::io::Error {
+    let path = path.display().to_string();
+    move |error| std::io::Error::new(error.kind(), format!("{path}: {error}; {wanted}"))
 }
 
 async fn export_table(

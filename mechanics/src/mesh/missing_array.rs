@@ -25,6 +25,12 @@ impl VolumeMesh {
         if let Some(array) = self.ignored.find(of, name) {
             return array.to_string();
         }
+        if let Some(set) = name.strip_prefix("set_").filter(|set| self.node_sets.contains_key(*set))
+        {
+            return format!(
+                "array {name:?} was read as the node set {set:?}: select it by `node_set`"
+            );
+        }
         let other = self.held_by(wanted, name).map(|held| format!(": {name:?} {held}"));
         format!("the mesh has no {what} {name:?}{}; it has {known}", other.unwrap_or_default())
     }

@@ -80,7 +80,7 @@ pub(super) fn left(
         false => ("large-strain", "stretches"),
     };
     let detail = format!(
-        "the tissue {what} beyond small strain: linear elasticity may be off by about {estimate:.1} mm at {part:?}"
+        "the tissue {what} beyond small strain: the displacement may be off by about {estimate:.1} mm at {part:?}"
     );
     Some(
         Warning::new(code, detail)

@@ -11,6 +11,7 @@ use crate::jobs::result::warnings::warnings_after;
 use crate::jobs::source::MeshSource;
 use crate::schema::Limits;
 use crate::schema::case::muscle_mixing::MusclesDocument;
+use crate::schema::methods::WHY_ESTIMATED;
 use crate::schema::predict::check::{CheckDocument, ClassCounts, SkinSummary};
 use mechanics::mesh::Warning;
 use mechanics::prediction::{NodeClass, Scene};
@@ -75,7 +76,10 @@ impl Prepared {
             time_s: cost::time_s(scene, input.spec.method),
             refine: None,
             method: input.spec.method.chosen().name().to_owned(),
-            why: input.spec.method.why().to_owned(),
+            why: match input.spec.accepted() {
+                Some(_) => WHY_ESTIMATED.to_owned(),
+                None => input.spec.method.why().to_owned(),
+            },
             auto: self.expectation(input),
             movements: movements(scene, self.case.frame),
             collisions: collisions.iter().map(Collision::document).collect(),

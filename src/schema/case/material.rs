@@ -167,8 +167,8 @@ impl MaterialDocument {
         for (name, stated, own) in wrong {
             let Some(stated) = stated else { continue };
             let detail = format!(
-                "`{name}` is {stated}, and the law has {own:.6} at rest: they have to agree to 1 %. Leave `{name}` out; that \
-                 of a case stands below a law of the spec until the spec states it too"
+                "`{name}` is {stated}, and the law has {own:.6} at rest: they have to agree to 1 %. State {own:.6}, also \
+                 beside a law of the spec where the case states another value, or leave `{name}` out of the case"
             );
             faults.add(&at.key(name), ErrorCode::LawMismatch, detail);
             agrees = false;

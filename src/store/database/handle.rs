@@ -89,7 +89,10 @@ impl Database {
             Address::File(_) => Database::connect(address, "write").await?,
             // A step may take longer than any request is allowed to.
             Address::Server { options, .. } => {
-                let pool = Arc::new(Pool::Postgres(postgres::unlimited(&options).await?));
+                let connected = postgres::unlimited(&options).await;
+                let pool = connected
+                    .map_err(|error| StoreError::from(error).of_server(postgres::name(&options)))?;
+                let pool = Arc::new(Pool::Postgres(pool));
                 let address = Address::Server { options, connections: 1 };
                 Database::of_pools(address, (pool.clone(), pool), "write")
             }
@@ -120,7 +123,9 @@ impl Database {
                 (Arc::new(Pool::Sqlite(writer)), Arc::new(Pool::Sqlite(reader)))
             }
             Address::Server { options, connections } => {
-                let pool = postgres::connect(options, *connections).await?;
+                let connected = postgres::connect(options, *connections).await;
+                let pool = connected
+                    .map_err(|error| StoreError::from(error).of_server(postgres::name(options)))?;
                 let pool = Arc::new(Pool::Postgres(pool));
                 (pool.clone(), pool)
             }

@@ -32,6 +32,12 @@ const LIMITS: &str = "SET jit = off; SET statement_timeout = '10s'; SET lock_tim
      SET idle_in_transaction_session_timeout = '10s'; \
      SET tcp_keepalives_idle = 10; SET tcp_keepalives_interval = 5; SET tcp_keepalives_count = 3";
 
+/// Server, port and database, without what is secret.
+pub fn name(options: &PgConnectOptions) -> String {
+    let database = options.get_database().unwrap_or_default();
+    format!("{}:{}/{database}", options.get_host(), options.get_port())
+}
+
 /// Connections that give up in time. The first is made at once, so that a wrong address is found at the start.
 pub async fn connect(options: &PgConnectOptions, connections: u32) -> Result<PgPool, sqlx::Error> {
     PgPoolOptions::new()

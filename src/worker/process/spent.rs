@@ -77,7 +77,7 @@ pub fn over_time(wall_s: f64) -> Value {
     json!({
         "type": ErrorCode::BudgetExceeded,
         "class": ErrorClass::Budget,
-        "detail": format!("wall ran out: {wall_s} s are allowed"),
+        "detail": format!("wall ran out: {wall_s} s are allowed by `budget`"),
         "which": "wall",
         "allowed_s": wall_s,
     })

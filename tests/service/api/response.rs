@@ -198,31 +198,31 @@ async fn a_response_is_built_once_and_goes_with_its_case() {
     let again = json!({"kind": "response", "case": case, "tags": ["again"], "method": "auto"});
     let again = server.job(&again).await.expect(StatusCode::OK);
     assert_eq!((&again["id"], &again["deduplicated"]), (&first["id"], &json!(true)));
-    // Other materials are another response; the newest answers unless one is named.
+    // Other materials are another response, which answers where it is named, or where there is none with those of the case.
     let soft = json!({"*": {"young_modulus_kpa": 5, "poisson_ratio": 0.3}});
     let other = built(&server, json!({"kind": "response", "case": case, "materials": soft})).await;
     assert_ne!(other["id"], first["id"]);
-    let newest = apply(&server, &case, &plan(), OCTETS).await;
-    assert_eq!(newest.header("facies-job"), other["id"].as_str().unwrap());
+    let own = apply(&server, &case, &plan(), OCTETS).await;
+    assert_eq!(own.header("facies-job"), first["id"].as_str().unwrap());
     let named = |job: &str| {
         let path = format!("/v1/cases/{case}/response/apply?job={job}");
         ask(server.post(&path).header("accept", OCTETS).json(&json!({"plan": plan()})))
     };
-    let old = named(first["id"].as_str().unwrap()).await;
-    assert_eq!(old.header("facies-job"), first["id"].as_str().unwrap());
-    assert_ne!(old.bytes, newest.bytes);
+    let with_others = named(other["id"].as_str().unwrap()).await;
+    assert_eq!(with_others.header("facies-job"), other["id"].as_str().unwrap());
+    assert_ne!(with_others.bytes, own.bytes);
     for job in [unknown, "nonsense"] {
         named(job).await.problem(404, "response-not-built");
     }
-    let removed = ask(server.delete(&format!("/v1/jobs/{}", other["id"].as_str().unwrap()))).await;
+    let removed = ask(server.delete(&format!("/v1/jobs/{}", first["id"].as_str().unwrap()))).await;
     assert_eq!(removed.status, StatusCode::NO_CONTENT);
     let left = apply(&server, &case, &plan(), OCTETS).await;
-    assert_eq!((left.status, left.bytes), (StatusCode::OK, old.bytes));
+    assert_eq!((left.status, left.bytes), (StatusCode::OK, with_others.bytes));
 
     let erased = ask(server.delete(&format!("/v1/cases/{case}")).header("if-match", "*")).await;
     assert_eq!(erased.status, StatusCode::NO_CONTENT);
     apply(&server, &case, &plan(), OCTETS).await.problem(410, "gone");
-    let job = format!("/v1/jobs/{}", first["id"].as_str().unwrap());
+    let job = format!("/v1/jobs/{}", other["id"].as_str().unwrap());
     ask(server.get(&job)).await.problem(410, "gone");
     let blobs = std::fs::read_dir(server.path().join("blobs")).unwrap();
     let left = blobs.flat_map(|folder| std::fs::read_dir(folder.unwrap().path()).unwrap()).count();
