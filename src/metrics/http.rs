@@ -31,7 +31,7 @@ pub(super) fn describe() {
 
 /// A method that routes may have; another one is a word of the client's.
 pub fn known_method(method: &str) -> Option<&'static str> {
-    let known = ["GET", "HEAD", "POST", "PUT", "DELETE", "OPTIONS"];
+    let known = ["GET", "HEAD", "POST", "PUT", "PATCH", "DELETE", "OPTIONS"];
     known.into_iter().find(|known| *known == method)
 }
 

@@ -9,7 +9,7 @@ use mechanics::boundary::NodeSelection;
 use mechanics::format::vtk::vtu;
 use mechanics::format::{Mesh, ReadLimits, ReadMesh, VolumeOutput, read};
 use mechanics::mesh::sample::block;
-use mechanics::mesh::{CellShape, Frame, Vector, VolumeMesh};
+use mechanics::mesh::{ArrayUse, CellShape, Frame, Vector, VolumeMesh};
 use mechanics::prediction::{Plan, RegionNames, Scene, SceneError, Settings};
 
 use crate::samples::{TETRAHEDRON, ascii_vtu, surface, volume};
@@ -230,6 +230,9 @@ fn a_set_that_is_not_there_is_answered_with_the_arrays_that_are_and_how_they_sel
     let other = of_a_missing_set(mesh.clone(), "skull");
     assert!(other.contains("it has none; its integer point arrays"), "{other}");
     assert!(other.ends_with("select nodes by `array` with `value`: tag"), "{other}");
-    let array = of_a_missing_set(mesh, "tag");
+    let array = of_a_missing_set(mesh.clone(), "tag");
     assert!(array.ends_with("by `array` with `value`, one of 0, 1, 2"), "{array}");
+    mesh.node_sets.insert("side".to_owned(), vec![0]);
+    let set = mesh.missing_array(ArrayUse::PointLabels, "set_side");
+    assert!(set.ends_with("as the node set \"side\": select it by `node_set`"), "{set}");
 }

@@ -117,7 +117,9 @@ impl FibreDocument {
             Err(error) => {
                 let (field, code) = match error {
                     MaterialError::FibreShear(_) => ("shear_modulus_kpa", ErrorCode::OutOfRange),
-                    MaterialError::ShearModulusOfKimLaw => ("shear_modulus_kpa", ErrorCode::NotInLaw),
+                    MaterialError::ShearModulusOfKimLaw => {
+                        ("shear_modulus_kpa", ErrorCode::NotInLaw)
+                    }
                     MaterialError::FibreTooSoft { .. }
                     | MaterialError::NotPositiveDefinite { .. } => {
                         ("young_modulus_kpa", ErrorCode::NotPositiveDefinite)

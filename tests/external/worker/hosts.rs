@@ -251,6 +251,9 @@ async fn an_export_from_a_server_needs_no_stop_of_it(on: Deployment) {
     assert!(done.status.success(), "{done:?}");
     let again = facies(&["admin", "export", "--to", export.to_str().unwrap()], &on);
     assert_eq!(again.status.code(), Some(3), "nothing is overwritten");
+    let error = String::from_utf8_lossy(&again.stderr);
+    let named = error.contains(export.to_str().unwrap()) && error.contains("a new folder");
+    assert!(named, "{error}");
 }
 
 async fn a_wrong_password_or_address_stops_the_start_with_78() -> Result<(), Missing> {
