@@ -101,7 +101,8 @@ impl Histogram {
 }
 
 impl Thresholds {
-    /// `None` where there is no air or no soft tissue in the image.
+    /// `None` where there is no air or no soft tissue in the image, and where what parts them lies in tissue: values without slope
+    /// and intercept have padding in the place of air and air in that of tissue.
     pub fn of(histogram: &Histogram) -> Option<Thresholds> {
         let air_mode = histogram.mode(AIR)?;
         let soft_mode = histogram.mode(SOFT)?;
@@ -111,6 +112,9 @@ impl Thresholds {
         let skin = histogram.otsu([air_mode, soft_mode]).unwrap_or(between);
         let bone = histogram.otsu([soft_mode, BONE_END]).unwrap_or(soft_mode);
         let bone = bone.max(soft_mode + ABOVE_SOFT);
+        if skin >= FAT[0] {
+            return None;
+        }
         Some(Thresholds { air_mode, fat_mode, soft_mode, skin, bone })
     }
 }

@@ -83,8 +83,8 @@ impl ThresholdsReference {
             ThresholdsReference::Histogram(HistogramName::Auto) => {
                 let found = scan.and_then(|scan| Thresholds::of(&Histogram::of(scan)));
                 let Some(found) = found else {
-                    let detail = "the scan has no voxels of air (-1100 to -800 HU) or none of soft tissue (0 to 120 HU), \
-                                  between which thresholds are found: state `skin` and `bone`";
+                    let detail = "the scan has no voxels of air (-1100 to -800 HU) or none of soft tissue (0 to 120 HU), or \
+                                  what parts them lies above -150 HU, so that these are no Hounsfield units: state `skin` and `bone`";
                     faults.add(at, ErrorCode::NoThresholds, detail);
                     return HounsfieldThresholdsDocument::default();
                 };

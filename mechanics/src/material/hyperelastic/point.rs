@@ -127,8 +127,12 @@ impl Point {
     pub fn energy(&self) -> f64 {
         let fibres = self.fibres.as_ref().map_or(0.0, |fibres| fibres.energy);
         let principal = self.principal.as_ref().map_or(0.0, |principal| principal.energy);
-        let pull = self.pull.as_ref().map_or(0.0, |pull| pull.energy);
-        self.w.energy + fibres + principal + pull
+        self.w.energy + fibres + principal + self.pull.as_ref().map_or(0.0, |pull| pull.energy)
+    }
+
+    /// The energy without that of active stress, which falls as muscles shorten.
+    pub fn passive_energy(&self) -> f64 {
+        self.energy() - self.pull.as_ref().map_or(0.0, |pull| pull.energy)
     }
 
     /// det F.

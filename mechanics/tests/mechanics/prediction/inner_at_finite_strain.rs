@@ -241,3 +241,28 @@ fn tissue_whose_boundary_follows_its_growth_has_no_stress_inside() {
     let pressed = solve(&fixed, &grown, &tight(ElementChoice::Stabilised));
     assert!(largest_error(&case.volume, &pressed.displacement, |_| Vector::zeros()) < 1e-7);
 }
+
+/// A bar that swells along itself between fixed ends buckles to either side, and what muscles pull makes its energy negative.
+#[test]
+fn a_bar_that_its_muscles_make_buckle_may_rest_in_another_way() {
+    let mut mesh = block(Vector::new(70.0, 20.0, 12.0), [14, 4, 3], CellShape::Hex8);
+    for node in &mut mesh.nodes {
+        let is_inside = |x: f64, end: f64| x > 1e-9 && x < end - 1e-9;
+        if is_inside(node.x, 70.0) && is_inside(node.y, 20.0) && is_inside(node.z, 12.0) {
+            let phase = 12.9 * node.x + 78.2 * node.y + 37.7 * node.z;
+            *node += Vector::new(phase.sin(), (2.0 * phase).cos(), (3.0 * phase).sin()) * 0.8;
+        }
+    }
+    let case = Case {
+        fixed: vec![set("x_min"), set("x_max")],
+        muscles: vec![in_region("m", "tissue", Vector::z())],
+        ..case_of(mesh, material(15.0, 0.46))
+    };
+    let settings = Settings { method: Method::FemNonlinear, ..Settings::default() };
+    let answer = solve(&case, &pulling("m", 20.0), &settings);
+    let newton = answer.solver.newton.as_ref().unwrap();
+    assert!(newton.energy < 0.0 && newton.indefinite_steps > 0, "{newton:?}");
+    let doubt = answer.warnings.iter().find(|own| own.code == "another-equilibrium").unwrap();
+    let share = doubt.numbers.iter().find(|(name, _)| *name == "pressed_energy_share").unwrap().1;
+    assert!((0.5..=1.0).contains(&share), "{share}");
+}

@@ -49,6 +49,21 @@ fn a_scan_of_air_fat_soft_tissue_and_bone_gives_its_modes_and_thresholds() {
 }
 
 #[test]
+fn values_without_the_intercept_of_the_scanner_give_no_thresholds() {
+    let random = std::cell::RefCell::new(Random(5));
+    // Padding where air is looked for, air where tissue is.
+    let stored = image([60, 40, 40], [1.0; 3], move |x| {
+        let noise = 40.0 * (random.borrow_mut().next() - 0.5);
+        match x.x {
+            x if x < 15.0 => -976.0,
+            x if x < 40.0 => 24.0 + noise,
+            _ => 1064.0 + noise,
+        }
+    });
+    assert_eq!(Thresholds::of(&Histogram::of(&stored)), None);
+}
+
+#[test]
 fn the_second_threshold_makes_both_volumes_equal() {
     // The same cone of values about a point, on two grids and with another scale: 1000 - 50 r and 800 - 40 r.
     let cone = |top: f64, slope: f64| {

@@ -52,7 +52,8 @@ pub(super) fn another_rest(
     Some(warning.with("energy_mn_mm", newton.energy))
 }
 
-/// The share of the energy that is in pressed cells, by their mean stress: that of the elements, with their pressures.
+/// The share of the energy that is in pressed cells, by their mean stress: that of the elements with their pressures, and without
+/// the pull of muscles, which makes the whole negative.
 fn pressed_share(problem: &FiniteStrain, deformed: &Deformed, states: &CellStates) -> f64 {
     let shear_moduli: Vec<f64> = problem.laws.iter().map(|law| law.at_rest().1).collect();
     let is_pressed = |cell: usize| {
@@ -60,7 +61,7 @@ fn pressed_share(problem: &FiniteStrain, deformed: &Deformed, states: &CellState
         least < -PRESSED * shear_moduli[usize::from(problem.law_of_cell[cell])]
     };
     let (mut pressed, mut all) = (0.0, 0.0);
-    for (cell, energy) in deformed.energies() {
+    for (cell, energy) in deformed.passive_energies() {
         all += energy;
         pressed += if is_pressed(cell) { energy } else { 0.0 };
     }

@@ -54,10 +54,10 @@ impl BrickAt<'_> {
         self.of_mean * pairs.map(|(rest, point)| point.log_volume() * rest.volume).sum::<f64>()
     }
 
-    /// In mN mm. W - c/2 ln² J + p ln J stands for the points, c/2 of the mean squared is asked for: half of p ln J.
-    pub fn energy(&self) -> f64 {
+    /// In mN mm, without what muscles pull. W - c/2 ln² J + p ln J stands for the points, c/2 of the mean squared is asked for: half of p ln J.
+    pub fn passive_energy(&self) -> f64 {
         let pairs = self.at_rest.iter().zip(self.points);
-        let points: f64 = pairs.map(|(rest, point)| rest.volume * point.energy()).sum();
+        let points: f64 = pairs.map(|(rest, point)| rest.volume * point.passive_energy()).sum();
         match self.of_mean == 0.0 {
             true => points,
             false => points - 0.5 * self.pressure().powi(2) / self.of_mean,

@@ -214,14 +214,15 @@ impl Deformed<'_> {
         pressed
     }
 
-    /// Of each cell of the mesh, in mN mm: of tetrahedra with shared pressures p ln J in the place of c/2 ln² J.
-    pub fn energies(&self) -> impl Iterator<Item = (usize, f64)> {
+    /// Of each cell of the mesh without its muscles' pull, in mN mm: of tetrahedra with shared pressures p ln J in the place of
+    /// c/2 ln² J.
+    pub fn passive_energies(&self) -> impl Iterator<Item = (usize, f64)> {
         let of_simplices = self.tissue.cells_of_simplices().enumerate().map(|(number, cell)| {
             let (at_rest, point) = self.simplices.at_cell(number);
-            (cell, at_rest.volume * point.energy())
+            (cell, at_rest.volume * point.passive_energy())
         });
         let of_bricks = self.tissue.cells_of_bricks();
-        of_simplices.chain(of_bricks.map(|cell| (cell, self.bricks.at_cell(cell).energy())))
+        of_simplices.chain(of_bricks.map(|cell| (cell, self.bricks.at_cell(cell).passive_energy())))
     }
 
     /// In mN mm, at these pressures.
