@@ -60,6 +60,9 @@ impl TerminalProgress {
 
 /// Does a job, and shows where it is.
 pub fn run_with_progress(input: &JobInput, place: &JobContext) -> Result<JobOutput, JobError> {
+    // A folder that cannot be made is known before anything is solved.
+    let failed = |source| JobError::Write { file: place.out.display().to_string(), source };
+    std::fs::create_dir_all(place.out).map_err(failed)?;
     let progress = TerminalProgress::start();
     let done = work(input, place, &progress);
     progress.finish();

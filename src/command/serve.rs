@@ -1,5 +1,6 @@
 //! `facies serve`: the API, with workers in the same process.
 
+use std::fmt;
 use std::io::Write as _;
 use std::net::SocketAddr;
 use std::sync::Arc;
@@ -74,7 +75,7 @@ pub fn run(arguments: &Arguments) -> Result<(), ServeError> {
     let server = runtime.block_on(Server::start(config))?;
     let store = server.service.store.clone();
     // One line on standard output, for programs that started this one with port 0.
-    println!("listening on http://{}", server.address);
+    announce(format_args!("listening on http://{}", server.address));
     tell_admin(server.admin);
     let workers = runtime.block_on(server.run_until(stop_signal()))?;
     workers.stop(grace);
@@ -183,9 +184,13 @@ pub async fn listen_for_admin(
 /// Prints the address of the admin listener, for programs that started this one with port 0.
 pub fn tell_admin(admin: Option<SocketAddr>) {
     if let Some(address) = admin {
-        // An error: the parent no longer reads.
-        let _ = writeln!(std::io::stdout(), "metrics on http://{address}/metrics");
+        announce(format_args!("metrics on http://{address}/metrics"));
     }
+}
+
+/// A line on standard output. A service goes on where nobody reads it, or its disk is full.
+pub fn announce(line: fmt::Arguments) {
+    let _ = writeln!(std::io::stdout(), "{line}");
 }
 
 /// Starts the workers of this process, each slot with a process of its own.

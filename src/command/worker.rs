@@ -2,7 +2,9 @@
 
 use std::net::SocketAddr;
 
-use super::serve::{ServeError, listen_for_admin, open, start_workers, stop_signal, tell_admin};
+use super::serve::{
+    ServeError, announce, listen_for_admin, open, start_workers, stop_signal, tell_admin,
+};
 use super::settings::Arguments;
 use crate::api;
 use crate::config::Config;
@@ -22,7 +24,7 @@ pub fn run(arguments: &Arguments) -> Result<(), ServeError> {
     let runtime = tokio::runtime::Builder::new_multi_thread().enable_all().build()?;
     let (workers, admin) = runtime.block_on(start(&config))?;
     // One line on standard output, for programs that started this one.
-    println!("working with {} workers", config.workers);
+    announce(format_args!("working with {} workers", config.workers));
     tell_admin(admin);
     runtime.block_on(stop_signal());
     tracing::info!("stopping");

@@ -65,6 +65,19 @@ fn a_database_that_cannot_be_made_is_named_with_what_may_be_the_reason() {
 }
 
 #[test]
+fn standard_output_on_a_full_disk_is_an_error_in_one_line() {
+    let full = fs::File::options().write(true).open("/dev/full").unwrap();
+    let mut program = std::process::Command::new(env!("CARGO_BIN_EXE_facies"));
+    let done = program.arg("materials").stdout(full).output().unwrap();
+    assert_eq!(done.status.code(), Some(3), "{:?}", done.status);
+    let error = text(&done.stderr);
+    assert!(
+        error.starts_with("error: could not write to stdout") && error.lines().count() == 1,
+        "{error}"
+    );
+}
+
+#[test]
 fn a_folder_holds_the_files_of_one_answer_and_the_plan_that_it_answers() {
     let out = tempfile::tempdir().unwrap();
     let own = out.path().join("notes.txt");
