@@ -10,7 +10,8 @@ pub fn load_steps(steps: &[LoadStepDocument], words: &Words) -> Option<Section> 
     let presses = steps.iter().any(|step| step.contact.is_some());
     let row = |step: &LoadStepDocument| {
         let LoadStepDocument { rest, contact, .. } = step;
-        let stable = step.is_stable.map_or("–", |is_stable| words.yes_or_no[usize::from(!is_stable)]);
+        let stable =
+            step.is_stable.map_or("–", |is_stable| words.yes_or_no[usize::from(!is_stable)]);
         let mut row = vec![
             format!("{:.1} %", 100.0 * rest.share),
             rest.steps.to_string(),
@@ -19,9 +20,9 @@ pub fn load_steps(steps: &[LoadStepDocument], words: &Words) -> Option<Section> 
             stable.to_owned(),
         ];
         if presses {
-            let (area, pressure) = contact.as_ref().map_or((0.0, 0.0), |contact| {
-                (contact.area_mm2, contact.largest_pressure_kpa)
-            });
+            let (area, pressure) = contact
+                .as_ref()
+                .map_or((0.0, 0.0), |contact| (contact.area_mm2, contact.largest_pressure_kpa));
             row.extend([mm(area), mm(pressure)]);
         }
         row

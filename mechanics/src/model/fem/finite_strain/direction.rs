@@ -127,7 +127,7 @@ impl Directions {
             }
             Some(coupling) => {
                 let volumes = left_volumes(&known, coupling, remaining.volumes);
-                let right = MixedRightHandSide { forces, volumes };
+                let right = MixedRightHandSide { forces: forces.clone(), volumes };
                 let solver = &hierarchy.solver;
                 let system = MixedSystem { stiffness: &system, coupling, solver };
                 together(&system, &right, remaining.relative, &inner)?
@@ -140,12 +140,18 @@ impl Directions {
             let displacement: Vec<Vector> =
                 displacement.iter().zip(&by_node).map(|(u, step)| u + step).collect();
             let displacement = &displacement;
-            let ahead = TrialState { displacement, share, unbalanced, relative, progress: &inner };
             let matrix = Preconditioned::new(
                 &system,
                 coupling,
                 hierarchy.solver.hierarchy(&system, progress)?,
             );
+            let left = match found.is_convex {
+                true => Vec::new(),
+                false => left_forces(&matrix, &forces, &found.unknowns),
+            };
+            let progress = &inner;
+            let ahead =
+                TrialState { displacement, share, left: &left, unbalanced, relative, progress };
             if let Some(change) = touching.change(matrix, &ahead)? {
                 let (_, p) = change.step.split_at(3 * system.layout.free);
                 let added = constrained.displacement(&system.by_row(&change.step));
@@ -277,6 +283,14 @@ fn together(
     let mixed::MixedDirection { unknowns, pressures, iterations, is_met } = found;
     let pressures = pressures.into_iter().map(|[pressure]| pressure).collect();
     Ok(StepSolution { unknowns, pressures, iterations, is_convex: true, is_met })
+}
+
+/// What a direction leaves of the forces that it was to balance.
+fn left_forces(matrix: &Preconditioned, forces: &Unknowns, found: &Unknowns) -> Vec<[f64; 1]> {
+    let found: Vec<[f64; 1]> = found.as_flattened().iter().map(|value| [*value]).collect();
+    let product = matrix.product(&found);
+    let pairs = forces.as_flattened().iter().zip(&product);
+    pairs.map(|(force, [balanced])| [force - balanced]).collect()
 }
 
 /// -r - B d of the rows of pressures, d what is known of the step.

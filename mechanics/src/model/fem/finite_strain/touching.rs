@@ -2,7 +2,8 @@
 //! by the active set of `contact`.
 //!
 //! At x with forces G^T m the step d without a change of contact meets K d = f - f_int + G^T m; what presses then follows from
-//! K a = G^T (m' - m), g(x + d + a) >= 0, m' >= 0, m' g = 0, and the step is d + a.
+//! K a = G^T (m' - m), g(x + d + a) >= 0, m' >= 0, m' g = 0, and the step is d + a. Where K is not positive definite d is no solution,
+//! and a answers to what it leaves, too: tissue that buckles by itself may be held by what it presses on.
 
 use std::collections::BTreeMap;
 
@@ -63,6 +64,9 @@ pub(super) struct TrialState<'a> {
     pub displacement: &'a [Vector],
     /// The share of the movement of bones after it.
     pub share: f64,
+    /// Forces in mN that the step leaves, by unknown, where the tangent is not positive definite: what presses may hold tissue that
+    /// buckles without it. Nothing otherwise.
+    pub left: &'a [[f64; 1]],
     /// The norm of the forces in mN that the step is to balance, and the part of it that may be left.
     pub unbalanced: f64,
     pub relative: f64,
@@ -162,8 +166,15 @@ impl<'a> Touching<'a> {
         let mut equations = Equations::new(matrix, equations);
         let (before, progress) = (&*self.multipliers, ahead.progress);
         let first_residual = LOOSELY;
-        let task =
-            Task { gaps: &gaps, movement, relative_residual, first_residual, before, progress };
+        let task = Task {
+            gaps: &gaps,
+            movement,
+            relative_residual,
+            first_residual,
+            before,
+            left: ahead.left,
+            progress,
+        };
         let settled = set.settle(&mut equations, &task, Point::default())?;
         self.effort.count(&settled);
         self.repeats = settled.repeats;
