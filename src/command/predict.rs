@@ -213,8 +213,10 @@ fn print_load_steps(steps: &[LoadStepDocument]) {
     let Some(first) = steps.first() else { return };
     let held: Vec<String> =
         first.reaction_millinewton.keys().map(|name| format!("{name} mN")).collect();
+    let presses = steps.iter().any(|step| step.contact.is_some());
+    let area = if presses { " contact mm2" } else { "" };
     println!(
-        "load steps   {:>6} {:>5} {:>12} {:>10} {:>9} {:>7}   {}",
+        "load steps   {:>6} {:>5} {:>12} {:>10} {:>9} {:>7}{area}   {}",
         "share",
         "steps",
         "energy mN mm",
@@ -223,14 +225,21 @@ fn print_load_steps(steps: &[LoadStepDocument]) {
         "stable",
         held.join("   ")
     );
-    for LoadStepDocument { rest, relative_residual, is_stable, reaction_millinewton } in steps {
+    for step in steps {
+        let LoadStepDocument { rest, relative_residual, is_stable, reaction_millinewton, contact } =
+            step;
         let stable = is_stable.map_or("?", |is_stable| if is_stable { "yes" } else { "no" });
         let norms = reaction_millinewton.values().zip(&held).map(|(force, title)| {
             let [x, y, z] = force.0;
             format!("{:>width$.1}", x.hypot(y).hypot(z), width = title.chars().count())
         });
+        let area = match contact {
+            _ if !presses => String::new(),
+            Some(contact) => format!("{:>12.1}", contact.area_mm2),
+            None => format!("{:>12}", "-"),
+        };
         println!(
-            "             {:>6.3} {:>5} {:>12.2} {:>10.4} {:>9.1e} {stable:>7}   {}",
+            "             {:>6.3} {:>5} {:>12.2} {:>10.4} {:>9.1e} {stable:>7}{area}   {}",
             rest.share,
             rest.steps,
             rest.energy_mn_mm,

@@ -9,7 +9,7 @@ use super::skin_overlap::{Deepest, deepest_overlap};
 use crate::boundary::NodeClass;
 use crate::boundary::contact::{BoneInside, FacingSurfaces, bones_inside};
 use crate::mesh::{Vector, Warning};
-use crate::model::fem::contact::{Contact, ContactProblem, Effort, PressingRow};
+use crate::model::fem::contact::{Contact, ContactProblem, Effort, PressingRow, forces_of};
 use crate::model::fem::finite_strain;
 use crate::model::fem::linear_system::{LinearSystem, Solved};
 use crate::model::problem::{Equilibrium, ModelError};
@@ -32,6 +32,19 @@ pub struct Touch {
     pub overlap: Option<Deepest>,
     /// The surfaces of bone that lie in tissue nevertheless, as those narrower than its cells may.
     pub bones_inside: Vec<BoneInside>,
+    /// At the end of each load step; empty where none were asked for.
+    pub at_load_steps: Vec<StepTouch>,
+}
+
+/// What presses at the end of a load step.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct StepTouch {
+    /// Nodes that are held against what they face.
+    pub points: usize,
+    /// In mm², of all pairs.
+    pub area: f64,
+    /// In kPa.
+    pub largest_pressure: f64,
 }
 
 /// Two parts of the boundary that press on each other.
@@ -137,19 +150,33 @@ fn pressed(
     if nothing_presses && overlap.is_none() && bones_inside.is_empty() {
         return Ok(None);
     }
-    let touch = Touch::new(scene, &surfaces.areas(&contact.forces), contact);
-    let touch = Touch { overlap, bones_inside, ..touch };
+    let of_step = |pressed: &Vec<PressingRow>| {
+        let forces = forces_of(pressed, scene.mesh.nodes.len());
+        let contact = Contact { pressed: pressed.clone(), forces, ..Contact::default() };
+        StepTouch::of(&Touch::new(scene, &surfaces, contact))
+    };
+    let at_load_steps = contact.at_load_steps.iter().map(of_step).collect();
+    let touch = Touch::new(scene, &surfaces, contact);
+    let touch = Touch { overlap, bones_inside, at_load_steps, ..touch };
     Ok(Some(InTouch { equilibrium, touch, numerical_error }))
 }
 
 impl Touch {
-    fn new(scene: &Scene, areas: &BTreeMap<u32, f64>, contact: Contact) -> Self {
+    fn new(scene: &Scene, surfaces: &FacingSurfaces, contact: Contact) -> Self {
+        let areas = &surfaces.areas(&contact.forces);
         let mut pressure = vec![0.0; scene.mesh.nodes.len()];
         for (node, area) in areas.iter().filter(|(_, area)| **area > 0.0) {
             pressure[*node as usize] = contact.forces[*node as usize].norm() / area;
         }
         let pairs = pairs(scene, areas, &contact, &pressure);
-        Touch { contact, pressure, pairs, overlap: None, bones_inside: Vec::new() }
+        Touch {
+            contact,
+            pressure,
+            pairs,
+            overlap: None,
+            bones_inside: Vec::new(),
+            at_load_steps: Vec::new(),
+        }
     }
 
     /// The largest gap below 0, or how deep parts or bones lie in each other, in mm and positive.
@@ -203,6 +230,16 @@ impl Touch {
                 .push(Warning::new("contact-points-move", detail).with("moved_mm", *last_moved_mm));
         }
         warnings
+    }
+}
+
+impl StepTouch {
+    fn of(touch: &Touch) -> Self {
+        StepTouch {
+            points: touch.contact.pressed.len(),
+            area: touch.area(),
+            largest_pressure: touch.largest_pressure(),
+        }
     }
 }
 

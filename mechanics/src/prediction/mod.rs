@@ -52,7 +52,7 @@ pub use case::{
     Hounsfield, Load, Mixing, Muscle, MuscleCourse, MuscleMixing, Plan, Prescribed, RegionNames,
     Settings, SkinMembrane, Sliding, SlidingNormal, Stiffening, TissueWindow,
 };
-pub use contact::{ContactPair, Touch};
+pub use contact::{ContactPair, StepTouch, Touch};
 pub use element_choice::ElementChoice;
 pub use error_code::SceneErrorCode;
 pub use growth::{VOLUME_CHANGE, linear_strain};
@@ -137,14 +137,29 @@ pub struct PredictedStep {
     pub is_stable: Option<bool>,
     /// As those of a prediction.
     pub reactions: BTreeMap<String, Vector>,
+    /// Where anything presses.
+    pub contact: Option<StepTouch>,
 }
 
-impl PredictedStep {
-    fn new(scene: &Scene, step: LoadStep) -> Self {
-        let LoadStep { rest, relative_residual, is_stable, reactions } = step;
-        let reactions = reaction::by_class(scene, &reactions, None);
-        PredictedStep { rest, relative_residual, is_stable, reactions }
-    }
+/// The load steps of an answer.
+fn load_steps(
+    scene: &Scene,
+    steps: impl Iterator<Item = LoadStep>,
+    touch: Option<&Touch>,
+) -> Vec<PredictedStep> {
+    let at = |step: usize| {
+        let (touch, pressed) = touch.and_then(|touch| {
+            Some((touch.at_load_steps.get(step)?, touch.contact.at_load_steps.get(step)?))
+        })?;
+        (!pressed.is_empty()).then_some((*touch, &**pressed))
+    };
+    let predicted = |(step, own): (usize, LoadStep)| {
+        let LoadStep { rest, relative_residual, is_stable, reactions } = own;
+        let (contact, pressed) = at(step).unzip();
+        let reactions = reaction::by_class(scene, &reactions, pressed.unwrap_or_default());
+        PredictedStep { rest, relative_residual, is_stable, reactions, contact }
+    };
+    steps.enumerate().map(predicted).collect()
 }
 
 /// Solves a scene by the method it asks for. The same scene gives the same bits on any number of threads.
@@ -181,10 +196,12 @@ fn described(scene: &Scene, answer: Answer, progress: &dyn Progress) -> Predicti
         |missing| skin::landmark_displacement(&scene.mesh, &scene.landmarks, missing);
     let missing = numerical_error.as_ref().map(|error| at_landmarks(&error.missing));
     let newton = equilibrium.solver.newton.iter_mut();
-    let load_steps = newton.flat_map(|newton| newton.load_steps.drain(..));
+    let steps = newton.flat_map(|newton| newton.load_steps.drain(..));
+    let load_steps = load_steps(scene, steps, contact.as_ref());
+    let pressed = contact.as_ref().map_or(&[][..], |touch| &touch.contact.pressed[..]);
     Prediction {
-        load_steps: load_steps.map(|step| PredictedStep::new(scene, step)).collect(),
-        reactions: reaction::by_class(scene, &equilibrium.reactions, contact.as_ref()),
+        load_steps,
+        reactions: reaction::by_class(scene, &equilibrium.reactions, pressed),
         condition_reactions: reaction::by_condition(scene, &equilibrium, contact.as_ref()),
         nonlinearity,
         landmarks: landmarks.into_iter().map(|(name, (moved, _))| (name, moved)).collect(),

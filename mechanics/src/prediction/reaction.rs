@@ -35,7 +35,7 @@ pub struct ConditionReaction {
 pub(super) fn by_class(
     scene: &Scene,
     reactions: &[Vector],
-    contact: Option<&Touch>,
+    pressed: &[PressingRow],
 ) -> BTreeMap<String, Vector> {
     let mut sums: BTreeMap<String, Vector> =
         scene.segments.iter().map(|segment| (segment.name.clone(), Vector::zeros())).collect();
@@ -46,8 +46,8 @@ pub(super) fn by_class(
         };
         *sums.entry(holder).or_insert_with(Vector::zeros) += reaction;
     }
-    let pressed = contact.iter().flat_map(|touch| &touch.contact.pressed);
-    for (PressingRow { row, force }, on) in pressed.filter_map(|own| Some((own, own.row.bone?))) {
+    let on_bone = pressed.iter().filter_map(|own| Some((own, own.row.bone?)));
+    for (PressingRow { row, force }, on) in on_bone {
         let bone = &scene.bones[on.bone as usize];
         let holder = if bone.is_carried { bone.name.as_str() } else { NodeClass::Fixed.name() };
         *sums.entry(holder.to_owned()).or_insert_with(Vector::zeros) += row.normal() * *force;

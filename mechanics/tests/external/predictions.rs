@@ -155,6 +155,10 @@ fn crossings_in_contact(case: &Case, by: f64, settings: &Settings, name: &str) -
         touch.area(),
         touch.largest_pressure()
     );
+    let told = found.warnings.iter().find(|warning| warning.code == "skin-overlaps");
+    assert_eq!(told.is_some(), new > 0, "{name} {by} mm: {told:?}");
+    let told = told.map_or("", |warning| &warning.detail);
+    assert!(new == 0 || told.contains(&format!("{new} pairs")), "{name} {by} mm: {told}");
     assert!(*last_moved_mm < 0.1, "{name} {by} mm: {last_moved_mm}");
     new
 }

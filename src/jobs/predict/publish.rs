@@ -352,6 +352,7 @@ fn load_step(step: &PredictedStep) -> LoadStepDocument {
         relative_residual: step.relative_residual,
         is_stable: step.is_stable,
         reaction_millinewton: triples(&step.reactions),
+        contact: step.contact.as_ref().map(Into::into),
     }
 }
 

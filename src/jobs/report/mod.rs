@@ -5,6 +5,7 @@ mod content;
 mod directions;
 mod form;
 mod html;
+mod load_steps;
 mod method;
 mod pages;
 mod prediction;

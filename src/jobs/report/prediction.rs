@@ -11,6 +11,7 @@ use super::comparison::distance_table;
 use super::content::{Block, Figure, Report, Section, Table};
 use super::directions::{directions, motion};
 use super::form::ReportForm;
+use super::load_steps::load_steps;
 use super::method::{how_sure, method};
 use super::room::clipped;
 use super::tables::{mm, number_or_dash, provenance, report, signed, texts};
@@ -55,6 +56,7 @@ pub fn prediction_report(facts: &PredictionFacts, language: Language) -> Result<
     let compared = result.comparison.as_ref();
     let compared = compared.map(|comparison| distance_table(comparison, own));
     sections.extend(compared.map(|table| Section::new(own.comparison, vec![Block::Table(table)])));
+    sections.extend(load_steps(&result.load_steps, own));
     sections.push(how_sure(result, own));
     sections.push(warnings(&result.warnings, own));
     sections.push(method(result, facts.plan, own));

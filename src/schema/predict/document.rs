@@ -187,7 +187,6 @@ impl PredictDocument {
             let what = "an answer cannot be corrected by an error that is not estimated: `estimate` is \"none\"";
             faults.add(&at.key("corrected"), ErrorCode::OneOf, what);
         }
-        self.check_load_steps(&at.key("fem_nonlinear").key("load_steps"), faults);
         let membrane = self.membrane.as_ref();
         let membrane = membrane.and_then(|sheet| sheet.to_membrane(&at.key("membrane"), faults));
         Settings {
@@ -264,15 +263,6 @@ impl PredictDocument {
             let detail = "a model is chosen by its estimated errors, and corrected where that does: leave out `corrected` and \
                           `estimate`";
             faults.add(&place, ErrorCode::OneOf, detail);
-        }
-    }
-
-    fn check_load_steps(&self, at: &Pointer, faults: &mut Faults) {
-        let are_asked = self.fem_nonlinear.is_some_and(|own| own.load_steps.is_some());
-        if are_asked && self.contact.presses() {
-            let detail =
-                "load steps are not made where tissue presses: leave out `contact` or `load_steps`";
-            faults.add(at, ErrorCode::OneOf, detail);
         }
     }
 

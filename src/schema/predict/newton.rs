@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
+use super::pressing::StepContactDocument;
 use crate::schema::Triple;
 
 /// How tissue at finite strain came to rest.
@@ -58,4 +59,8 @@ pub struct LoadStepDocument {
     pub is_stable: Option<bool>,
     /// As that of the result.
     pub reaction_millinewton: BTreeMap<String, Triple>,
+    /// Where anything presses.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub contact: Option<StepContactDocument>,
 }

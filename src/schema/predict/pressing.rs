@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-use mechanics::prediction::{ContactPair, Touch};
+use mechanics::prediction::{ContactPair, StepTouch, Touch};
 
 /// How tissue presses on what it touches.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
@@ -34,6 +34,26 @@ pub struct ContactPairDocument {
     pub largest_pressure_kpa: f64,
     /// The sum of what presses, across the surfaces.
     pub force_mn: f64,
+}
+
+/// What presses at the end of a load step.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct StepContactDocument {
+    /// Nodes that are held against what they face.
+    pub points: u64,
+    /// In mm², of all pairs.
+    pub area_mm2: f64,
+    pub largest_pressure_kpa: f64,
+}
+
+impl From<&StepTouch> for StepContactDocument {
+    fn from(touch: &StepTouch) -> Self {
+        StepContactDocument {
+            points: touch.points as u64,
+            area_mm2: touch.area,
+            largest_pressure_kpa: touch.largest_pressure,
+        }
+    }
 }
 
 impl From<&Touch> for ContactDocument {

@@ -92,11 +92,6 @@ fn load_steps_that_are_too_many_or_of_another_method_are_refused_with_their_plac
             "out-of-range",
         ),
         (
-            json!({"method": "fem_nonlinear", "contact": "unilateral", "fem_nonlinear": {"load_steps": 4}}),
-            "/spec/fem_nonlinear/load_steps",
-            "one-of",
-        ),
-        (
             json!({"method": "fem_linear", "fem_nonlinear": {"load_steps": 4}}),
             "/spec/fem_nonlinear",
             "method-mismatch",
@@ -115,6 +110,24 @@ fn load_steps_that_are_too_many_or_of_another_method_are_refused_with_their_plac
         if code == "out-of-range" {
             assert!(told.detail.contains('1') && told.detail.contains("100"), "{}", told.detail);
         }
+    }
+}
+
+#[test]
+fn load_steps_are_made_with_contact_and_are_a_table_of_the_report() {
+    let spec = json!({
+        "outputs": ["skin.vtp", "report.html"], "method": "fem_nonlinear", "contact": "unilateral",
+        "fem_nonlinear": {"load_steps": 3}
+    });
+    let folder = tempfile::tempdir().unwrap();
+    let (limits, sources) = (Limits::default(), sources());
+    let place = JobContext { sources: &sources, limits: &limits, out: folder.path() };
+    let result = work(&JobInput::Predict(asked(spec)), &place, &Unobserved).unwrap().result;
+    // Nothing of one block meets anything.
+    assert!(result.load_steps.iter().all(|step| step.contact.is_none()));
+    let html = std::fs::read_to_string(folder.path().join("report.html")).unwrap();
+    for words in ["<h2>Load steps</h2>", "33.3 %", "66.7 %", "100.0 %"] {
+        assert!(html.contains(words), "{words}");
     }
 }
 

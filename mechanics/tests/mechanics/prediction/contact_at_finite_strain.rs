@@ -1,10 +1,11 @@
 //! Contact at finite strain: closed forms, jaws that close, and what it goes over into.
 
 use std::collections::BTreeMap;
+use std::num::NonZeroU32;
 
 use mechanics::mesh::sample::block;
 use mechanics::mesh::{CellShape, Vector};
-use mechanics::prediction::{Case, CaseSegment, Method, Settings};
+use mechanics::prediction::{Advance, Case, CaseSegment, Method, Settings};
 
 use super::contact::{
     PRESSING, at, bar, blocks, force, jaws, pushed, raised, together, unilateral,
@@ -29,6 +30,33 @@ fn a_bar_at_finite_strain_presses_with_the_force_of_its_law() {
             assert!((exerted - Vector::new(-wanted, 0.0, 0.0)).norm() < 1e-5, "{told}");
             assert!((force(&found, "prescribed").x - wanted).abs() < 1e-5, "{told}");
             assert_eq!(found.contact.is_some(), wanted > 0.0, "{told}");
+        }
+    }
+}
+
+#[test]
+fn a_bar_presses_with_the_force_of_its_law_at_each_load_step() {
+    let advance = Advance::InSteps(NonZeroU32::new(4).unwrap());
+    for (shape, element) in PRESSING {
+        let case = bar(shape);
+        let settings = Settings { element, advance, ..at_finite_strain() };
+        let found = solve(&case, &pushed(1.8), &settings);
+        // It reaches what it presses on after 0.5 mm.
+        let stretches = [1.0, 0.98, 0.9575, 0.935_f64];
+        assert_eq!(found.load_steps.len(), stretches.len());
+        for (step, stretch) in found.load_steps.iter().zip(stretches) {
+            let wanted = 7.5 * 100.0 * (1.0 / stretch - stretch);
+            let force = |class: &str| step.reactions[class].x;
+            let told = format!("{shape:?} {element:?} {wanted}: {step:?}");
+            assert!((force("prescribed") - wanted).abs() < 1e-4, "{told}");
+            assert!((force("fixed") + wanted).abs() < 1e-4, "{told}");
+            match step.contact {
+                Some(touch) => {
+                    assert!(wanted > 0.0, "{told}");
+                    assert!((touch.area - 100.0).abs() < 1e-9, "{told}");
+                }
+                None => assert_eq!(wanted, 0.0, "{told}"),
+            }
         }
     }
 }

@@ -51,6 +51,8 @@ pub(in crate::model::fem) struct Task<'a> {
     pub first_residual: f64,
     /// For each row the force in mN with which it pressed when the answer without contact was found; nothing where none did.
     pub before: &'a [f64],
+    /// Forces in mN that the answer without contact leaves, by unknown; nothing where it balances all.
+    pub left: &'a [[f64; 1]],
     pub progress: &'a dyn Progress,
 }
 
@@ -84,7 +86,11 @@ impl ActiveSet {
             relative_residual: 0.0,
             repeats: false,
         };
-        let taken_away = equations.forces(task.before);
+        let mut taken_away = equations.forces(task.before);
+        if !task.left.is_empty() {
+            taken_away.resize(task.left.len(), [0.0]);
+            taken_away.iter_mut().zip(task.left).for_each(|([away], [left])| *away -= left);
+        }
         let mut wanted = task.first_residual.max(task.relative_residual);
         while settled.passes < MOST_PASSES {
             settled.passes += 1;

@@ -3,7 +3,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::touch::{Contact, PressingRow};
+use super::touch::{Contact, PressingRow, forces_of};
 use crate::boundary::contact::ContactRow;
 use crate::mesh::Vector;
 
@@ -53,15 +53,14 @@ impl KeptRows {
         round
     }
 
-    /// Nodal forces in mN of contact constraints with these numbers and multipliers, for so many nodes.
+    /// Contact constraints with these numbers and multipliers.
+    pub fn pressed(&self, pressing: impl Iterator<Item = (usize, f64)>) -> Vec<PressingRow> {
+        pressing.map(|(row, force)| PressingRow { row: self.rows[row].clone(), force }).collect()
+    }
+
+    /// Their nodal forces in mN, for so many nodes.
     pub fn forces(&self, pressed: impl Iterator<Item = (usize, f64)>, nodes: usize) -> Vec<Vector> {
-        let mut forces = vec![Vector::zeros(); nodes];
-        for (row, force) in pressed {
-            for (node, along) in &self.rows[row].terms {
-                forces[*node as usize] += along * force;
-            }
-        }
-        forces
+        forces_of(&self.pressed(pressed), nodes)
     }
 
     /// By node, the gap in mm after a displacement and a share of the movement of bones.
@@ -75,13 +74,11 @@ impl KeptRows {
         pressing: impl Iterator<Item = (usize, f64)>,
         displacement: &[Vector],
     ) -> Contact {
-        let pressing: Vec<(usize, f64)> = pressing.collect();
-        let pressed =
-            |&(row, force): &(usize, f64)| PressingRow { row: self.rows[row].clone(), force };
+        let pressed = self.pressed(pressing);
         Contact {
-            pressed: pressing.iter().map(pressed).collect(),
             gaps: self.gaps(displacement, 1.0),
-            forces: self.forces(pressing.into_iter(), displacement.len()),
+            forces: forces_of(&pressed, displacement.len()),
+            pressed,
             ..Contact::default()
         }
     }

@@ -15,4 +15,4 @@ pub(super) use active_set::{ActiveSet, Task};
 pub(super) use equations::FreeUnknowns;
 pub(super) use kept_rows::KeptRows;
 pub use pressing::{ContactProblem, InContact, Pressing};
-pub use touch::{Contact, Effort, PressingRow};
+pub use touch::{Contact, Effort, PressingRow, forces_of};

@@ -220,6 +220,7 @@ impl<'a, 'b> Rounds<'a, 'b> {
             relative_residual,
             first_residual: ON_THE_WAY,
             before: &[],
+            left: &[],
             progress,
         };
         let rows = self.kept_rows.rows.iter();

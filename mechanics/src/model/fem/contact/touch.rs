@@ -26,6 +26,19 @@ pub struct Contact {
     /// How far closest points moved the answer when they were looked for the last time, in mm.
     pub last_moved_mm: f64,
     pub relative_residual: f64,
+    /// What pressed at the end of each load step; empty where none were asked for.
+    pub at_load_steps: Vec<Vec<PressingRow>>,
+}
+
+/// Nodal forces in mN of rows that press, for so many nodes.
+pub fn forces_of(pressed: &[PressingRow], nodes: usize) -> Vec<Vector> {
+    let mut forces = vec![Vector::zeros(); nodes];
+    for PressingRow { row, force } in pressed {
+        for (node, along) in &row.terms {
+            forces[*node as usize] += along * *force;
+        }
+    }
+    forces
 }
 
 /// Cost of the search for the active set.

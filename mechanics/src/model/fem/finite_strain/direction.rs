@@ -2,7 +2,7 @@
 
 use super::pressures::Pressures;
 use super::tissue::Deformed;
-use super::touching::{Touching, TrialState};
+use super::touching::{Change, Touching, TrialState};
 use crate::mesh::Vector;
 use crate::model::dofs::{Constrained, PrescribedValues};
 use crate::model::problem::LoadCase;
@@ -127,7 +127,7 @@ impl Directions {
             }
             Some(coupling) => {
                 let volumes = left_volumes(&known, coupling, remaining.volumes);
-                let right = MixedRightHandSide { forces, volumes };
+                let right = MixedRightHandSide { forces: forces.clone(), volumes };
                 let solver = &hierarchy.solver;
                 let system = MixedSystem { stiffness: &system, coupling, solver };
                 together(&system, &right, remaining.relative, &inner)?
@@ -136,17 +136,10 @@ impl Directions {
         let mut by_node = constrained.displacement(&known.total(&found.unknowns));
         let mut multipliers = Vec::new();
         if let Some(touching) = touching {
-            let Remaining { displacement, share, unbalanced, relative, .. } = *remaining;
-            let displacement: Vec<Vector> =
-                displacement.iter().zip(&by_node).map(|(u, step)| u + step).collect();
-            let displacement = &displacement;
-            let ahead = TrialState { displacement, share, unbalanced, relative, progress: &inner };
-            let matrix = Preconditioned::new(
-                &system,
-                coupling,
-                hierarchy.solver.hierarchy(&system, progress)?,
-            );
-            if let Some(change) = touching.change(matrix, &ahead)? {
+            let multigrid = hierarchy.solver.hierarchy(&system, progress)?;
+            let matrix = Preconditioned::new(&system, coupling, multigrid);
+            let left = left_forces(&matrix, &forces, &found);
+            if let Some(change) = change_by_contact(touching, matrix, remaining, &by_node, &left)? {
                 let (_, p) = change.step.split_at(3 * system.layout.free);
                 let added = constrained.displacement(&system.by_row(&change.step));
                 by_node.iter_mut().zip(&added).for_each(|(d, added)| *d += added);
@@ -277,6 +270,33 @@ fn together(
     let mixed::MixedDirection { unknowns, pressures, iterations, is_met } = found;
     let pressures = pressures.into_iter().map(|[pressure]| pressure).collect();
     Ok(StepSolution { unknowns, pressures, iterations, is_convex: true, is_met })
+}
+
+/// What contact changes of a step, given by node, that leaves some forces.
+fn change_by_contact(
+    touching: &mut Touching,
+    matrix: Preconditioned,
+    remaining: &Remaining,
+    step: &[Vector],
+    left: &[[f64; 1]],
+) -> Result<Option<Change>, SolverError> {
+    let Remaining { displacement, share, unbalanced, relative, .. } = *remaining;
+    let displacement: Vec<Vector> =
+        displacement.iter().zip(step).map(|(u, step)| u + step).collect();
+    let (displacement, progress) = (&*displacement, &Inner(remaining.progress));
+    let ahead = TrialState { displacement, share, left, unbalanced, relative, progress };
+    touching.change(matrix, &ahead)
+}
+
+/// What a direction leaves of the forces that it was to balance where the tangent is not positive definite; nothing otherwise.
+fn left_forces(matrix: &Preconditioned, forces: &Unknowns, found: &StepSolution) -> Vec<[f64; 1]> {
+    if found.is_convex {
+        return Vec::new();
+    }
+    let found: Vec<[f64; 1]> = found.unknowns.as_flattened().iter().map(|value| [*value]).collect();
+    let product = matrix.product(&found);
+    let pairs = forces.as_flattened().iter().zip(&product);
+    pairs.map(|(force, [balanced])| [force - balanced]).collect()
 }
 
 /// -r - B d of the rows of pressures, d what is known of the step.

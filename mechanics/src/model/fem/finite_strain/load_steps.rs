@@ -26,6 +26,9 @@ impl<'a> FiniteStrain<'a> {
             let own = Question { share, most_steps, ..question };
             let (tissue, mut rest) = self.rest_at_share(own, reached)?;
             rests.extend(load_step(own, &rest, begun));
+            if let Some(touching) = &mut rest.touching {
+                touching.keep_load_step();
+            }
             let newton = rest.report.newton.as_mut();
             parts.extend(newton.into_iter().flat_map(|newton| newton.parts.drain(..)));
             if step == steps {
@@ -43,7 +46,11 @@ impl<'a> FiniteStrain<'a> {
 /// Report of rest at the end of a load step that began after so many residuals.
 fn load_step(question: Question, rest: &Rest, begun: usize) -> Option<LoadStep> {
     let loads = question.case.forces.iter().map(|force| force * question.share);
-    let acting: Vec<Vector> = loads.collect();
+    let mut acting: Vec<Vector> = loads.collect();
+    if let Some(touching) = &rest.touching {
+        let pressing = touching.forces(acting.len());
+        acting.iter_mut().zip(&pressing).for_each(|(force, pressing)| *force += pressing);
+    }
     let newton = rest.report.newton.as_ref()?;
     Some(LoadStep {
         rest: rest.on_the_way(begun)?,

@@ -284,7 +284,7 @@ impl<'a, 'b> Newton<'a, 'b> {
     fn look(&mut self) -> bool {
         let displacement = self.displacement();
         let Some(touching) = &mut self.touching else { return true };
-        touching.look(&displacement, self.made);
+        touching.look(&displacement, self.made, self.made >= self.question.share);
         touching.rests(&displacement, self.made)
     }
 

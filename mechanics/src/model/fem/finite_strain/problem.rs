@@ -45,6 +45,6 @@ pub enum Advance {
     #[default]
     AtOnceOrInParts,
     /// In so many equal load steps, all of it in proportion. Each is at rest before the next one, and is made as the whole is
-    /// otherwise. Not in contact, where a step may lose what the one before pressed on.
+    /// otherwise.
     InSteps(NonZeroU32),
 }

@@ -2,7 +2,8 @@
 //! by the active set of `contact`.
 //!
 //! At x with forces G^T m the step d without a change of contact meets K d = f - f_int + G^T m; what presses then follows from
-//! K a = G^T (m' - m), g(x + d + a) >= 0, m' >= 0, m' g = 0, and the step is d + a.
+//! K a = G^T (m' - m), g(x + d + a) >= 0, m' >= 0, m' g = 0, and the step is d + a. Where K is not positive definite d is no solution,
+//! and a answers to what it leaves, too: tissue that buckles by itself may be held by what it presses on.
 
 use std::collections::BTreeMap;
 
@@ -10,7 +11,9 @@ use crate::boundary::Hold;
 use crate::boundary::contact::{CLOSED_MM, FacingSurfaces, with_pressing};
 use crate::mesh::Vector;
 use crate::model::dofs::DofMap;
-use crate::model::fem::contact::{ActiveSet, Contact, Effort, FreeUnknowns, KeptRows, Task};
+use crate::model::fem::contact::{
+    ActiveSet, Contact, Effort, FreeUnknowns, KeptRows, PressingRow, Task,
+};
 use crate::model::problem::ModelError;
 use crate::progress::Progress;
 use crate::solver::SolverError;
@@ -23,7 +26,7 @@ const LOOSELY: f64 = 1e-3;
 /// Closest points that still move by more than this in the end, in mm, are no answer.
 const UNSETTLED_MM: f64 = 0.1;
 
-/// How often closest points are looked for again once the movement is made.
+/// How often closest points are looked for again once the bones rest.
 const MOST_ROUNDS: usize = 15;
 
 /// What touches, at one state of tissue and bones.
@@ -36,13 +39,15 @@ pub(super) struct Touching<'a> {
     multipliers: Vec<f64>,
     /// The part of the movement that one step may make.
     pub most_ahead: f64,
-    /// Rounds after the movement is made.
+    /// Rounds since the bones rest.
     late_rounds: usize,
     /// Rows that said something new in the last round.
     new: usize,
     /// Whether the set that presses repeated at the last step.
     repeats: bool,
     effort: Effort,
+    /// What pressed at the end of each load step.
+    at_load_steps: Vec<Vec<PressingRow>>,
 }
 
 /// What contact changes of a step.
@@ -59,6 +64,9 @@ pub(super) struct TrialState<'a> {
     pub displacement: &'a [Vector],
     /// The share of the movement of bones after it.
     pub share: f64,
+    /// Forces in mN that the step leaves, by unknown, where the tangent is not positive definite: what presses may hold tissue that
+    /// buckles without it. Nothing otherwise.
+    pub left: &'a [[f64; 1]],
     /// The norm of the forces in mN that the step is to balance, and the part of it that may be left.
     pub unbalanced: f64,
     pub relative: f64,
@@ -82,12 +90,13 @@ impl<'a> Touching<'a> {
             new: 0,
             repeats: true,
             effort: Effort::default(),
+            at_load_steps: Vec::new(),
         }
     }
 
-    /// Looks for what faces what after a displacement and a share of the movement of bones; once that is made, only so often.
-    pub fn look(&mut self, displacement: &[Vector], share: f64) {
-        self.late_rounds += usize::from(share >= 1.0);
+    /// Looks for what faces what after a displacement and a share of the movement of bones; once the bones rest, only so often.
+    pub fn look(&mut self, displacement: &[Vector], share: f64, bones_rest: bool) {
+        self.late_rounds = if bones_rest { self.late_rounds + 1 } else { 0 };
         self.new = 0;
         if self.late_rounds > MOST_ROUNDS {
             return;
@@ -157,8 +166,15 @@ impl<'a> Touching<'a> {
         let mut equations = Equations::new(matrix, equations);
         let (before, progress) = (&*self.multipliers, ahead.progress);
         let first_residual = LOOSELY;
-        let task =
-            Task { gaps: &gaps, movement, relative_residual, first_residual, before, progress };
+        let task = Task {
+            gaps: &gaps,
+            movement,
+            relative_residual,
+            first_residual,
+            before,
+            left: ahead.left,
+            progress,
+        };
         let settled = set.settle(&mut equations, &task, Point::default())?;
         self.effort.count(&settled);
         self.repeats = settled.repeats;
@@ -175,6 +191,11 @@ impl<'a> Touching<'a> {
         self.multipliers = multipliers;
     }
 
+    /// Keeps what presses at the end of a load step.
+    pub fn keep_load_step(&mut self) {
+        self.at_load_steps.push(self.kept_rows.pressed(self.pressing()));
+    }
+
     /// How deep points lie behind what they face after a displacement and a share of the movement of bones, in mm.
     pub fn deepest(&self, displacement: &[Vector], share: f64) -> f64 {
         let gaps = self.kept_rows.rows.iter().map(|row| row.gap_after(displacement, share));
@@ -186,7 +207,7 @@ impl<'a> Touching<'a> {
         ModelError::ContactUnsettled { passes: self.effort.passes, moved_mm }
     }
 
-    /// The contact of an answer; none where nothing presses.
+    /// The contact of an answer; none where nothing presses, at the end of load steps either.
     pub fn answer(
         mut self,
         displacement: &[Vector],
@@ -195,14 +216,16 @@ impl<'a> Touching<'a> {
         let found = self.kept_rows.contact(self.pressing(), displacement);
         // Where points were not looked for any more, what a last look finds is what they still move by.
         self.late_rounds = 0;
-        self.look(displacement, 1.0);
+        self.look(displacement, 1.0, true);
         let last_moved_mm = self.deepest(displacement, 1.0);
         if last_moved_mm > UNSETTLED_MM {
             return Err(self.unsettled(last_moved_mm));
         }
-        let Touching { effort, kept_rows, .. } = self;
+        let Touching { effort, kept_rows, at_load_steps, .. } = self;
         let gaps = kept_rows.gaps(displacement, 1.0);
-        let contact = Contact { gaps, effort, last_moved_mm, relative_residual, ..found };
-        Ok((!contact.pressed.is_empty()).then_some(contact))
+        let has_pressed = at_load_steps.iter().chain([&found.pressed]).any(|rows| !rows.is_empty());
+        let contact =
+            Contact { gaps, effort, last_moved_mm, relative_residual, at_load_steps, ..found };
+        Ok(has_pressed.then_some(contact))
     }
 }
