@@ -8,6 +8,7 @@ import { address } from "../route.js";
 import { anything } from "./anything.js";
 import { conformedFacts } from "./conformed.js";
 import { comparisonFacts } from "./distances.js";
+import { failingRows } from "./failing.js";
 import { fileList } from "./files.js";
 import { foundFacts } from "./found.js";
 import { groupFacts } from "./groups.js";
@@ -42,7 +43,7 @@ function verdictFacts(words: Words, { verdict, on_front }: Documents["StudySumma
   const others = Object.entries(words.rowStates).map(([state, name]) => [name, Number((verdict as unknown as Record<string, unknown>)[state] ?? 0)] as const).filter(([, rows]) => rows > 0);
   return card(words.verdict, make("p", {}, make("strong", {}, words.outcomes[verdict.outcome] ?? verdict.outcome),
     ` · ${words.rowsOf(verdict.solved, verdict.rows)}${others.map(([name, rows]) => `, ${rows} ${name}`).join("")}`),
-  ...(verdict.reasons ?? []).map((reason) => make("p", { className: "warned" }, reason)),
+  ...(verdict.reasons ?? []).map((reason) => make("p", { className: "warned" }, reason)), failingRows(words, verdict),
   on_front.length > 0 && make("p", { className: "fine" }, `${words.onFront}: ${on_front.map((label) => label.replaceAll("_", " ")).join(", ")}`));
 }
 

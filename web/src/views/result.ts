@@ -11,7 +11,7 @@ import { ACCENT, hex } from "../palette.js";
 import { address, note } from "../route.js";
 import type { Hit, Shape } from "../scene.js";
 import { pointArrays, readVtp } from "../vtp.js";
-import { mm, signed } from "../figures.js";
+import { mm } from "../figures.js";
 import { Workbench, type SkinMap } from "../workbench.js";
 import { resultBeside } from "./above.js";
 import { correctionFacts } from "./corrected.js";
@@ -19,7 +19,7 @@ import { crumbs } from "./crumbs.js";
 import { foundFacts, foundLine, planOf, targetsOf } from "./found.js";
 import { comparisonFacts } from "./distances.js";
 import { fileList } from "./files.js";
-import { told } from "./movements.js";
+import { inWays, told } from "./movements.js";
 import { cephalometry, landmarks, provenance, regions, type Shown } from "./numbers.js";
 import { kindOf, statusOf } from "./kinds.js";
 import { placesOf, type Parts } from "./places.js";
@@ -245,11 +245,10 @@ class Result {
     const { app: { words }, bench, opened } = this;
     if (hit === undefined) return;
     const moved = [0, 1, 2].map((axis) => this.displacement_mm[3 * hit.node + axis]!) as Triple;
-    const [forward, up, left] = inWords(moved, opened.frame);
     const error = this.after.values._NUMERICAL_ERROR_MM?.[hit.node];
     bench.scene.mark([{ at_mm: hit.point_mm, colour: hex(ACCENT) }]);
     said.textContent = `${words.point} ${hit.node} ${words.movesBy} ${mm(Math.hypot(...moved))} mm`
-      + ` (${words.forward.toLowerCase()} ${signed(forward)}, ${words.up.toLowerCase()} ${signed(up)}, ${words.left.toLowerCase()} ${signed(left)})`
+      + ` (${inWays(words, inWords(moved, opened.frame), opened.frame)})`
       + (error === undefined ? "" : ` ± ${mm(error)}`);
   }
 
