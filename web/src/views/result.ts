@@ -10,7 +10,7 @@ import { PLAN_STATE, planState, read, readPivots, written, type Plan, type Pivot
 import { ACCENT, hex } from "../palette.js";
 import { address, note } from "../route.js";
 import type { Hit, Shape } from "../scene.js";
-import { pointArrays, readVtp } from "../vtp.js";
+import { asInGlb, pointArrays, readVtp } from "../vtp.js";
 import { mm } from "../figures.js";
 import { Workbench, type SkinMap } from "../workbench.js";
 import { resultBeside } from "./above.js";
@@ -42,7 +42,7 @@ export async function resultPage(app: App): Promise<Leave> {
     return () => {};
   }
   const files = job.results?.files.map(({ name }) => name) ?? [];
-  if (!files.includes("skin.glb")) {
+  if (!isDrawn(job, files)) {
     const leave = await resultBeside(app, job);
     return () => { left = true; leave(); };
   }
@@ -50,6 +50,10 @@ export async function resultPage(app: App): Promise<Leave> {
   await result.start();
   return () => { left = true; result.leave(); };
 }
+
+/** Whether the face before and after can be drawn: also from `skin.vtp`, which comparisons have of another skin. */
+const isDrawn = ({ kind }: Job, files: string[]): boolean =>
+  files.includes("skin.glb") || (files.includes("skin.vtp") && (kind === "predict" || kind === "optimise"));
 
 /** Shows how far a job is until it has ended. */
 async function follow(app: App, job: Job, left: () => boolean): Promise<Job> {
@@ -82,7 +86,7 @@ function backLink({ words, route }: App, job: Job): HTMLElement {
 class Result {
   private bench!: Workbench;
   private opened!: Opened;
-  private after!: Surface;
+  private after!: Omit<Surface, "extras">;
   private displacement_mm!: Float32Array;
   private before!: Shape;
   private plan: Plan | undefined;
@@ -95,7 +99,8 @@ class Result {
   async start(): Promise<void> {
     const { app, job } = this;
     this.opened = await openCase(app.service, job.case!);
-    const skin = readGlb(await app.service.file(job.id, "skin.glb"));
+    const has = (name: string) => this.results.files.some((file) => file.name === name);
+    const skin = has("skin.glb") ? readGlb(await app.service.file(job.id, "skin.glb")) : asInGlb(await readVtp(await app.service.file(job.id, "skin.vtp")));
     this.after = skin;
     this.displacement_mm = skin.values._DISPLACEMENT_MM ?? new Float32Array(skin.points_mm.length);
     this.before = { triangles: skin.triangles, points_mm: skin.points_mm.map((value, at) => value - this.displacement_mm[at]!) };
