@@ -149,6 +149,8 @@ class Planning {
         { name: "second", label: words.secondOrder, scheme: "length" as const, range_mm: 1, values: () => lengths(this.sum.second_mm!) },
         { name: "left", label: words.leftOutMap, scheme: "length" as const, range_mm: 1, values: () => this.sum.leftOut_mm(loaded.description.second_order!.third_order_mm) }]),
     ]);
+    // What the strip says is of the response before.
+    this.strip = undefined;
     this.order.show(loaded);
   }
 
