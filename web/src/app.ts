@@ -2,6 +2,7 @@
 import { FaciesError, JobFailed, Refused, type Service, type Warning } from "./api.js";
 import { button, find, make } from "./dom.js";
 import type { Route } from "./route.js";
+import { called, isShort, shown } from "./views/anything.js";
 import type { Words } from "./words/en.js";
 
 export interface App {
@@ -52,8 +53,17 @@ export interface Place {
 export function warnings(list: Warning[] | undefined, words: Words, places: (warning: Warning) => Place[] = () => []): HTMLElement {
   if (list === undefined || list.length === 0) return make("p", { className: "fine" }, words.noWarnings);
   return make("ul", { className: "warnings" }, ...list.map((warning) =>
-    make("li", {}, warningName(warning, words), make("span", { lang: "en" }, warning.detail), " ", make("a", { href: `/errors#${warning.code}`, className: "code" }, warning.code),
+    make("li", {}, warningName(warning, words), make("span", { lang: "en" }, warning.detail), " ", numbersOf(warning), make("a", { href: `/errors#${warning.code}`, className: "code" }, warning.code),
       ...places(warning).map(({ label, show }) => button(words.showPlace(label), show, { className: "place" })))));
+}
+
+/** What a warning counted or measured, by the names of the service. */
+export const warningNumbers = ({ code: _code, detail: _detail, ...numbers }: Warning): string =>
+  Object.entries(numbers as Record<string, unknown>).filter(([, value]) => isShort(value)).map(([name, value]) => `${called(name)}: ${shown(value)}`).join(" · ");
+
+function numbersOf(warning: Warning): HTMLElement | false {
+  const numbers = warningNumbers(warning);
+  return numbers !== "" && make("span", { className: "numbers", lang: "en" }, numbers, " ");
 }
 
 /** Of a code that the page does not know the sentence alone stands. */

@@ -126,7 +126,9 @@ export async function buildResponse(
   app: App, id: string, more: { order?: 2; growth?: string[] }, into: HTMLElement, waiting?: Waiting,
 ): Promise<string | undefined> {
   const { service, words } = app;
-  const { id: job } = await service.post<Job>("/v1/jobs", { kind: "response", case: id, ...more });
+  const { id: job, status } = await service.post<Job>("/v1/jobs", { kind: "response", case: id, ...more });
+  // An earlier job was the same.
+  if (status === "successful") return job;
   const line = new ProgressLine(words, waiting?.label ?? words.building, waiting && { text: words.cancel, clicked: () => waiting.stop(job) });
   if (waiting?.isLeft() === true) return undefined;
   into.append(line.element);

@@ -69,6 +69,10 @@ export async function pointArrays(content: ArrayBuffer, wanted: (name: string) =
   return values;
 }
 
+/** Values of a file of skin by the names that `skin.glb` has for them: `displacement_mm` is `_DISPLACEMENT_MM`. */
+export const asInGlb = (surface: VtpSurface): VtpSurface =>
+  ({ ...surface, values: Object.fromEntries(Object.entries(surface.values).map(([name, values]) => [`_${name.toUpperCase()}`, values])) });
+
 export async function readVtp(content: ArrayBuffer): Promise<VtpSurface> {
   const text = new TextDecoder().decode(content);
   if (!text.includes('header_type="UInt64"') || !text.includes("vtkZLibDataCompressor")) throw new Error("no VTP file of the service");

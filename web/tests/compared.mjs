@@ -25,7 +25,7 @@ async function saved(page) {
 }
 
 /** The skin that is drawn, moved, as a PLY file. */
-async function moved(page, move) {
+export async function moved(page, move) {
   const { points, triangles } = await page.evaluate(() => {
     const { scene } = document.querySelector(".screen");
     return { points: [...scene.skinPositions_mm], triangles: [...scene.resting.triangles] };
@@ -47,7 +47,17 @@ export async function compared(page, job) {
     const predicted = await positions(page);
     const real = await moved(page, ([x, y, z]) => [x + 2, y - 3, z + 1]);
     await page.locator("input[data-actual]").setInputFiles({ name: "real.ply", mimeType: "application/octet-stream", buffer: real });
+    // Nothing is registered by itself: skins that are fitted to each other hide what the prediction errs.
+    assert.deepEqual(await page.locator("fieldset", { hasText: "Register first" }).locator("label").allTextContents(), ["no", "by bone", "by ICP of the skins"]);
+    assert(await page.getByRole("radio", { name: "no", exact: true }).isChecked());
+    await page.getByText("Fitting the skins to each other (ICP) hides the error of the prediction", { exact: false }).waitFor();
     await page.getByRole("button", { name: "Compare" }).click();
+    await page.getByText("Registration: no").waitFor();
+    const apartMean = Number(await page.locator("table", { hasText: "< 1 mm" }).locator("tr", { hasText: "whole skin" }).locator("td").first().textContent());
+    assert(apartMean > 1, `${apartMean} mm, of a skin that is shifted by 3.7 mm`);
+    await page.getByText("by ICP of the skins").click();
+    await page.getByRole("button", { name: "Compare" }).click();
+    await page.getByText("Registration: icp").waitFor();
     const row = page.locator("table", { hasText: "< 1 mm" }).locator("tr", { hasText: "whole skin" }).locator("td");
     await row.first().waitFor();
     const [mean, , , within] = await row.allTextContents();
@@ -129,7 +139,7 @@ export async function compared(page, job) {
     const { notice, provenance, caption, map } = document.asset.extras;
     assert.equal(notice, "Research software, not a medical device");
     assert.match(provenance, new RegExp(`case ${caseId} · response [0-9a-f-]{36}`));
-    assert.match(caption, /mandible forward -6 mm/);
+    assert.match(caption, /mandible back 6 mm/);
     assert.deepEqual(map, { label: "Displacement", unit: "mm", range: [0, 10] });
     const names = document.nodes.map(({ name }) => name);
     assert.deepEqual([names[0], ...names.slice(1, -1).sort(), names.at(-1)], ["skin", "mandible", "maxilla", "skull", "head"]);

@@ -33,7 +33,7 @@ async function surface(job) {
 }
 
 /** A case of two layers that is solved in a moment. */
-async function block(changes = {}, files = {}) {
+export async function block(changes = {}, files = {}) {
   const form = new FormData();
   const { case: document } = JSON.parse(await readFile(`${BLOCK}case.json`, "utf8"));
   form.append("case", new Blob([JSON.stringify({ ...document, ...changes })], { type: "application/json" }));
@@ -45,7 +45,7 @@ async function block(changes = {}, files = {}) {
 }
 
 /** A box between two corners as an STL file, its triangles facing out. */
-function boxOf(low, high) {
+export function boxOf(low, high) {
   const corner = (at) => low.map((value, axis) => ((at >> axis) & 1 ? high[axis] : value)).join(" ");
   const faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
   const triangles = faces.flatMap(([a, b, c, d]) => [[a, b, c], [a, c, d]]);

@@ -91,7 +91,7 @@ export async function mended(page, job) {
   await check("jobs are told apart by what they move and by the ends of their ids", async () => {
     await go(page, "#/jobs");
     const row = page.locator("tr", { hasText: `…${job.slice(-6)}` });
-    for (const moved of ["maxilla forward 4 mm", "mandible forward -6 mm, up 2 mm"]) await row.getByText(moved).waitFor();
+    for (const moved of ["maxilla forward 4 mm", "mandible back 6 mm, up 2 mm"]) await row.getByText(moved).waitFor();
     await fits(page);
     await pictured(page, "jobs-named");
     await go(page, `#/case/${caseId}/compare`);

@@ -2,6 +2,7 @@
 import assert from "node:assert/strict";
 import { readFile, writeFile } from "node:fs/promises";
 import { join } from "node:path";
+import { answers } from "./answers.mjs";
 import { compared } from "./compared.mjs";
 import { cuts } from "./cuts.mjs";
 import { facts } from "./facts.mjs";
@@ -324,7 +325,7 @@ await check("a picture is saved with its legend and what it is not", async () =>
   // The words that it was written with, and the colours that stand in it.
   const written = (await page.evaluate(() => window.written)).join("\n");
   const { results } = await json(`/v1/jobs/${job}`);
-  for (const part of ["Displacement, mm", "\n0\n", "\n10\n", `job ${job}`, results.provenance.spec_hash.slice(0, 16), "Research software, not a medical device", "half head", "mandible forward -6 mm"]) {
+  for (const part of ["Displacement, mm", "\n0\n", "\n10\n", `job ${job}`, results.provenance.spec_hash.slice(0, 16), "Research software, not a medical device", "half head", "mandible back 6 mm"]) {
     assert(`\n${written}\n`.includes(part), `${part} in ${written}`);
   }
   const found = await page.evaluate(async ([base64, wanted]) => {
@@ -538,6 +539,7 @@ await muscles(page);
 await printed();
 await kinds(page);
 await facts(page);
+await answers(page);
 
 await check("jobs are listed, and studies", async () => {
   await go(page, `#/jobs`);

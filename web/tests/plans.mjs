@@ -27,7 +27,7 @@ export async function plans(page) {
     await slide(page, "mandible", "forward", -4);
     await page.getByRole("button", { name: "Save over jaw back" }).click();
     await page.waitForFunction(() => document.querySelectorAll(".plans [data-plan]").length === 1);
-    await page.locator(".plans .name", { hasText: "forward -4 mm" }).waitFor();
+    await page.locator(".plans .name", { hasText: "back 4 mm" }).waitFor();
     const [again] = await stored();
     assert.deepEqual([again.id, again.version, again.plan.segments[0].translation_mm], [first.id, 2, [0, 4, 0]]);
     // The address of the stored plan alone says its movements.

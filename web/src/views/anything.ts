@@ -21,12 +21,14 @@ export function called(member: string): string {
 const isScalar = (value: Value): value is string | number | boolean => ["string", "number", "boolean"].includes(typeof value);
 const isMembers = (value: Value): value is Members => typeof value === "object" && value !== null && !Array.isArray(value);
 
-function shown(value: Value): string {
+/** A short value as people read it. */
+export function shown(value: Value): string {
   if (typeof value === "number") return Math.abs(value) >= 1e5 || (value !== 0 && Math.abs(value) < 1e-3) ? value.toExponential(2) : figure(value, 3);
   if (Array.isArray(value) && value.every(isScalar)) return value.slice(0, 12).map(shown).join(", ") + (value.length > 12 ? ", …" : "");
   return isScalar(value) ? String(value) : "–";
 }
-const isShort = (value: Value) => isScalar(value) || (Array.isArray(value) && value.every(isScalar));
+/** A scalar, or a list of them. */
+export const isShort = (value: Value) => isScalar(value) || (Array.isArray(value) && value.every(isScalar));
 
 /** Rows of the same kind as a table; what is too much is counted. */
 function rows(words: Words, name: string, list: Members[]): HTMLElement {

@@ -11,6 +11,7 @@ import { Workbench } from "../workbench.js";
 import { crumbs } from "./crumbs.js";
 import { jobInWords } from "./called.js";
 import { comparisonFacts, histogram } from "./distances.js";
+import { alignDocument, registrations, stayingBones, type Registration } from "./registration.js";
 import { reportLinks } from "./reports.js";
 
 type How = "one" | "overlay" | "sides";
@@ -30,7 +31,9 @@ export async function comparePage(app: App): Promise<Leave> {
 
 class Comparing {
   private job: Job | undefined;
-  private align = "icp";
+  private align: Registration = "none";
+  /** The bone of the case that a bone of the scan is laid on. */
+  private bone = "";
   /** What the registered real skin is drawn as. */
   private actual: Shape | undefined;
   private how: How;
@@ -57,19 +60,32 @@ class Comparing {
 
   private form(chosen: Job): HTMLElement {
     const { words } = this.app;
-    const file = make("input", { type: "file", accept: ".vtp,.stl,.ply", hidden: true, data: { actual: "" } });
-    // The browser's own button speaks the language of the browser.
-    const name = make("span", { className: "fine" });
-    file.addEventListener("change", () => { name.textContent = file.files?.[0]?.name ?? ""; });
+    const skin = this.picker(words.actual, { actual: "" });
+    const scanned = this.picker(words.scannedBone, { bone: "" });
+    const bones = stayingBones(this.opened.document);
+    this.bone = bones[0]?.mesh ?? "";
+    const onBone = make("div", { className: "stack", hidden: true },
+      select(words.boneOfCase, bones.map(({ name, mesh }) => [mesh, name] as const), this.bone, (mesh) => { this.bone = mesh; }), scanned.element);
     const compare = button(words.compareNow, () => {
-      const [surface] = file.files ?? [];
-      if (surface === undefined) { file.click(); return; }
-      this.compare(surface).catch((error: unknown) => this.said.replaceChildren(refusal(error, words)));
+      const missing = [skin, ...(this.align === "surfaces" ? [scanned] : [])].find(({ input }) => (input.files?.length ?? 0) === 0);
+      if (missing !== undefined) { missing.input.click(); return; }
+      this.compare(skin.input.files![0]!, scanned.input.files?.[0]).catch((error: unknown) => this.said.replaceChildren(refusal(error, words)));
     }, { className: "primary" });
+    const ways = choice(words.align, registrations(words, this.opened.document), this.align, (value) => { this.align = value; onBone.hidden = value !== "surfaces"; });
     return make("div", { className: "stack" },
       select(words.chooseJob, this.predictions.map((one) => [one.id, jobInWords(words, one)] as const), chosen.id, (id) => this.choose(id)),
-      make("div", { className: "field" }, make("span", {}, words.actual), make("div", { className: "row" }, button(words.chooseFile, () => file.click(), { aria: { label: `${words.chooseFile}: ${words.actual}` } }), name, file)),
-      choice(words.align, [["icp", words.alignIcp], ["none", words.alignNone]] as const, "icp", (value) => { this.align = value; }), compare);
+      skin.element, ways, make("p", { className: "fine" }, words.alignHint), onBone, compare);
+  }
+
+  /** A field for the file of a surface. */
+  private picker(label: string, data: Record<string, string>): { element: HTMLElement; input: HTMLInputElement } {
+    const { words } = this.app;
+    const input = make("input", { type: "file", accept: ".vtp,.stl,.ply", hidden: true, data });
+    // The browser's own button speaks the language of the browser.
+    const name = make("span", { className: "fine" });
+    input.addEventListener("change", () => { name.textContent = input.files?.[0]?.name ?? ""; });
+    return { input, element: make("div", { className: "field" }, make("span", {}, label),
+      make("div", { className: "row" }, button(words.chooseFile, () => input.click(), { aria: { label: `${words.chooseFile}: ${label}` } }), name, input)) };
   }
 
   /** Another prediction, with which nothing was compared yet. */
@@ -98,12 +114,15 @@ class Comparing {
     bench.start();
   }
 
-  private async compare(surface: File): Promise<void> {
+  private async compare(surface: File, scanned: File | undefined): Promise<void> {
     const { app: { service, words }, opened, job } = this;
     const line = new ProgressLine(words, words.comparison);
     this.said.replaceChildren(line.element);
-    const mesh = await service.upload(surface, "mm", opened.frame, (upload) => line.tell({ status: words.sending, ...upload }));
-    const spec = { kind: "compare", prediction: { job: job!.id }, actual: { mesh }, align: this.align };
+    const { align, bone } = this;
+    const sent = (file: File) => service.upload(file, "mm", opened.frame, (upload) => line.tell({ status: words.sending, ...upload }));
+    const mesh = await sent(surface);
+    const moving = align === "surfaces" ? await sent(scanned!) : undefined;
+    const spec = { kind: "compare", prediction: { job: job!.id }, actual: { mesh }, align: alignDocument(align, bone, moving) };
     const done = await service.run(spec as Documents["JobDocument"], (event) => line.tell(event));
     // Another prediction may have been chosen meanwhile.
     if (this.job !== job) return;

@@ -10,7 +10,7 @@ import { address } from "../route.js";
 import { figure, fixed, mm } from "../figures.js";
 import { closest, TISSUE, TISSUE_SCALES } from "../tissue.js";
 import { called } from "./inner.js";
-import { wordFor } from "./movements.js";
+import { wayFor, wordFor } from "./movements.js";
 import type { TrustLine } from "./trust.js";
 import type { Words } from "../words/en.js";
 
@@ -51,6 +51,14 @@ function inWords(words: Words, frame: FrameName, { segment, region, name, value 
   return { label, value: sign * value || 0, digits: 2, part: label };
 }
 
+/** The same within a sentence: a movement by the way that it goes, without a sign. */
+function byWay(words: Words, frame: FrameName, parameter: Parameter): { label: string; value: number; digits: number } {
+  const told = inWords(words, frame, parameter);
+  if (TISSUE.some((one) => one === parameter.name)) return told;
+  const { way, far } = wayFor(words, wordOf(parameter.name, frame).word, told.value, frame);
+  return { label: `${parameter.segment} ${way}, ${parameter.name.startsWith("rotation") ? "°" : "mm"}`, value: far, digits: told.digits };
+}
+
 /** A parameter that is stopped where there was room to move. */
 const stoppedOf = ({ at_bound }: Found) => at_bound.filter(({ value }) => value !== 0);
 
@@ -61,7 +69,7 @@ const OF_TISSUE = ["constant-at-end", "constant-not-determined", "growth-left-ou
  * tissue is warned of. */
 export function foundLine(words: Words, found: Found, named: NamedTarget[], frame: FrameName, warnings: Warning[] = []): TrustLine {
   const missed = found.targets.flatMap(({ residual_mm }, at) => (residual_mm > MISSED * named[at]!.sigma_mm ? [words.missedBy(named[at]!.label, mm(residual_mm))] : []));
-  const stopped = stoppedOf(found).map((one) => { const { label, value, digits } = inWords(words, frame, one); return words.stoppedAt(label, digits === 2 ? mm(value) : figure(value, digits)); });
+  const stopped = stoppedOf(found).map((one) => { const { label, value, digits } = byWay(words, frame, one); return words.stoppedAt(label, digits === 2 ? mm(value) : figure(value, digits)); });
   const told = warnings.filter(({ code }) => OF_TISSUE.includes(code)).map(({ detail }) => detail);
   const most = Math.max(0, ...found.targets.map(({ residual_mm }) => residual_mm));
   const why = [words.missedRule(MISSED), ...missed, ...stopped, ...told].join(" ");

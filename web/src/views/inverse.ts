@@ -13,7 +13,7 @@ import { Workbench } from "../workbench.js";
 import { readTissue, regionsOf, writeTissue, type TissueBounds } from "../tissue.js";
 import { crumbs } from "./crumbs.js";
 import { targetTags } from "./found.js";
-import { wordFor } from "./movements.js";
+import { wayFor, wordFor } from "./movements.js";
 import { tissueFields } from "./tissue.js";
 
 const COLOUR = hex(POINTED);
@@ -182,7 +182,8 @@ class Inverse {
       const word = TRANSLATIONS[at]!;
       const called = wordFor(words, word, this.opened.frame);
       const enough = Math.ceil(Math.abs(wanted));
-      const sentence = allowed === 0 ? words.heldThere(target.label, called, mm(wanted)) : words.notThatFar(target.label, called, mm(wanted), mm(allowed));
+      const { way, far } = wayFor(words, word, wanted, this.opened.frame);
+      const sentence = allowed === 0 ? words.heldThere(target.label, way, mm(far)) : words.notThatFar(target.label, way, mm(far), mm(allowed));
       return make("p", { className: "warned" }, sentence, " ",
         button(words.allowThat(called, enough), () => {
           for (const bound of Object.values(this.bounds)) bound[word] = Math.max(bound[word], enough);

@@ -6,6 +6,7 @@ import { address, note } from "../route.js";
 import type { Words } from "../words/en.js";
 import { mm, when } from "../figures.js";
 import { aboutJob, tail } from "./called.js";
+import { failingRows } from "./failing.js";
 import { kindOf, statusOf } from "./kinds.js";
 import { reportLinks } from "./reports.js";
 
@@ -111,7 +112,7 @@ async function report(app: App, job: Job, into: HTMLElement): Promise<void> {
     show(mark);
   });
   into.replaceChildren(make("p", { className: "fine" }, words.clickMarks), drawing, reportLinks(app, job) ?? "",
-    ...verdict.reasons.map((reason) => make("p", { className: "warned" }, reason)), told, place);
+    ...verdict.reasons.map((reason) => make("p", { className: "warned" }, reason)), failingRows(words, verdict) ?? "", told, place);
   const [level = "", ...label] = (app.route.state.get("study") === job.id ? app.route.state.get("mark") ?? "" : "").split(",");
   choose(level === "" ? undefined : { level: Number(level), label: label.join(",") });
 }

@@ -1,6 +1,7 @@
 // Sliders and number fields for the six movements of a segment.
+import type { Triple } from "../api.js";
 import { make } from "../dom.js";
-import { figure } from "../figures.js";
+import { figure, mm } from "../figures.js";
 import { ROTATIONS, TRANSLATIONS, type FrameName, type Motion, type MotionName } from "../frame.js";
 import type { Plan } from "../plan.js";
 import { toldInner } from "./inner.js";
@@ -50,11 +51,25 @@ export function movements(
 export const wordFor = (words: Words, word: MotionName, frame: FrameName): string => (frame === "unspecified" ? words.axes[word] : words[word].toLowerCase());
 const unitOf = (word: MotionName) => ((TRANSLATIONS as readonly string[]).includes(word) ? " mm" : "°");
 
+/** Which way a number of a movement goes, and how far: of an unspecified frame the axis, and the number as it is. */
+export function wayFor(words: Words, word: MotionName, value: number, frame: FrameName): { way: string; far: number } {
+  return frame === "unspecified" ? { way: words.axes[word], far: value } : { way: words.ways[word][value < 0 ? 1 : 0], far: Math.abs(value) };
+}
+
+/** Forward, up and left in mm, each by the way that it goes. */
+export const inWays = (words: Words, vector: Triple, frame: FrameName): string => TRANSLATIONS.map((word, at) => {
+  const { way, far } = wayFor(words, word, Math.abs(vector[at]!) < 0.005 ? 0 : vector[at]!, frame);
+  return `${way} ${mm(far)}`;
+}).join(", ");
+
 /** A plan in a line. */
 export function told(plan: Plan, words: Words, frame: FrameName): string {
   const parts = Object.entries(plan.segments).map(([name, motion]) => {
     const moved = Object.entries(motion).filter(([, value]) => value !== 0);
-    const text = moved.map(([word, value]) => `${wordFor(words, word as MotionName, frame)} ${figure(value)}${unitOf(word as MotionName)}`).join(", ");
+    const text = moved.map(([word, value]) => {
+      const { way, far } = wayFor(words, word as MotionName, value, frame);
+      return `${way} ${figure(far)}${unitOf(word as MotionName)}`;
+    }).join(", ");
     return text === "" ? "" : `${name} ${text}`;
   });
   return [...parts.filter((part) => part !== ""), ...toldInner(plan.inner, words)].join("; ") || words.atRest;

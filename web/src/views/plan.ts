@@ -18,7 +18,7 @@ import { innerSliders, type InnerSliders } from "./inner.js";
 import { movements, told, type Movements } from "./movements.js";
 import { SavedPlans, type Readable } from "./plans.js";
 import { placesOf } from "./places.js";
-import { SecondOrder } from "./second.js";
+import { SecondOrder, type OfCase } from "./second.js";
 import { drawTrust, reserveTrust } from "./trust.js";
 import { appliedLines } from "./trusted.js";
 
@@ -66,11 +66,15 @@ class Planning {
   private inner: InnerSliders | undefined;
   private asking: ReturnType<typeof setTimeout> | undefined;
   private asked = 0;
+  private ofCase: OfCase = "unknown";
+  /** Draws the strip of the last answer: whether the response is that of the case is known later. */
+  private strip: (() => void) | undefined;
   private model = "auto";
   private steps = 0;
 
   constructor(private readonly app: App, private readonly opened: Opened, private readonly bench: Workbench) {
-    this.order = new SecondOrder(app, opened.id, { ready: (loaded) => this.adopt(loaded), grow: (into) => void this.grow(into) });
+    this.order = new SecondOrder(app, opened, {
+      ready: (loaded) => this.adopt(loaded), grow: (into) => void this.grow(into), judged: (ofCase) => { this.ofCase = ofCase; this.strip?.(); } });
   }
 
   leave(): void {
@@ -145,6 +149,8 @@ class Planning {
         { name: "second", label: words.secondOrder, scheme: "length" as const, range_mm: 1, values: () => lengths(this.sum.second_mm!) },
         { name: "left", label: words.leftOutMap, scheme: "length" as const, range_mm: 1, values: () => this.sum.leftOut_mm(loaded.description.second_order!.third_order_mm) }]),
     ]);
+    // What the strip says is of the response before.
+    this.strip = undefined;
     this.order.show(loaded);
   }
 
@@ -321,11 +327,12 @@ class Planning {
       // What the case was warned of, its meshing too, is about each of its plans.
       const ofCase = (this.opened.view.check?.warnings ?? []).filter((one) => !own.some(({ code, detail }) => code === one.code && detail === one.detail));
       const told = [...ofCase, ...own];
-      drawTrust(bench.strip, words, appliedLines(words, { ...answer, warnings: told }, { apart, most: AGREED_MM }));
+      this.strip = () => drawTrust(bench.strip, words, appliedLines(words, { ...answer, warnings: told }, { apart, most: AGREED_MM, ofCase: this.ofCase }));
+      this.strip();
       this.warned.replaceChildren(warnings(told, words, placesOf(words, this.opened, this.bench.scene, () => ({}))));
       bench.strip.dataset.apart = String(apart);
     } catch (error) {
-      if (turn === this.asked) { bench.strip.replaceChildren(); this.warned.replaceChildren(refusal(error, words)); };
+      if (turn === this.asked) { this.strip = undefined; bench.strip.replaceChildren(); this.warned.replaceChildren(refusal(error, words)); };
     }
   }
 

@@ -10,8 +10,8 @@ import { PLAN_STATE, planState, read, readPivots, written, type Plan, type Pivot
 import { ACCENT, hex } from "../palette.js";
 import { address, note } from "../route.js";
 import type { Hit, Shape } from "../scene.js";
-import { pointArrays, readVtp } from "../vtp.js";
-import { mm, signed } from "../figures.js";
+import { asInGlb, pointArrays, readVtp } from "../vtp.js";
+import { mm } from "../figures.js";
 import { Workbench, type SkinMap } from "../workbench.js";
 import { resultBeside } from "./above.js";
 import { correctionFacts } from "./corrected.js";
@@ -19,7 +19,7 @@ import { crumbs } from "./crumbs.js";
 import { foundFacts, foundLine, planOf, targetsOf } from "./found.js";
 import { comparisonFacts } from "./distances.js";
 import { fileList } from "./files.js";
-import { told } from "./movements.js";
+import { inWays, told } from "./movements.js";
 import { cephalometry, landmarks, provenance, regions, type Shown } from "./numbers.js";
 import { kindOf, statusOf } from "./kinds.js";
 import { placesOf, type Parts } from "./places.js";
@@ -42,7 +42,7 @@ export async function resultPage(app: App): Promise<Leave> {
     return () => {};
   }
   const files = job.results?.files.map(({ name }) => name) ?? [];
-  if (!files.includes("skin.glb")) {
+  if (!isDrawn(job, files)) {
     const leave = await resultBeside(app, job);
     return () => { left = true; leave(); };
   }
@@ -50,6 +50,10 @@ export async function resultPage(app: App): Promise<Leave> {
   await result.start();
   return () => { left = true; result.leave(); };
 }
+
+/** Whether the face before and after can be drawn: also from `skin.vtp`, which comparisons have of another skin. */
+const isDrawn = ({ kind }: Job, files: string[]): boolean =>
+  files.includes("skin.glb") || (files.includes("skin.vtp") && (kind === "predict" || kind === "optimise"));
 
 /** Shows how far a job is until it has ended. */
 async function follow(app: App, job: Job, left: () => boolean): Promise<Job> {
@@ -82,7 +86,7 @@ function backLink({ words, route }: App, job: Job): HTMLElement {
 class Result {
   private bench!: Workbench;
   private opened!: Opened;
-  private after!: Surface;
+  private after!: Omit<Surface, "extras">;
   private displacement_mm!: Float32Array;
   private before!: Shape;
   private plan: Plan | undefined;
@@ -95,7 +99,8 @@ class Result {
   async start(): Promise<void> {
     const { app, job } = this;
     this.opened = await openCase(app.service, job.case!);
-    const skin = readGlb(await app.service.file(job.id, "skin.glb"));
+    const has = (name: string) => this.results.files.some((file) => file.name === name);
+    const skin = has("skin.glb") ? readGlb(await app.service.file(job.id, "skin.glb")) : asInGlb(await readVtp(await app.service.file(job.id, "skin.vtp")));
     this.after = skin;
     this.displacement_mm = skin.values._DISPLACEMENT_MM ?? new Float32Array(skin.points_mm.length);
     this.before = { triangles: skin.triangles, points_mm: skin.points_mm.map((value, at) => value - this.displacement_mm[at]!) };
@@ -245,11 +250,10 @@ class Result {
     const { app: { words }, bench, opened } = this;
     if (hit === undefined) return;
     const moved = [0, 1, 2].map((axis) => this.displacement_mm[3 * hit.node + axis]!) as Triple;
-    const [forward, up, left] = inWords(moved, opened.frame);
     const error = this.after.values._NUMERICAL_ERROR_MM?.[hit.node];
     bench.scene.mark([{ at_mm: hit.point_mm, colour: hex(ACCENT) }]);
     said.textContent = `${words.point} ${hit.node} ${words.movesBy} ${mm(Math.hypot(...moved))} mm`
-      + ` (${words.forward.toLowerCase()} ${signed(forward)}, ${words.up.toLowerCase()} ${signed(up)}, ${words.left.toLowerCase()} ${signed(left)})`
+      + ` (${inWays(words, inWords(moved, opened.frame), opened.frame)})`
       + (error === undefined ? "" : ` ± ${mm(error)}`);
   }
 

@@ -2,6 +2,7 @@
 import type { Documents, Warning } from "../api.js";
 import { figure, fixed, mm } from "../figures.js";
 import type { Words } from "../words/en.js";
+import type { OfCase } from "./second.js";
 import type { TrustLine } from "./trust.js";
 
 /** Means above this are to be heeded, in mm: what the program aims at, above which it warns of the mesh (`numerical-error-large`). */
@@ -34,13 +35,23 @@ export function leftOutLine(words: Words, answer: Documents["AppliedDocument"]):
   return heeded(words, line, "leftOut", answer.warnings, left);
 }
 
+/** The model of a response that is not that of the case, or not known to be, is not as it should be. */
+function stated(words: Words, line: TrustLine, ofCase: OfCase): TrustLine {
+  if (ofCase === "same") return line;
+  const reason = ofCase === "other" ? words.responseOther : words.responseUnknown;
+  const why = [line.why, reason].filter((part) => part !== undefined).join(" ");
+  return ofCase === "other" ? { ...line, value: `${line.value}, ${words.notOfCase}`, trusted: "heed", why } : { ...line, trusted: line.trusted === "heed" ? "heed" : "unknown", why };
+}
+
 /** Of a plan on a response; `apart` is how far the page is from the service, and `most` how far it may be, in mm. */
-export function appliedLines(words: Words, answer: Documents["AppliedDocument"], { apart, most }: { apart: number; most: number }): TrustLine[] {
+export function appliedLines(
+  words: Words, answer: Documents["AppliedDocument"], { apart, most, ofCase = "same" }: { apart: number; most: number; ofCase?: OfCase },
+): TrustLine[] {
   const second = answer.second_order_mm ?? undefined;
   const model: TrustLine = { name: words.method, value: answer.order === 2 ? words.methodOrder2 : words.methodOrder1, trusted: "good",
     ...(second === undefined ? {} : { why: words.secondAdds(mm(second)) }) };
   return [
-    heeded(words, model, "model", answer.warnings),
+    stated(words, heeded(words, model, "model", answer.warnings), ofCase),
     leftOutLine(words, answer),
     { name: words.numericalError, value: words.notKnown, trusted: "unknown", why: words.errorWithPredict },
     { name: words.sameAsService, value: apart <= most ? words.agrees(figure(most, 4)) : words.disagrees(fixed(apart, 4)), trusted: apart <= most ? "good" : "heed" },

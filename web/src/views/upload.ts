@@ -17,6 +17,9 @@ function named(choice: HTMLLabelElement): HTMLLabelElement {
 const ROLES: Role[] = ["none", "skin", "region", "segment", "fixed", "sliding"];
 const SURFACES = /\.(vtp|stl|ply)$/i;
 
+/** Slices of a DICOM series, which often have no ending. */
+export const isSlice = (name: string): boolean => /^[^.]+$|\.(dcm|dicom|ima)$/i.test(name);
+
 const stem = (name: string) => name.replace(/\.[^.]+(\.gz)?$/, "");
 
 export function uploadForm(app: App): HTMLElement {
@@ -68,6 +71,7 @@ async function taken(app: App, files: File[], said: HTMLElement, next: HTMLEleme
     await send(app, (stated.case ?? stated) as Documents["CaseDocument"], byReference(stated.case ?? stated, meshes), said);
     return;
   }
+  if (meshes.filter(({ name }) => isSlice(name)).length > 1) throw new Error(words.seriesAsArchive);
   const parts = Object.fromEntries(meshes.map((file) => [stem(file.name), file]));
   if (meshes.every(({ name }) => SURFACES.test(name))) {
     next.replaceChildren(surfacesEditor(app, parts, (document, some, into) => send(app, document, some, into)));

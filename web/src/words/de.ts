@@ -16,7 +16,8 @@ export const de: Words = {
   nodeCount: (nodes) => `${nodes} Knoten`,
   size: (nodes, cells) => `${nodes} Knoten, ${cells} Zellen`,
   addCase: "Fall anlegen", dropHere: "Ein Netz, oder ein Netz mit Falldokument (case.json) und Knochen, hier ablegen", chooseFiles: "Dateien wählen",
-  fileHint: "Volumennetze als VTU, VTK oder Gmsh; Oberflächen als VTP, STL oder PLY; ein CT als NRRD, NIfTI oder MetaImage mit einem Dokument, das die Vernetzung beschreibt.",
+  fileHint: "Volumennetze als VTU, VTK oder Gmsh; Oberflächen als VTP, STL oder PLY; ein CT als NRRD, NIfTI, MetaImage oder DICOM-Serie in einem ZIP-Archiv, mit einem Dokument, das die Vernetzung beschreibt.",
+  seriesAsArchive: "Die Dateien einer DICOM-Serie werden in einem ZIP-Archiv angenommen.",
   noJson: (file, why) => `${file} ist kein JSON: ${why}`,
   document: "Falldokument", documentHint: "Dateien heißen darin wie sie selbst, ohne Endung.", sendCase: "Senden", sending: "Sendet",
   frame: "Achsen", units: "Einheit", sets: "Knotenmengen",
@@ -35,6 +36,10 @@ export const de: Words = {
   forward: "Vor", up: "Auf", left: "Links", pitch: "Nicken", roll: "Rollen", yaw: "Gieren",
   forwardWhy: "vor +, zurück −", upWhy: "auf +, ab −", leftWhy: "nach links des Patienten +, rechts −",
   pitchWhy: "vorn auf +, ab −", rollWhy: "linke Seite auf +, ab −", yawWhy: "vorn nach links +, rechts −",
+  ways: {
+    forward: ["vor", "zurück"], up: ["auf", "ab"], left: ["links", "rechts"],
+    pitch: ["vorn auf", "vorn ab"], roll: ["links auf", "links ab"], yaw: ["vorn nach links", "vorn nach rechts"],
+  },
   axes: { forward: "y", up: "z", left: "x", pitch: "um x", roll: "um y", yaw: "um z" },
   unspecifiedFrame: "Die Achsen dieses Falls sind nicht angegeben: die sechs Zahlen gelten entlang und um seine Achsen.",
   turnsAbout: "Dreht um", itsCentre: "seine Mitte", undo: "Zurück", redo: "Wieder", reset: "Auf null", segment: "Segment",
@@ -45,7 +50,11 @@ export const de: Words = {
   secondThere: "Was mit dem Quadrat einer Bewegung wächst, ist in der Haut. Farben zeigen, wo das ist, und wo etwa so viel fehlt, wie oben steht: über die Haut verteilt wie die zweite Ordnung.",
   secondLarge: (mb) => `Die zweite Ordnung dieses Falls ist ${mb} MB groß und wird nur auf Wunsch gebaut.`,
   secondNot: (why) => `Die zweite Ordnung wurde nicht gebaut: ${why}`,
-  secondOther: "Diese Antwort wurde anders gebaut, als der Fall sagt: die zweite Ordnung des Falls gehörte nicht zu ihr.",
+  responseOther: "Diese Antwort wurde anders gebaut, als der Fall sagt, etwa mit anderen Materialien: Regler und Haut folgen ihr, „Ganz vorhersagen“ folgt dem Fall.",
+  responseUnknown: "Ob diese Antwort die ist, die der Fall angibt, ist noch nicht bekannt.", notOfCase: "nicht die des Falls", takeResponse: "Die Antwort des Falls nehmen", responseOfCase: "Die Antwort des Falls, im Hintergrund",
+  responseNotHeld: (why) => `Ob diese Antwort die ist, die der Fall angibt, ist nicht bekannt: ${why}`,
+  noSkinFile: "Dieses Ergebnis hat weder skin.glb noch skin.vtp, woraus das Gesicht gezeichnet wird: seine outputs ließen sie weg. Mit den üblichen Dateien noch einmal vorhersagen, um es zu sehen.",
+  predictAgain: "Mit der Haut noch einmal vorhersagen", predictAgainHint: "Derselbe Plan auf dem Fall, wie er ist. Materialien und Optionen, die nur der Auftrag selbst angab, sind nicht darin.",
   leftOut: (mm) => `im Mittel etwa ${mm} mm`,
   secondAdds: (mm) => `die zweite Ordnung fügt im Mittel ${mm} mm hinzu`,
   outside: "Jenseits dessen, was diesem Modell zuzutrauen ist: ganz vorhersagen.",
@@ -113,7 +122,9 @@ export const de: Words = {
 
   material: "Material", level: "Netzstufe", meanMm: "Mittel mm", toComparison: "Auf der Haut zeigen", pictures: "Bilder",
 
-  compareWhy: "Die vorhergesagte Haut gegen eine wirkliche halten, nach der Operation.", actual: "Wirkliche Haut (VTP, STL oder PLY)", actualSkin: "Wirkliche Haut", predictionAlone: "Vorhersage allein", actualHint: "Grüner Umriss: die wirkliche Haut, wo die Registrierung sie hinlegt.", align: "Zuerst registrieren", alignIcp: "mit ICP", alignNone: "nein",
+  compareWhy: "Die vorhergesagte Haut gegen eine wirkliche halten, nach der Operation.", actual: "Wirkliche Haut (VTP, STL oder PLY)", actualSkin: "Wirkliche Haut", predictionAlone: "Vorhersage allein", actualHint: "Grüner Umriss: die wirkliche Haut, wo die Registrierung sie hinlegt.", align: "Zuerst registrieren", alignIcp: "mit ICP der Häute", alignNone: "nein", alignBone: "am Knochen",
+  alignHint: "Die Häute aneinander anzupassen (ICP) verbirgt den Fehler der Vorhersage: liegt der Scan nicht wie der Fall, an Knochen registrieren, der blieb.",
+  boneOfCase: "Knochen des Falls, der blieb", scannedBone: "Derselbe Knochen im Scan (VTP, STL oder PLY)",
   chooseFile: "Datei wählen", compareNow: "Vergleichen", histogram: "Abstände", registration: "Registrierung", turned: "gedreht", shifted: "verschoben", residual: "rms",
   chooseJob: "Vorhersage", noPredictions: "Noch keine Vorhersage dieses Falls: erst eine planen.",
 
@@ -128,6 +139,7 @@ export const de: Words = {
   outcomes: { pass: "bestanden", worse: "schlechter als verlangt", incomplete: "unvollständig", "no-baseline": "nichts zum Vergleichen da" },
   onFront: "Beste Kompromisse aus Fehler und Zeit", rowsOf: (solved, all) => `${solved} von ${all} Zeilen gelöst`,
   rowStates: { failed: "gescheitert", worse: "schlechter", not_run: "nicht gelaufen", skipped: "ausgelassen" },
+  failingRows: "Zeilen, die durchfallen", valueHad: "hat", mostAllowed: "höchstens erlaubt",
   verdict: "Urteil", report: "Bericht", chart: "Diagramm", rows: "Zeilen", variant: "Variante", scene: "Szene", wall: "s", p95mm: "p95 mm",
 
   materials: "Materialien aus der Literatur", asStated: "wie im Fall", otherRegions: "alles übrige Gewebe", measuredModuli: "Gemessene Moduln", tissue: "Gewebe", source: "Quelle", doubt: "Was dagegen spricht",

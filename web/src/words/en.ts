@@ -14,7 +14,8 @@ export const en = {
   nodeCount: (nodes: string) => `${nodes} nodes`,
   size: (nodes: string, cells: string) => `${nodes} nodes, ${cells} cells`,
   addCase: "Add a case", dropHere: "Drop a mesh, or a mesh with its case document (case.json) and bones, here", chooseFiles: "Choose files",
-  fileHint: "VTU, VTK or Gmsh volume meshes; surfaces as VTP, STL or PLY; a CT as NRRD, NIfTI or MetaImage with a document that says how it is meshed.",
+  fileHint: "VTU, VTK or Gmsh volume meshes; surfaces as VTP, STL or PLY; a CT as NRRD, NIfTI, MetaImage or a DICOM series in one ZIP archive, with a document that says how it is meshed.",
+  seriesAsArchive: "The files of a DICOM series are taken in one ZIP archive.",
   noJson: (file: string, why: string) => `${file} is not JSON: ${why}`,
   document: "Case document", documentHint: "Files are called by their names without the ending.", sendCase: "Send", sending: "Sending",
   frame: "Frame", units: "Units", sets: "Sets of nodes",
@@ -33,6 +34,10 @@ export const en = {
   forward: "Forward", up: "Up", left: "Left", pitch: "Pitch", roll: "Roll", yaw: "Yaw",
   forwardWhy: "forward +, back −", upWhy: "up +, down −", leftWhy: "to the patient's left +, right −",
   pitchWhy: "front up +, down −", rollWhy: "left side up +, down −", yawWhy: "front to the left +, right −",
+  ways: {
+    forward: ["forward", "back"], up: ["up", "down"], left: ["left", "right"],
+    pitch: ["front up", "front down"], roll: ["left side up", "left side down"], yaw: ["front to the left", "front to the right"],
+  } as Record<"forward" | "up" | "left" | "pitch" | "roll" | "yaw", [string, string]>,
   axes: { forward: "y", up: "z", left: "x", pitch: "about x", roll: "about y", yaw: "about z" },
   unspecifiedFrame: "The frame of this case is not stated: the six numbers are those of its axes.",
   turnsAbout: "Turns about", itsCentre: "its centre", undo: "Undo", redo: "Redo", reset: "Set to zero", segment: "Segment",
@@ -43,7 +48,11 @@ export const en = {
   secondThere: "What grows with the square of a movement is in the skin. Colours show where that is, and where about as much is left out as the strip says: shared out over the skin as the second order is.",
   secondLarge: (mb: string) => `The second order of this case is ${mb} MB to fetch, and is built only when asked for.`,
   secondNot: (why: string) => `The second order was not built: ${why}`,
-  secondOther: "This response was built in another way than the case says: the second order of the case would not belong to it.",
+  responseOther: "This response was built in another way than the case says, as with other materials: sliders and skin follow it, “Predict in full” follows the case.",
+  responseUnknown: "Whether this response is the one that the case states is not known yet.", notOfCase: "not of this case", takeResponse: "Use the response of the case", responseOfCase: "The response of the case, in the background",
+  responseNotHeld: (why: string) => `Whether this response is the one that the case states is not known: ${why}`,
+  noSkinFile: "This result has no skin.glb and no skin.vtp, from which the face is drawn: its outputs left them out. Predict again with the usual files to see it.",
+  predictAgain: "Predict again with the skin", predictAgainHint: "The same plan on the case as it is. Materials and options that only the spec of that job stated are not in it.",
   leftOut: (mm: string) => `mean about ${mm} mm`,
   secondAdds: (mm: string) => `the second order adds ${mm} mm on average`,
   outside: "Beyond what this model is trusted with: predict it in full.",
@@ -111,7 +120,9 @@ export const en = {
 
   material: "Material", level: "Mesh level", meanMm: "mean mm", toComparison: "Show it on the skin", pictures: "Pictures",
 
-  compareWhy: "Hold the predicted skin against a real one, after the operation.", actual: "Real skin (VTP, STL or PLY)", actualSkin: "Real skin", predictionAlone: "prediction alone", actualHint: "Green outline: the real skin, where its registration puts it.", align: "Register first", alignIcp: "by ICP", alignNone: "no",
+  compareWhy: "Hold the predicted skin against a real one, after the operation.", actual: "Real skin (VTP, STL or PLY)", actualSkin: "Real skin", predictionAlone: "prediction alone", actualHint: "Green outline: the real skin, where its registration puts it.", align: "Register first", alignIcp: "by ICP of the skins", alignNone: "no", alignBone: "by bone",
+  alignHint: "Fitting the skins to each other (ICP) hides the error of the prediction: where the scan does not lie as the case does, register by bone that stayed.",
+  boneOfCase: "Bone of the case, which stayed", scannedBone: "The same bone in the scan (VTP, STL or PLY)",
   chooseFile: "Choose a file", compareNow: "Compare", histogram: "Distances", registration: "Registration", turned: "turned", shifted: "shifted", residual: "rms",
   chooseJob: "Prediction", noPredictions: "No prediction of this case yet: plan one first.",
 
@@ -126,6 +137,7 @@ export const en = {
   outcomes: { pass: "passed", worse: "worse than asked for", incomplete: "incomplete", "no-baseline": "no baseline to compare with" } as Record<string, string>,
   onFront: "Best compromises of error and time", rowsOf: (solved: number, all: number) => `${solved} of ${all} rows solved`,
   rowStates: { failed: "failed", worse: "worse", not_run: "not run", skipped: "left out" } as Record<string, string>,
+  failingRows: "Rows that fail", valueHad: "has", mostAllowed: "may have at most",
   verdict: "Verdict", report: "Report", chart: "Chart", rows: "Rows", variant: "Variant", scene: "Scene", wall: "s", p95mm: "p95 mm",
 
   materials: "Materials of the literature", asStated: "as the case says", otherRegions: "all other tissue", measuredModuli: "Moduli that were measured", tissue: "Tissue", source: "Source", doubt: "What speaks against it",

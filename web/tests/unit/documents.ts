@@ -4,16 +4,22 @@ import { readFileSync } from "node:fs";
 import { test } from "node:test";
 import type { Documents } from "../../../clients/typescript/src/facies.js";
 import { documentOf, guess, heldBy, isHeldBySets, rolesOf, segmentOf, withRoles, type SetRoles } from "../../src/roles.js";
-import { shareOf } from "../../src/app.js";
+import { shareOf, warningNumbers } from "../../src/app.js";
 import { wordOf } from "../../src/frame.js";
 import { beyondBounds, readBounds, readTargets, writeBounds, writeTargets, type Bounds, type Target } from "../../src/targets.js";
 import { closest, readTissue, regionsOf, usualEnds, writeTissue, type TissueBounds } from "../../src/tissue.js";
 import { called } from "../../src/views/anything.js";
 import { jobInWords, planInWords } from "../../src/views/called.js";
+import { failingCells } from "../../src/views/failing.js";
 import { foundLine, targetsOf, targetTags, withFound } from "../../src/views/found.js";
 import { surfaceRole, surfacesDocument } from "../../src/views/meshed.js";
+import { inWays } from "../../src/views/movements.js";
 import { names } from "../../src/views/places.js";
+import { againWithSkin } from "../../src/views/plain.js";
+import { alignDocument, registrations } from "../../src/views/registration.js";
+import { isSameModel, likeThis } from "../../src/views/second.js";
 import { appliedLines, resultLines } from "../../src/views/trusted.js";
+import { isSlice } from "../../src/views/upload.js";
 import { de } from "../../src/words/de.js";
 import { en } from "../../src/words/en.js";
 
@@ -105,6 +111,70 @@ test("what was found has the words and signs of the sliders", () => {
   const job = { kind: "predict", id: "0199-aaaa-bbbb-123456", created: "2026-01-01T00:00:00Z", results: { provenance: { frame: "LPS", plan } } } as unknown as Documents["StatusInfo"];
   globalThis.document = { documentElement: { lang: "en" } } as unknown as Document;
   assert.match(jobInWords(en, job), /^Prediction · maxilla forward 5 mm · .+ · …123456$/);
+});
+
+test("a movement is told by the way that it goes, not by a sign", () => {
+  const plan = { frame: "LPS", segments: [{ name: "mandible", translation_mm: [-2, 5, -1], rotation_deg: [3, 2, -4] }] } as unknown as Documents["PlanDocument"];
+  assert.equal(planInWords(en, plan, "LPS"), "mandible back 5 mm, down 1 mm, right 2 mm, front down 3°, left side down 2°, front to the right 4°");
+  assert.equal(planInWords(de, plan, "LPS"), "mandible zurück 5 mm, ab 1 mm, rechts 2 mm, vorn ab 3°, links ab 2°, vorn nach rechts 4°");
+  assert.equal(planInWords(en, { segments: [{ name: "jaw", translation_mm: [0, -5, 0] }] } as unknown as Documents["PlanDocument"], "unspecified"), "jaw y -5 mm");
+  assert.equal(inWays(en, [-1.5, 0.001, 2], "LPS"), "back 1.50, up 0.00, left 2.00");
+  const found = { targets: [], at_bound: [{ segment: "maxilla", name: "translation_mm.y", value: 10, bound: "upper" }] } as unknown as Documents["OptimisationDocument"];
+  assert.match(foundLine(en, found, [], "LPS").why!, /maxilla back, mm is stopped by its bound at 10\.00\./);
+});
+
+test("nothing is registered by itself, and bone is offered where a bone stays", () => {
+  const [bones, segments] = [[{ name: "skull", mesh: "s" }, { name: "jaw", mesh: "j" }], [{ name: "jaw" }]];
+  const offered = (document: object) => registrations(en, document as Documents["CaseDocument"] & { volume: string }).map(([way]) => way);
+  assert.deepEqual(offered({ bones, segments }), ["none", "surfaces", "icp"]);
+  assert.deepEqual(offered({ bones: bones.slice(1), segments }), ["none", "icp"]);
+  assert.deepEqual(offered({}), ["none", "icp"]);
+  assert.deepEqual([alignDocument("none"), alignDocument("surfaces", "s", "m")], ["none", { method: "surfaces", fixed: { mesh: "s" }, moving: { mesh: "m" } }]);
+});
+
+test("a result without a skin is predicted again by its plan", () => {
+  const of = (provenance: object, more = {}) => againWithSkin({ case: "c", results: { provenance, ...more } } as unknown as Documents["StatusInfo"]);
+  const plan = { segments: [] };
+  assert.deepEqual(of({ plan, method: "fem_linear" }), { kind: "predict", case: "c", plan, method: "fem_linear" });
+  assert.deepEqual(of({ plan, method: "fem_linear", model: "second_order" }), { kind: "predict", case: "c", plan });
+  assert.deepEqual(of({ method: "msm" }, { optimisation: { plan } }), { kind: "predict", case: "c", plan, method: "msm" });
+  assert.equal(of({ method: "fem_linear" }), undefined);
+});
+
+test("a failing row is told with what it has and may have", () => {
+  const row = { label: "msm", scene: "head", plan: "back", material: "soft", level: 0, measure: "p95_mm", value: 0.1234, limit: 0.1, reason: "so" };
+  assert.deepEqual(failingCells(en, row), ["msm", "head", "back", "soft", "0", "p95, mm", "0.123", "0.1"]);
+  const { measure: _measure, value: _value, limit: _limit, ...without } = row;
+  assert.deepEqual(failingCells(en, without).slice(5), ["so", "–", "–"]);
+});
+
+test("the numbers of a warning are told by their names", () => {
+  const warning = { code: "tearing", detail: "held neighbours part", turned_edges: 3, largest_mm: 1.23456, nodes: [1, 2], nested: { a: 1 } } as Documents["WarningDocument"];
+  assert.equal(warningNumbers(warning), "turned edges: 3 · largest, mm: 1.235 · nodes: 1, 2");
+  assert.equal(warningNumbers({ code: "nothing-held", detail: "so" }), "");
+});
+
+test("a response that is not that of the case is never good", () => {
+  const applied = { order: 2, within_linear_range: true, nonlinearity_estimate_mm: 0, warnings: [], max_mm: 1 } as unknown as Documents["AppliedDocument"];
+  const model = (ofCase?: "same" | "other" | "unknown") => appliedLines(en, applied, { apart: 0, most: 1e-4, ...(ofCase && { ofCase }) })[0]!;
+  assert.deepEqual([model("same"), model("unknown"), model("other")].map(({ trusted }) => trusted), ["good", "unknown", "heed"]);
+  assert.deepEqual([model("other").value, model("other").why], ["second-order response, not of this case", en.responseOther]);
+  const warned = { ...applied, warnings: [{ code: "materials-ignored", detail: "So." }] } as unknown as Documents["AppliedDocument"];
+  assert.equal(appliedLines(en, warned, { apart: 0, most: 1, ofCase: "unknown" })[0]!.trusted, "heed");
+});
+
+test("responses are of one model where the columns of their segments agree, whatever else they have", () => {
+  const of = (numbers: number[], inner: number[] = [], name = "jaw") => ({ description: { segments: [{ name }] }, columns: { nodes: 1, segments: 1, linear: Float32Array.from([...numbers, ...inner]) } });
+  const column = Array.from({ length: 36 }, (_, at) => at / 10);
+  const other = column.map((value, at) => (at === 20 ? value + 0.01 : value));
+  assert(isSameModel(of(column), of(column, [1, 2, 3])) && isSameModel(of(column, [4, 5, 6]), of(column)));
+  assert(!isSameModel(of(column), of(other)) && !isSameModel(of(column), of(column, [], "upper")));
+  assert.deepEqual([likeThis({ second: undefined, inner: [] }, ["*"]), likeThis({ second: undefined, inner: [{ kind: "growth", name: "fat" }] } as unknown as Parameters<typeof likeThis>[0], ["*", "fat"])], [{}, { growth: ["*", "fat"] }]);
+  assert.deepEqual(likeThis({ second: {}, inner: [] } as unknown as Parameters<typeof likeThis>[0], []), { order: 2 });
+});
+
+test("slices of a series are known by their names", () => {
+  assert.deepEqual(["IM0001", "slice.dcm", "a.IMA", "face.vtu", "skull.stl", "ct.nii.gz"].map(isSlice), [true, true, true, false, false, false]);
 });
 
 test("targets keep their names, and a missed one or a stopped movement is to be heeded", () => {
