@@ -190,6 +190,32 @@ fn skin_that_passes_through_itself_deeper_than_accepted_is_never_called_met() {
     assert!(is_met && told.is_none(), "{told:?}");
 }
 
+/// The estimates of an answer that no tissue can have are none, however much is accepted.
+#[test]
+fn an_answer_that_turns_cells_inside_out_is_never_called_adequate() {
+    let case = slab(CellShape::Tet4, 0.45);
+    let plan = plan_of(&case, &movements(1.6));
+    let usual = Settings::default();
+    let linear = predict(&Scene::new(&case, &plan, &usual).unwrap(), &Unobserved).unwrap();
+    assert!(linear.deformation.iter().any(|cell| cell.det_f <= 0.0));
+
+    let found = adequate(&case, &plan, &usual, within(100.0));
+    assert_eq!((found.rung, found.is_met), (Rung::FiniteStrain, true), "{:?}", found.considered);
+    assert!(found.objections.is_empty());
+    assert!(found.prediction.deformation.iter().all(|cell| cell.det_f > 0.0));
+    let first = &found.considered[0];
+    assert!(first.error.as_ref().unwrap().skin_mm <= 100.0);
+    assert!(first.passed_over.as_ref().unwrap().contains("inside out"), "{first:?}");
+
+    let no_finite_strain = Some("no room".to_owned());
+    let found = adequate(&case, &plan, &usual, Accepted { no_finite_strain, ..within(100.0) });
+    assert!(!found.is_met && found.rung.solution() != Rung::FiniteStrain);
+    assert_eq!(found.objections[0].warning.code, "cells-inverted");
+    let mut told = found.prediction.warnings.iter();
+    let told = told.find(|one| one.code == "tolerance-not-met").unwrap();
+    assert!(told.detail.contains("inside out"), "{told:?}");
+}
+
 #[test]
 fn elements_without_an_estimate_are_never_called_adequate() {
     let case = slab(CellShape::Tet4, 0.45);
