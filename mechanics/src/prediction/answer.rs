@@ -5,7 +5,6 @@ use super::method::MethodKind;
 use super::nonlinearity::{self, Estimated, NonlinearityUnknown};
 use super::numerical_error::{self, NotEstimated, NumericalError};
 use super::scene::Scene;
-use crate::mesh::Vector;
 use crate::model::fem::linear_system::{LinearSystem, Solved};
 use crate::model::problem::{Equilibrium, ModelError};
 use crate::progress::Progress;

@@ -96,7 +96,7 @@ impl Errors {
             Rung::SecondOrder | Rung::SecondOrderCorrected => {
                 (self.mesh.as_ref()?, Some(self.third_order.as_ref()?))
             }
-            Rung::FiniteStrain | Rung::FiniteStrainCorrected => (at_rest?, None),
+            Rung::FiniteStrain | Rung::FiniteStrainCorrected => (self.mesh_at_rest.as_ref()?, None),
             Rung::Linear | Rung::Corrected => (self.mesh.as_ref()?, Some(self.linearity.as_ref()?)),
         };
         let left = if rung.is_corrected() { LEFT_BY_CORRECTION } else { 1.0 };
