@@ -284,7 +284,7 @@ impl Climb<'_> {
     /// Why an answer that is there is not taken where a dearer model may do.
     fn why_not(&mut self, rung: Rung, is_known: bool, found: &Found) -> Option<String> {
         if self.least_share() <= 1.0 {
-            // The answer itself is adequate: what is corrected is not looked at, which takes a fifth of a linear answer.
+            // The answer itself is adequate: what is corrected is not looked at, which takes its time.
             return None;
         }
         if rung.is_corrected() && !is_known {
