@@ -84,11 +84,14 @@ fn main() {
     let (plans, from) = (number("--plans", 75), number("--from", 0));
     let mut entries = entries();
     let head = arguments.iter().position(|argument| argument == "--head");
-    entries.extend(head.and_then(|at| arguments.get(at + 1)).map(|file| head_of(file)));
+    match head.and_then(|at| arguments.get(at + 1)) {
+        Some(file) => entries.push(head_of(file)),
+        None => println!("skipped: head, because `--head` names no mesh of a CT"),
+    }
     println!(
-        "| scene | plan | mm, degrees | accepted mm | taken | met | told mm | true mm | cheapest | time over it |"
+        "| scene | plan | mm, degrees | accepted mm | taken | met | told mm | true mm | cheapest | time over it | against it |"
     );
-    println!("| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |");
+    println!("| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |");
     let mut summaries = Vec::new();
     for entry in entries.iter().filter(|entry| is_asked(entry.name, &arguments)) {
         let mut summary = Summary::default();
@@ -102,7 +105,12 @@ fn main() {
         "| scene | plans | no truth | two | called met | of these met | not met | of these within | time, median / p90 |"
     );
     println!("| --- | --- | --- | --- | --- | --- | --- | --- | --- |");
-    summaries.iter_mut().for_each(|(name, summary)| summary.print(name));
+    let mut all = Summary::default();
+    for (name, summary) in &mut summaries {
+        summary.print(name);
+        all.add(summary);
+    }
+    all.print("all");
 }
 
 fn is_asked(name: &str, arguments: &[String]) -> bool {
@@ -118,15 +126,15 @@ fn measure_plan(entry: &Entry, question: &Question, summary: &mut Summary) {
         format!("| {} | {number} | {moved_mm:.1}, {turned_deg:.1} | {accepted_mm:.3}", entry.name);
     let Some(truth) = truth(entry, &question.plan) else {
         summary.without_truth += 1;
-        return println!("{of} | no truth | | | | | |");
+        return println!("{of} | no truth | | | | | | |");
     };
     if has_other_truth(entry, question, &truth) {
         summary.with_two += 1;
-        return println!("{of} | two equilibria | | | | | |");
+        return println!("{of} | two equilibria | | | | | | |");
     }
     let Ok(scene) = Scene::new(&entry.case, &question.plan, &Settings::default()) else {
         summary.without_truth += 1;
-        return println!("{of} | refused | | | | | |");
+        return println!("{of} | refused | | | | | | |");
     };
     let begin = process::cpu_seconds();
     let accepted = Accepted { skin_mm: *accepted_mm, time_s: 1e6, ..Accepted::default() };
@@ -141,12 +149,14 @@ fn measure_plan(entry: &Entry, question: &Question, summary: &mut Summary) {
     let told = found.considered.iter().find(|other| other.rung == found.rung);
     let told = told.and_then(|own| Some(own.error.as_ref()?.skin_mm)).unwrap_or(f64::NAN);
     let ratio = cheapest.map(|model| cpu_s / model.cpu_s);
+    let objections: Vec<&str> = found.objections.iter().map(|own| own.warning.code).collect();
     println!(
-        "{of} | {} | {} | {told:.4} | {off:.4} | {} | {} |",
+        "{of} | {} | {} | {told:.4} | {off:.4} | {} | {} | {} |",
         found.rung.name(),
         if found.is_met { "yes" } else { "no" },
         cheapest.map_or("none", |model| model.rung.name()),
         ratio.map_or_else(String::new, |ratio| format!("{ratio:.2}")),
+        objections.join(", "),
     );
     summary.called_met += usize::from(found.is_met);
     summary.met += usize::from(found.is_met && off <= *accepted_mm);
@@ -228,6 +238,16 @@ fn mean_error(scene: &Scene, displacement: &[Vector], truth: &[Vector]) -> f64 {
 }
 
 impl Summary {
+    fn add(&mut self, other: &Summary) {
+        self.plans += other.plans;
+        self.without_truth += other.without_truth;
+        self.with_two += other.with_two;
+        self.called_met += other.called_met;
+        self.met += other.met;
+        self.overcautious += other.overcautious;
+        self.ratios.extend(&other.ratios);
+    }
+
     fn print(&mut self, name: &str) {
         self.ratios.sort_by(f64::total_cmp);
         let at = |share: f64| {

@@ -83,10 +83,6 @@ impl AppliedSummary {
     pub fn new(displacement: &[Vector], beyond: Option<BeyondLinear>, linear: &LinearPart) -> Self {
         let LinearPart { nonlinearity, acts_inside } = *linear;
         let squared = displacement.iter().map(Vector::norm_squared).fold(0.0, f64::max);
-        let is_near = |beyond: BeyondLinear| {
-            beyond.third <= LINEAR_RANGE_MM
-                && (beyond.third <= SERIES_MM || beyond.third <= SERIES * beyond.second)
-        };
         AppliedSummary {
             max_mm: squared.sqrt(),
             largest_rotation_deg: nonlinearity.largest_rotation.to_degrees(),
@@ -95,7 +91,10 @@ impl AppliedSummary {
             nonlinearity_estimate_mm: (!acts_inside)
                 .then(|| beyond.map_or(nonlinearity.estimate, |beyond| beyond.third)),
             within_linear_range: !acts_inside
-                && beyond.map_or(nonlinearity.is_within_linear_range(), is_near),
+                && match beyond {
+                    None => nonlinearity.is_within_linear_range(),
+                    Some(beyond) => outside_second_order(&beyond).is_none(),
+                },
         }
     }
 
@@ -130,13 +129,22 @@ impl AppliedSummary {
                 (Self::OUTSIDE, detail)
             }
             Some(second) => {
-                let detail = format!(
-                    "the second order is {second:.2} mm and leaves out about {estimate:.2} mm: more than \
-                     {LINEAR_RANGE_MM} mm, or more than {SERIES_MM} mm and half of it"
-                );
-                (Self::OUTSIDE_SECOND, detail)
+                let beyond = BeyondLinear { second, third: estimate };
+                (Self::OUTSIDE_SECOND, outside_second_order(&beyond).unwrap_or_default())
             }
         };
         vec![WarningDocument { code: code.to_owned(), detail, numbers: serde_json::Map::new() }]
     }
+}
+
+/// Why the second order of a plan is not to be trusted, where it is not.
+pub fn outside_second_order(beyond: &BeyondLinear) -> Option<String> {
+    let BeyondLinear { second, third } = *beyond;
+    let is_near = third <= LINEAR_RANGE_MM && (third <= SERIES_MM || third <= SERIES * second);
+    (!is_near).then(|| {
+        format!(
+            "the second order is {second:.2} mm and leaves out about {third:.2} mm: more than {LINEAR_RANGE_MM} mm, or more than \
+             {SERIES_MM} mm and half of it"
+        )
+    })
 }

@@ -107,10 +107,7 @@ impl ResponseDocument {
     pub fn check(&self, limits: &Limits, faults: &mut Faults) {
         let spec = Pointer::root().key("spec");
         methods::check_linear(self.method, &spec.key("method"), faults);
-        if let Some(order) = self.order.filter(|order| !(1..=2).contains(order)) {
-            let detail = format!("{order} is neither 1 nor 2");
-            faults.add(&spec.key("order"), ErrorCode::OutOfRange, detail);
-        }
+        check_order(self.order, &spec, faults);
         let muscles = self.muscles.as_deref().unwrap_or_default();
         let named = [
             ("segments", "segment", &self.segments[..], limits.list_entries),
@@ -191,5 +188,13 @@ impl ResponseDocument {
             }
             _ => problem,
         }
+    }
+}
+
+/// Refuses an order that there is not.
+pub fn check_order(order: Option<u8>, spec: &Pointer, faults: &mut Faults) {
+    if let Some(order) = order.filter(|order| !(1..=2).contains(order)) {
+        let detail = format!("{order} is neither 1 nor 2");
+        faults.add(&spec.key("order"), ErrorCode::OutOfRange, detail);
     }
 }

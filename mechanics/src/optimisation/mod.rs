@@ -5,9 +5,9 @@
 //!
 //! u(q) = sum_k a_k(q) c_k is the skin of a plan response: linear in the twelve numbers a of each
 //! segment's movement, which are smooth in its six parameters q, three translations and three angles
-//! (R = Rz Ry Rx about a pivot). So the sum is reduced once to as many rows as there are columns
-//! (`reduction`), and minimised by Levenberg and Marquardt's method with steps that keep to the
-//! bounds (`minimum`, `bounded_step`). Growth of a region has a column too, and its change of volume is a parameter beside them where it
+//! (R = Rz Ry Rx about a pivot). On request u(q) has the second order too, sum_{k <= l} a_k a_l U_kl, and its products are as
+//! smooth. So the sum is reduced once to as many rows as there are columns (`reduction`), and minimised by Levenberg and
+//! Marquardt's method with steps that keep to the bounds (`minimum`, `bounded_step`). Growth of a region has a column too, and its change of volume is a parameter beside them where it
 //! is not stated. Constants of the tissue are not linear: `search` solves the response anew for each step of Gauss and Newton.
 //!
 //! With errors of standard deviation sigma, independent for each component of each point, the
@@ -24,7 +24,7 @@ mod search;
 mod unknowns;
 use crate::mesh::Vector;
 use crate::plan::RigidMovement;
-use crate::response::Amounts;
+use crate::response::{Amounts, BeyondLinear};
 pub use bounded_step::UNDETERMINED;
 pub use certainty::{Certainty, Weight};
 pub use constants::{ConstantBounds, ConstantError, ConstantKind};
@@ -50,6 +50,8 @@ pub struct Optimum {
     pub constants: Vec<f64>,
     /// The displacement of each skin node in mm.
     pub skin: Vec<Vector>,
+    /// Second and third order of the plan, where the second order counts.
+    pub beyond: Option<BeyondLinear>,
     pub targets: Vec<Residual>,
     /// Parameters with a bound that stops them; they are not free.
     pub at_bound: Vec<(Parameter, Bound)>,
@@ -98,6 +100,9 @@ fn minimum_of(question: &Question) -> Result<Optimum, OptimisationError> {
     for (constant, value) in question.constants.iter().zip(&values.constants) {
         constant.add(value - constant.value, &mut skin);
     }
+    let second_order = question.second_order;
+    let beyond =
+        second_order.map(|form| form.apply(&question.response.segments, &movements, &mut skin));
     let residual = |target: &Target| Residual::new(target, &skin);
     Ok(Optimum {
         parameters: values.movements,
@@ -107,6 +112,7 @@ fn minimum_of(question: &Question) -> Result<Optimum, OptimisationError> {
         constants: values.constants,
         targets: question.targets.iter().map(residual).collect(),
         skin,
+        beyond,
         at_bound,
         certainty,
         weighted_square_sum: minimum.residual.norm_squared() + reduction.unreachable,

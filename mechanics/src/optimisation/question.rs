@@ -1,7 +1,7 @@
 //! Input of inverse planning: segments, growth and constants with their bounds, targets on the skin, and its errors.
 
 use crate::mesh::Vector;
-use crate::response::Response;
+use crate::response::{QuadraticForm, Response};
 
 /// Numbers that move a segment.
 pub const PARAMETERS_PER_SEGMENT: usize = 6;
@@ -42,6 +42,8 @@ pub struct Target {
 #[derive(Clone, Copy)]
 pub struct Question<'a> {
     pub response: &'a Response,
+    /// The second order of the response, where it is to count.
+    pub second_order: Option<&'a QuadraticForm>,
     /// One for each segment of the response.
     pub bounds: &'a [SegmentBounds],
     pub targets: &'a [Target],
@@ -115,8 +117,8 @@ impl SkinPoint {
     }
 
     /// One component of a field given at the skin nodes as x, y, z one after the other.
-    pub(super) fn sample(&self, field: &[f32], component: usize) -> f64 {
-        let at = |corner: u32| f64::from(field[3 * corner as usize + component]);
+    pub(super) fn sample<T: Copy + Into<f64>>(&self, field: &[T], component: usize) -> f64 {
+        let at = |corner: u32| -> f64 { field[3 * corner as usize + component].into() };
         self.corners.iter().zip(self.weights).map(|(&corner, weight)| weight * at(corner)).sum()
     }
 

@@ -9,10 +9,41 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::{OptimisationError, Question};
+use super::{OptimisationError, Question, SkinPoint};
 
-/// Rows taken at once: a block and the triangle stay in the cache.
+/// Rows taken at once, or as many as there are columns: a block and the triangle stay in the cache.
 const ROWS: usize = 256;
+
+/// A column: its values at the skin nodes and the unit that they are in, in mm.
+enum Column<'a> {
+    Single(&'a [f32]),
+    /// Of second order.
+    Short(&'a [i16], f32),
+}
+
+impl Column<'_> {
+    fn sample(&self, point: &SkinPoint, component: usize) -> f64 {
+        match self {
+            Column::Single(values) => point.sample(values, component),
+            Column::Short(values, unit) => f64::from(*unit) * point.sample(values, component),
+        }
+    }
+}
+
+/// The columns of a question in the order of `Unknowns::coefficients`.
+fn columns<'a>(question: &Question<'a>) -> Vec<Column<'a>> {
+    let response = question.response;
+    let length = 3 * response.nodes.len().max(1);
+    let of_constants = question.constants.iter().map(|own| own.derivative.as_slice());
+    let first = response.columns.chunks_exact(length).chain(of_constants).map(Column::Single);
+    let second = question.second_order.into_iter().flat_map(|form| {
+        form.values
+            .chunks_exact(length)
+            .zip(&form.scales)
+            .map(|(own, unit)| Column::Short(own, *unit))
+    });
+    first.chain(second).collect()
+}
 
 /// What the targets ask of the numbers that the columns are multiplied by.
 pub struct Reduction {
@@ -28,23 +59,21 @@ pub struct Reduction {
 
 impl Reduction {
     pub fn new(question: &Question) -> Result<Self, OptimisationError> {
-        let response = question.response;
-        let mut columns: Vec<&[f32]> =
-            response.columns.chunks_exact(3 * response.nodes.len().max(1)).collect();
-        columns.extend(question.constants.iter().map(|constant| constant.derivative.as_slice()));
+        let columns = columns(question);
         let width = columns.len() + 1;
         let mut triangle = DMatrix::zeros(0, width);
-        let mut block: Vec<f64> = Vec::with_capacity(ROWS * width);
+        let rows = ROWS.max(width);
+        let mut block: Vec<f64> = Vec::with_capacity(rows * width);
         let mut components = 0;
         for target in question.targets {
             for goal in &target.goals {
                 for (component, wanted) in goal.displacement.into_iter().enumerate() {
                     let Some(wanted) = wanted else { continue };
-                    let sample = |column: &&[f32]| goal.point.sample(column, component);
+                    let sample = |column: &Column| column.sample(&goal.point, component);
                     block.extend(columns.iter().map(|column| sample(column) / target.sigma));
                     block.push(wanted / target.sigma);
                     components += 1;
-                    if block.len() == ROWS * width {
+                    if block.len() == rows * width {
                         triangle = reduced(&triangle, &block);
                         block.clear();
                     }

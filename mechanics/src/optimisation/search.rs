@@ -26,7 +26,7 @@ const NEGLIGIBLE: f64 = 1e-6;
 /// Unknowns and targets of the search.
 #[derive(Clone, Copy)]
 pub struct Search<'a> {
-    /// Of first order.
+    /// Of second order without internal loads and constants only.
     pub asked: ColumnRequest<'a>,
     /// Of each segment that is asked for, in the order of the scene.
     pub bounds: &'a [SegmentBounds],
@@ -80,7 +80,7 @@ pub fn search(
     let start = search.constants.iter().map(|own| own.start(scene)).collect();
     let mut iterate = search.solved_at(scene, start, progress)?;
     if search.constants.is_empty() {
-        let question = search.question(&iterate.response, &[]);
+        let question = search.question(&iterate.response, &iterate.columns, &[]);
         let optimum = optimise(&question)?;
         return Ok(iterate.found(optimum, 0));
     }
@@ -136,7 +136,7 @@ impl<'a> Search<'a> {
         }
         let columns = build_of(scene, &self.asked, progress)?;
         let response = columns.to_response();
-        let held = minimum_of(&self.question(&response, &[]))?;
+        let held = minimum_of(&self.question(&response, &columns, &[]))?;
         let sum = held.weighted_square_sum;
         Ok(Iterate { search: self, values, columns, response, held, sum })
     }
@@ -144,10 +144,12 @@ impl<'a> Search<'a> {
     fn question<'b>(
         &'b self,
         response: &'b Response,
+        columns: &'b Columns,
         constants: &'b [ConstantColumn],
     ) -> Question<'b> {
         let Search { bounds, targets, inner, .. } = *self;
-        Question { response, bounds, targets, inner, constants }
+        let second_order = columns.second_order.as_ref();
+        Question { response, second_order, bounds, targets, inner, constants }
     }
 
     /// The largest step, less what counts as none.
@@ -175,7 +177,7 @@ impl Iterate<'_> {
         for (constant, &value) in constants.iter().zip(&self.values) {
             columns.push(constant.column(scene, (asked, &amounts), value, progress)?);
         }
-        Ok(optimise(&self.search.question(&self.response, &columns))?)
+        Ok(optimise(&self.search.question(&self.response, &self.columns, &columns))?)
     }
 
     fn found(self, optimum: Optimum, steps: usize) -> SearchResult {

@@ -12,6 +12,7 @@ use super::{Bound, InnerBounds, PARAMETERS_PER_SEGMENT, Parameter, Question, Seg
 use crate::mesh::Vector;
 use crate::plan::RigidMovement;
 use crate::prediction::linear_strain;
+use crate::response::quadratic_form::pairs;
 use crate::response::{COLUMNS_PER_SEGMENT, InnerLoad, coefficients};
 
 /// An angle counts as the arc in mm that it draws at this distance from its axis, about the size of
@@ -148,7 +149,8 @@ impl<'a> Unknowns<'a> {
         loads.map(is_all).position(|is_all| is_all)
     }
 
-    /// Factors of the columns: twelve numbers of each segment, then internal loads, then constants.
+    /// Factors of the columns: twelve numbers of each segment, then internal loads, then constants, then the products of each two
+    /// numbers of segments where the second order counts.
     pub fn coefficients(&self, unknowns: &DVector<f64>) -> DVector<f64> {
         let Question { response, constants, .. } = self.question;
         let values = self.values(unknowns);
@@ -158,8 +160,15 @@ impl<'a> Unknowns<'a> {
             .zip(&response.segments)
             .flat_map(|(movement, segment)| coefficients(movement, &segment.centre));
         let away = values.constants.iter().zip(*constants).map(|(value, own)| value - own.value);
-        let numbers: Vec<f64> = of_segments.chain(self.inner(&values)).chain(away).collect();
+        let mut numbers: Vec<f64> = of_segments.chain(self.inner(&values)).chain(away).collect();
+        let products: Vec<f64> = self.pairs().map(|[k, l]| numbers[k] * numbers[l]).collect();
+        numbers.extend(products);
         DVector::from_vec(numbers)
+    }
+
+    /// The pairs of numbers of segments whose products have columns.
+    fn pairs(&self) -> impl Iterator<Item = [usize; 2]> {
+        pairs(self.question.second_order.map_or(0, |form| form.numbers))
     }
 
     /// Their derivatives, one column for each unknown.
@@ -167,16 +176,18 @@ impl<'a> Unknowns<'a> {
         let Question { response, inner, constants, .. } = self.question;
         let of_segments = COLUMNS_PER_SEGMENT * response.segments.len();
         let of_tissue = of_segments + inner.len();
-        let mut derivatives = DMatrix::zeros(of_tissue + constants.len(), self.count());
+        let first = of_tissue + constants.len();
+        let mut derivatives = DMatrix::zeros(first + self.pairs().count(), self.count());
+        let numbers = self.coefficients(unknowns);
         let values = self.values(unknowns);
         let movements = self.movements(&values);
         for (at, free) in self.free.iter().enumerate() {
             let mut column = derivatives.column_mut(at);
             match *free {
                 Parameter::Movement { segment, number } => {
-                    let numbers = self.moving((segment, number), &values, &movements[segment]);
-                    let first = COLUMNS_PER_SEGMENT * segment;
-                    column.rows_mut(first, COLUMNS_PER_SEGMENT).copy_from_slice(&numbers);
+                    let own = self.moving((segment, number), &values, &movements[segment]);
+                    let begin = COLUMNS_PER_SEGMENT * segment;
+                    column.rows_mut(begin, COLUMNS_PER_SEGMENT).copy_from_slice(&own);
                 }
                 Parameter::Growth(place) => {
                     let slope = (1.0 + values.growth[place]).cbrt().powi(-2) / 3.0;
@@ -190,6 +201,9 @@ impl<'a> Unknowns<'a> {
                     column[of_segments + place] = slope;
                 }
                 Parameter::Constant(place) => column[of_tissue + place] = 1.0,
+            }
+            for (pair, [k, l]) in self.pairs().enumerate() {
+                column[first + pair] = column[k] * numbers[l] + numbers[k] * column[l];
             }
             column /= free.scale();
         }
@@ -269,7 +283,7 @@ fn rotation_derivative(rotation: &Matrix3<f64>, axis: usize, about_z: f64) -> Ma
 mod tests {
     use super::super::ConstantColumn;
     use super::*;
-    use crate::response::{Response, ResponseSegment};
+    use crate::response::{QuadraticForm, Response, ResponseSegment};
 
     /// A response of one segment, and of growth everywhere, of a region beside it, and of a muscle.
     fn response() -> Response {
@@ -291,8 +305,12 @@ mod tests {
         let growth = InnerBounds::Growth(-0.5, 1.0);
         let constant =
             ConstantColumn { derivative: Vec::new(), value: 0.46, interval: (0.3, 0.49) };
+        let numbers = COLUMNS_PER_SEGMENT;
+        let form =
+            QuadraticForm { numbers, values: Vec::new(), scales: Vec::new(), third: Vec::new() };
         let question = Question {
             response: &response,
+            second_order: Some(&form),
             bounds: &bounds,
             targets: &[],
             inner: &[growth, growth, InnerBounds::Held(20.0)],
@@ -301,13 +319,13 @@ mod tests {
         let unknowns = Unknowns::new(&question);
         let at = DVector::from_vec(vec![1.0, -2.0, 3.0, 20.0, -35.0, 50.0, -10.0, 20.0, 45.0]);
         let derivatives = unknowns.derivatives(&at);
-        // A central difference of step h is off by h² and by rounding over h: 1e-10 each, times the arm of 50 mm.
+        // A central difference of step h is off by h² and by rounding over h: 1e-10 each, times the arm of 50 mm, squared in products.
         let h = 1e-4;
         for k in 0..unknowns.count() {
             let step = DVector::from_fn(at.len(), |row, _| if row == k { h } else { 0.0 });
             let difference =
                 unknowns.coefficients(&(&at + &step)) - unknowns.coefficients(&(&at - &step));
-            assert!((difference / (2.0 * h) - derivatives.column(k)).amax() < 1e-8, "unknown {k}");
+            assert!((difference / (2.0 * h) - derivatives.column(k)).amax() < 1e-6, "unknown {k}");
         }
         let inner = unknowns.inner(&unknowns.values(&at));
         let everywhere = linear_strain(0.2);

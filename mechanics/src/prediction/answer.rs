@@ -5,7 +5,6 @@ use super::method::MethodKind;
 use super::nonlinearity::{self, Estimated, NonlinearityUnknown};
 use super::numerical_error::{self, NotEstimated, NumericalError};
 use super::scene::Scene;
-use crate::mesh::Vector;
 use crate::model::fem::linear_system::{LinearSystem, Solved};
 use crate::model::problem::{Equilibrium, ModelError};
 use crate::progress::Progress;
@@ -96,6 +95,9 @@ fn answered<'a>(
     if scene.settings.method.kind() == MethodKind::FemNonlinear {
         return Ok(other(at_finite_strain(scene, unknown, progress)?));
     }
+    if scene.settings.method.kind() == MethodKind::MassTensorNonlinear {
+        return Ok(other(by_nonlinear_mass_tensors(scene, unknown, progress)?));
+    }
     let Unknown { of_mesh, of_linearity } = unknown;
     let is_without = of_mesh.is_some() && of_linearity.is_some();
     // With contact quadratic elements and methods of other kinds are refused before.
@@ -159,9 +161,27 @@ fn at_finite_strain(
     })
 }
 
+/// By the nonlinear mass-tensor, whose tissue is that of plain tetrahedra at finite strain.
+fn by_nonlinear_mass_tensors(
+    scene: &Scene,
+    unknown: Unknown,
+    progress: &dyn Progress,
+) -> Result<Answer, ModelError> {
+    let equilibrium = scene.solve(progress)?;
+    let numerical_error = match unknown.of_mesh {
+        Some(reason) => Err(reason),
+        None => {
+            let found = scene.mesh_error_of_mass_tensors(&equilibrium.displacement, progress);
+            numerical_error::known(found)?.and_then(numerical_error::at_last_tangent)
+        }
+    };
+    let nonlinearity = Err(unknown.of_linearity.unwrap_or(NonlinearityUnknown::NotAsked));
+    Ok(Answer { equilibrium, numerical_error, nonlinearity, contact: None })
+}
+
 impl LinearAnswer<'_> {
-    pub fn displacement(&self) -> &[Vector] {
-        &self.solved.equilibrium.displacement
+    pub fn equilibrium(&self) -> &Equilibrium {
+        &self.solved.equilibrium
     }
 
     pub fn into_answer(self, scene: &Scene) -> Result<Answer, ModelError> {

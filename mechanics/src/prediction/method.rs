@@ -2,6 +2,8 @@
 
 use super::element_choice::{EVERY_SHAPE, ElementChoice, TETRAHEDRA};
 use super::listed::listed;
+use crate::material::LinearElastic;
+use crate::material::hyperelastic::{Fibres, Law, SaintVenantKirchhoff};
 use crate::mesh::CellShape;
 use crate::model::fem::mass_tensor::MassTensorSettings;
 use crate::model::mass_spring::MassSpringSettings;
@@ -67,6 +69,22 @@ pub enum Laws {
     /// That of Saint Venant and Kirchhoff, of the constants that any other one has at rest.
     SaintVenantKirchhoff,
     Any,
+}
+
+impl Laws {
+    /// The law that tissue follows at finite strain, and its fibres.
+    pub(super) fn of(self, tissue: &LinearElastic) -> (Law, Option<Fibres>) {
+        match self {
+            Laws::SaintVenantKirchhoff => {
+                let (lambda, mu) = (tissue.lambda(), tissue.shear_modulus());
+                (Law::SaintVenantKirchhoff(SaintVenantKirchhoff { lambda, mu }), None)
+            }
+            Laws::AtRest | Laws::Any => {
+                let tissue = tissue.hyperelastic();
+                (tissue.law, tissue.fibres)
+            }
+        }
+    }
 }
 
 /// Properties of a method: a row of the table.

@@ -77,8 +77,8 @@ pub use adaptive::{
     AdaptiveError, AdaptivePrediction, Level, RefinementGoal, Stop, predict_adaptively,
 };
 pub use adequate::{
-    Accepted, Adequate, Considered, Errors, MeanErrors, NEWTON_MAY_TAKE, Rung, SECOND_ORDER_TAKES,
-    TimedProgress, USUALLY_ACCEPTED_MM, predict_adequately,
+    Accepted, Adequate, Considered, Errors, MeanErrors, NEWTON_MAY_TAKE, Objection, Rung,
+    SECOND_ORDER_TAKES, TimedProgress, USUALLY_ACCEPTED_MM, predict_adequately,
 };
 use answer::Answer;
 pub use answer::{equilibrium, estimates};

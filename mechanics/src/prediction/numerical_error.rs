@@ -45,8 +45,6 @@ pub enum NotEstimated {
         "there is no element of higher order that the error of quadratic tetrahedra could be estimated with"
     )]
     Quadratic,
-    #[error("it is not estimated with the nonlinear mass-tensor")]
-    NonlinearMassTensor,
     #[error(transparent)]
     AtRest(#[from] NoMeshError),
     #[error("springs have no limit that a finer mesh comes to")]
@@ -68,7 +66,7 @@ pub(super) fn estimate(
     solved: &Solved,
     progress: &dyn Progress,
 ) -> Result<ErrorOrReason, ModelError> {
-    known(of(scene, system).of(solved, progress))
+    Ok(known(of(scene, system).of(solved, progress))?.map(NumericalError::from))
 }
 
 /// The same where tissue presses on what it touches.
@@ -78,7 +76,7 @@ pub(super) fn estimate_in_contact(
     found: &mut InContact,
     progress: &dyn Progress,
 ) -> Result<ErrorOrReason, ModelError> {
-    known(of(scene, system).in_contact(found, progress))
+    Ok(known(of(scene, system).in_contact(found, progress))?.map(NumericalError::from))
 }
 
 fn of<'a>(scene: &'a Scene, system: &'a LinearSystem<'a>) -> Estimate<'a> {
@@ -87,9 +85,11 @@ fn of<'a>(scene: &'a Scene, system: &'a LinearSystem<'a>) -> Estimate<'a> {
 }
 
 /// An unknown error is no failure.
-fn known(estimate: Result<DiscretisationError, ModelError>) -> Result<ErrorOrReason, ModelError> {
+pub(super) fn known<T>(
+    estimate: Result<T, ModelError>,
+) -> Result<Result<T, NotEstimated>, ModelError> {
     match estimate {
-        Ok(error) => Ok(Ok(error.into())),
+        Ok(estimate) => Ok(Ok(estimate)),
         Err(stopped @ ModelError::Solver(SolverError::Stopped)) => Err(stopped),
         Err(other) => Ok(Err(NotEstimated::Failed(other.to_string()))),
     }
@@ -107,12 +107,11 @@ pub(super) fn reason_for_none(scene: &Scene) -> Option<NotEstimated> {
     }
     match &scene.settings.method {
         Method::FemNonlinear if !scene.is_first_order() => Some(NotEstimated::Quadratic),
-        Method::FemLinear | Method::FemNonlinear => None,
+        Method::FemLinear | Method::FemNonlinear | Method::MassTensorNonlinear => None,
         Method::MassTensor(own) | Method::MassTensorTransverse(own) => match own.iterations {
             Iterations::Fast => None,
             Iterations::Stationary(_) => Some(NotEstimated::NodeByNode),
         },
-        Method::MassTensorNonlinear => Some(NotEstimated::NonlinearMassTensor),
         Method::MassSpring(_) => Some(NotEstimated::Springs),
         Method::VolumeSpline(_) => Some(NotEstimated::Spline),
         Method::ThicknessWarp(_) => Some(NotEstimated::Warp),

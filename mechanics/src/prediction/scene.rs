@@ -213,6 +213,17 @@ impl Scene {
         found.map_err(|error| self.no_rest(error))
     }
 
+    /// What the mesh leaves out of an answer of the nonlinear mass-tensor.
+    pub(super) fn mesh_error_of_mass_tensors(
+        &self,
+        displacement: &[Vector],
+        progress: &dyn Progress,
+    ) -> Result<MeshError, ModelError> {
+        self.at_finite_strain(|problem, finer| {
+            problem.mesh_error_at(displacement, &self.load_case(), finer, progress)
+        })
+    }
+
     /// Why no rest was found, with what passes through what.
     fn no_rest(&self, error: ModelError) -> ModelError {
         no_rest(error, &self.mesh, &self.conditions, |class| self.class_name(class))
@@ -223,12 +234,9 @@ impl Scene {
         &self,
         done: impl FnOnce(&FiniteStrain, &FinerProblem) -> T,
     ) -> T {
-        let (laws, fibres): (Vec<Law>, Vec<Option<Fibres>>) = self
-            .materials
-            .iter()
-            .map(|material| material.hyperelastic())
-            .map(|tissue| (tissue.law, tissue.fibres))
-            .unzip();
+        let own_laws = self.settings.method.properties().laws;
+        let (laws, fibres): (Vec<Law>, Vec<Option<Fibres>>) =
+            self.materials.iter().map(|material| own_laws.of(material)).unzip();
         let Settings { relative_residual, memory_mb, .. } = self.settings;
         let elements = Elements {
             stabilised: self.tetrahedron() == Tetrahedron::Stabilised,

@@ -367,8 +367,14 @@ fn inverse_planning_finds_the_plan_beside_growth_and_muscles_that_stay() {
     let bounds = [(); 2].map(|()| SegmentBounds { intervals: free, pivot: Vector::zeros() });
     let targets = [Target { goals, sigma: 1.0 }];
     let (inner, constants) = (&held.map(InnerBounds::Held), &[]);
-    let question =
-        Question { response: &response, bounds: &bounds, targets: &targets, inner, constants };
+    let question = Question {
+        response: &response,
+        bounds: &bounds,
+        targets: &targets,
+        inner,
+        constants,
+        second_order: None,
+    };
     let optimum = optimise(&question).unwrap();
     for (found, planted) in optimum.movements.iter().zip(&planted) {
         assert!((found.translation() - planted).norm() < 1e-6, "{}", found.translation());

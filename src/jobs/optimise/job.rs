@@ -16,16 +16,19 @@ use crate::jobs::result::provenance::{
 };
 use crate::jobs::result::skin::PredictedSkin;
 use crate::jobs::result::warnings::warnings_after;
+use crate::schema::applied::{AppliedSummary, outside_second_order};
+use crate::schema::methods::MethodName;
 use crate::schema::optimise::result::{NamedConstant, NamedOptimum, OptimisationDocument};
 use crate::schema::predict::document::{OutputName, PredictDocument};
 use crate::schema::predict::result::{ResultDocument, SolverDocument};
 use mechanics::mesh::{Vector, Warning};
-use mechanics::optimisation::{ConstantBounds, Search, SearchError, SearchResult, search};
+use mechanics::optimisation::{ConstantBounds, Optimum, Search, SearchError, SearchResult, search};
 use mechanics::plan::doubt::PLAN_UNITS_SUSPECT;
-use mechanics::prediction::{Prediction, predict};
+use mechanics::prediction::{MethodKind, Prediction, predict};
 use mechanics::progress::{Phase, Progress};
+use mechanics::response::linearity::LINEAR_RANGE_MM;
 use mechanics::response::{
-    COLUMNS_PER_SEGMENT, ColumnRequest, ResponseError, ResponseOrder, chosen,
+    BeyondLinear, COLUMNS_PER_SEGMENT, ColumnRequest, ResponseError, ResponseOrder, chosen,
 };
 
 /// A difference between full solution and response that is reported, in mm: stored in single precision and
@@ -39,6 +42,8 @@ const NOT_VERIFIED: &str = "the plan was not solved in full: ask with `verify`";
 struct OptimisedPlan {
     document: OptimisationDocument,
     displacement: Vec<Vector>,
+    /// In order 2.
+    beyond: Option<BeyondLinear>,
     solver: SolverDocument,
 }
 
@@ -67,6 +72,9 @@ pub fn optimise_job(
     planned.inputs = prepared.rest.inputs;
     planned.warnings.extend(prepared.warnings);
     planned.warnings.extend(input.spec.doubts(&found.document));
+    let outside = found.beyond.as_ref().and_then(outside_second_order);
+    let outside = outside.map(|detail| Warning::new(AppliedSummary::OUTSIDE_SECOND, detail));
+    planned.warnings.extend(outside);
     // No number of the plan was stated.
     planned.scene.warnings.retain(|own| own.code != PLAN_UNITS_SUSPECT);
     if !input.spec.verify {
@@ -94,7 +102,7 @@ impl OptimiseInput {
     ) -> Result<OptimisedPlan, JobError> {
         let PreparedOptimisation { rest, inner, inner_bounds, constants, targets, .. } = prepared;
         let moving = self.spec.moving();
-        let order = ResponseOrder::First;
+        let order = self.spec.to_response().response_order();
         let segments = chosen(&rest.scene, &moving).map_err(|error| self.judge(error))?;
         let name = |number: usize| &rest.scene.segments[number].name;
         let bounds: Vec<_> = segments
@@ -125,11 +133,19 @@ impl OptimiseInput {
         let materials = self.materials(constants, &rest.scene);
         let document = OptimisationDocument::new(&named, materials);
         let solver = solver_document(&columns.solver, &columns.elements);
-        Ok(OptimisedPlan { document, displacement: found.optimum.skin, solver })
+        let Optimum { skin: displacement, beyond, .. } = found.optimum;
+        Ok(OptimisedPlan { document, displacement, beyond, solver })
     }
 
-    /// The prediction of a plan that was found.
+    /// The prediction of a plan that was found: in order 2, whose skin no linear solution has, at finite strain.
     pub fn prediction(&self, found: &OptimisationDocument) -> PredictInput {
+        let usual = self.spec.to_prediction();
+        let method = match self.spec.to_response().response_order() {
+            ResponseOrder::Second if self.spec.verify => {
+                MethodName::Named(MethodKind::FemNonlinear)
+            }
+            ResponseOrder::First | ResponseOrder::Second => usual.method,
+        };
         PredictInput {
             job: self.job.clone(),
             queue_s: self.queue_s,
@@ -137,7 +153,8 @@ impl OptimiseInput {
             plan: found.plan.clone(),
             spec: PredictDocument {
                 materials: found.materials.clone().or_else(|| self.spec.materials.clone()),
-                ..self.spec.to_prediction()
+                method,
+                ..usual
             },
         }
     }
@@ -154,14 +171,22 @@ impl OptimisedPlan {
         let difference = nodes
             .map(|(&node, found)| (solved.displacement[node as usize] - found).norm())
             .fold(0.0, f64::max);
-        let detail =
-            "the skin of the full solution is not that of the response: solve both more exactly";
+        let (most, detail) = match self.beyond {
+            None => (
+                NOTICEABLE,
+                "the skin of the full solution is not that of the response: solve both more exactly",
+            ),
+            Some(_) => (
+                LINEAR_RANGE_MM,
+                "the skin at finite strain is not that of the response of order 2: the plan is too large for it",
+            ),
+        };
         let warning =
             Warning::new("verification-differs", detail).with("difference_mm", difference);
         let document = self.document.clone();
         let document =
             OptimisationDocument { verified_difference_mm: Some(difference), ..document };
-        (document, (difference > NOTICEABLE).then_some(warning))
+        (document, (difference > most).then_some(warning))
     }
 
     /// The skin of the response as files, without a full solution: no reactions, and nothing of the inside.

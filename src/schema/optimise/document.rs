@@ -23,7 +23,7 @@ use crate::schema::predict::budget::BudgetDocument;
 use crate::schema::predict::document::PredictDocument;
 use crate::schema::predict::output::OutputName;
 use crate::schema::predict::tolerance::ToleranceDocument;
-use crate::schema::response::ResponseDocument;
+use crate::schema::response::{ResponseDocument, check_order};
 use crate::schema::wire::canonical;
 use crate::schema::wire::fault::{Faults, Pointer};
 use crate::schema::wire::limits::Limits;
@@ -69,6 +69,11 @@ pub struct OptimiseDocument {
     #[serde(default = "yes")]
     #[schema(default = true)]
     pub verify: bool,
+    /// 1, the default: the skin is linear in the movements. 2: with what linear elasticity leaves out to second order, as a response of
+    /// order 2; without growth, activations and `tissue_bounds`. `verify` solves the plan at finite strain then.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false, minimum = 1, maximum = 2)]
+    pub order: Option<u8>,
     /// Linear methods only.
     #[serde(default)]
     pub method: MethodName,
@@ -122,6 +127,7 @@ impl OptimiseDocument {
     pub fn check(&self, case: &CaseDocument, limits: &Limits, faults: &mut Faults) {
         let root = Pointer::root().key("spec");
         methods::check_linear(self.method, &root.key("method"), faults);
+        check_order(self.order, &root, faults);
         let at = root.key("targets");
         if self.targets.is_empty() {
             faults.add(&at, ErrorCode::MissingField, "at least one target is needed");
@@ -139,6 +145,10 @@ impl OptimiseDocument {
         _ = to_growth(&self.growth, &root.key("growth"), limits, faults);
         _ = to_activations(&self.activations, &root.key("activations"), limits, faults);
         check_tissue(&self.tissue_bounds, &self.growth, &root.key("tissue_bounds"), limits, faults);
+        if self.order == Some(2) && !self.tissue_bounds.is_empty() {
+            let detail = "constants and growth are looked for in order 1 only";
+            faults.add(&root.key("order"), ErrorCode::MethodNotAvailable, detail);
+        }
         let moves = self.bounds.values().any(BoundsDocument::is_free);
         if !moves && !self.tissue_bounds.values().any(TissueBoundsDocument::is_free) {
             let detail = "nothing may change: at least one lowest value is below its highest";
@@ -201,6 +211,7 @@ impl OptimiseDocument {
     pub fn to_response(&self) -> ResponseDocument {
         ResponseDocument {
             case: self.case.clone(),
+            order: self.order,
             method: self.method,
             element: self.element,
             materials: self.materials.clone(),
@@ -232,6 +243,7 @@ impl OptimiseDocument {
         plain.tags.clear();
         plain.case.clear();
         plain.outputs = Some(self.to_prediction().files());
+        plain.order = plain.order.filter(|order| *order != 1);
         canonical::to_value(&plain)
     }
 }

@@ -50,7 +50,15 @@ pub struct OptimisationDocument {
     #[schema(nullable = false)]
     pub residual_factor: Option<f64>,
     pub iterations: u64,
-    /// The largest distance between the skin of the full solution and that of the response; absent
+    /// Of order 2: means over the skin that moves of the second-order term, and of the third-order term that is left out, estimated
+    /// from samples.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub second_order_mm: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub nonlinearity_estimate_mm: Option<f64>,
+    /// The largest distance between the skin of the full solution, in order 2 at finite strain, and that of the response; absent
     /// without `verify`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
@@ -201,6 +209,8 @@ impl OptimisationDocument {
             degrees_of_freedom: degrees_of_freedom as u64,
             residual_factor: (degrees_of_freedom > 0).then(|| spread.sqrt()),
             iterations: optimum.iterations as u64,
+            second_order_mm: optimum.beyond.map(|beyond| beyond.second),
+            nonlinearity_estimate_mm: optimum.beyond.map(|beyond| beyond.third),
             verified_difference_mm: None,
         }
     }

@@ -15,9 +15,12 @@ pub struct AdequacyDocument {
     /// The same over parts of the skin.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub accepted_regions_mm: BTreeMap<String, f64>,
-    /// Whether the estimate of the model that was taken is within it, and its skin does not pass through itself by more, which no
-    /// estimate has.
+    /// Whether the estimate of the model that was taken is within it, and there are no `objections`.
     pub met: bool,
+    /// Codes of warnings that no estimate of an error contains, and with which no answer is adequate: cells that are inside out, skin
+    /// that passes through itself by more than is accepted, contact that leaves parts in each other.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub objections: Vec<String>,
     /// The model that was taken: `linear`, `second_order` or `finite_strain`, or one of these with what its mesh leaves out
     /// added: `corrected`, `second_order_corrected`, `finite_strain_corrected`.
     pub taken: String,
@@ -70,6 +73,7 @@ impl AdequacyDocument {
             accepted_mm: accepted.skin_mm,
             accepted_regions_mm: accepted.regions_mm.clone(),
             met: adequate.is_met,
+            objections: adequate.objections.iter().map(|own| own.warning.code.to_owned()).collect(),
             taken: adequate.rung.name().to_owned(),
             mesh_mm: over_skin(&adequate.errors.mesh),
             linearity_mm: over_skin(&adequate.errors.linearity),
@@ -93,19 +97,20 @@ impl AdequacyDocument {
             self.accepted_regions_mm.get(*name).is_some_and(|accepted| *error > accepted)
         });
         let is_accepted = error <= self.accepted_mm && over.next().is_none();
-        let verdict = match (self.met, is_accepted) {
-            (true, _) => "the cheapest model within",
-            (false, true) => {
-                "the cheapest model whose expected error is accepted, and its skin passes through itself by more than the accepted"
-            }
-            (false, false) => {
-                "the cheapest whose error is within a quarter of the least that was found, short of"
-            }
-        };
-        format!(
-            "`{}` with an expected mean error of {error:.3} mm over the skin that moves is {verdict} {} mm",
-            self.taken, self.accepted_mm
-        )
+        let (taken, wanted) = (&self.taken, self.accepted_mm);
+        let told = format!(
+            "`{taken}` with an expected mean error of {error:.3} mm over the skin that moves is"
+        );
+        let objections = self.objections.join(", ");
+        match (objections.is_empty(), is_accepted) {
+            (true, true) => format!("{told} the cheapest model within {wanted} mm"),
+            (true, false) => format!(
+                "{told} the cheapest whose error is within a quarter of the least that was found, short of {wanted} mm"
+            ),
+            (false, _) => format!(
+                "{told} what was found, and not said to be within {wanted} mm: no estimate of an error contains {objections}"
+            ),
+        }
     }
 }
 
@@ -133,7 +138,7 @@ impl From<&Considered> for RungDocument {
 mod tests {
     use super::*;
 
-    fn chosen(met: bool, error_mm: f64, of_region_mm: f64) -> String {
+    fn chosen(objections: &[&str], error_mm: f64, of_region_mm: f64) -> String {
         let rung = RungDocument {
             name: "linear".to_owned(),
             error_mm: Some(error_mm),
@@ -145,7 +150,8 @@ mod tests {
         let document = AdequacyDocument {
             accepted_mm: 0.1,
             accepted_regions_mm: [("lips".to_owned(), 0.2)].into(),
-            met,
+            met: false,
+            objections: objections.iter().map(|code| (*code).to_owned()).collect(),
             taken: "linear".to_owned(),
             mesh_mm: None,
             linearity_mm: None,
@@ -158,10 +164,12 @@ mod tests {
 
     #[test]
     fn an_accepted_error_that_is_not_met_is_no_error_that_falls_short() {
-        let through_itself = "its skin passes through itself by more than the accepted 0.1 mm";
-        assert!(chosen(true, 0.05, 0.1).contains("is the cheapest model within 0.1 mm"));
-        assert!(chosen(false, 0.05, 0.1).contains(through_itself));
-        for short in [chosen(false, 0.15, 0.1), chosen(false, 0.05, 0.3)] {
+        assert!(chosen(&[], 0.05, 0.1).contains("is the cheapest model within 0.1 mm"));
+        let inverted = chosen(&["cells-inverted"], 0.05, 0.1);
+        assert!(
+            inverted.ends_with("within 0.1 mm: no estimate of an error contains cells-inverted")
+        );
+        for short in [chosen(&[], 0.15, 0.1), chosen(&[], 0.05, 0.3)] {
             assert!(short.ends_with("short of 0.1 mm"), "{short}");
         }
     }

@@ -49,6 +49,18 @@ fn input() -> OptimiseInput {
     OptimiseInput { job: None, queue_s: None, case, spec }
 }
 
+/// The same with some of the spec replaced.
+fn changed(from: &str, to: &str) -> OptimiseInput {
+    let spec = serde_json::from_str(&SPEC.replacen(from, to, 1)).unwrap();
+    OptimiseInput { spec, ..input() }
+}
+
+fn run_input(input: OptimiseInput, out: &Path) -> Result<JobOutput, JobError> {
+    let limits = Limits::default();
+    let place = JobContext { sources: &Block, limits: &limits, out };
+    work(&JobInput::Optimise(input), &place, &Unobserved)
+}
+
 fn run(out: &Path, progress: &dyn Progress) -> Result<JobOutput, JobError> {
     let limits = Limits::default();
     let place = JobContext { sources: &Block, limits: &limits, out };
@@ -69,6 +81,34 @@ fn segments_are_matched_by_name_in_whatever_order_they_come() {
     assert_eq!(found.parameters.len() + found.at_bound.len(), 6);
     assert!(found.verified_difference_mm.unwrap() < 1e-5);
     assert!(found.targets[0].points > 1 && found.targets[1].points == 1);
+}
+
+/// Its full solution is that of finite strain, of which the linear response of the same plan knows less.
+#[test]
+fn a_plan_of_order_2_reaches_its_targets_at_finite_strain() {
+    let of_order = |order: u8| {
+        let out = tempfile::tempdir().unwrap();
+        let kind = format!(r#""kind":"optimise","order":{order}"#);
+        let mut input = changed(r#""kind":"optimise""#, &kind);
+        input.spec.targets[0].displacement_mm = serde_json::from_str("[2.5,null,0.1]").unwrap();
+        run_input(input, out.path()).unwrap().result
+    };
+    let [first, second] = [1, 2].map(of_order);
+    let found = second.optimisation.unwrap();
+    let method = second.provenance.method.unwrap();
+    assert_eq!(method, "fem_nonlinear");
+    let adds = found.second_order_mm.unwrap();
+    let (left_out, apart) =
+        (found.nonlinearity_estimate_mm.unwrap(), found.verified_difference_mm.unwrap());
+    println!("second order {adds:.3} mm, third {left_out:.4} mm, finite strain {apart:.3} mm away");
+    assert!(adds > 0.01 && left_out < 0.5 * adds && apart < 10.0 * adds);
+    let linear = first.optimisation.unwrap();
+    assert!(linear.second_order_mm.is_none() && linear.plan != found.plan);
+    let out = tempfile::tempdir().unwrap();
+    let tissue =
+        r#""kind":"optimise","order":2,"tissue_bounds":{"*":{"poisson_ratio":[0.3,0.49]}}"#;
+    let refused = run_input(changed(r#""kind":"optimise""#, tissue), out.path()).unwrap_err();
+    assert!(refused.to_string().contains("order 1 only"), "{refused}");
 }
 
 #[test]

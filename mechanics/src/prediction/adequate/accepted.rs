@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::mesh::Vector;
+use crate::mesh::{Vector, Warning};
 use crate::prediction::skin::Skin;
 
 /// The mean error over the skin that is accepted where nothing else is said, in mm.
@@ -68,4 +68,32 @@ impl Accepted {
         let largest = regions.fold(errors.skin_mm / self.skin_mm, f64::max);
         if largest.is_nan() { f64::INFINITY } else { largest }
     }
+}
+
+/// The warning where expected errors are not within those that are accepted, or not known.
+pub(super) fn not_met(error: Option<&MeanErrors>, accepted: &Accepted) -> Warning {
+    let wanted = accepted.skin_mm;
+    let Some(error) = error else {
+        let detail = "how far the skin is off is not known".to_owned();
+        return Warning::new("tolerance-not-met", detail).with("accepted_mm", wanted);
+    };
+    let skin = error.skin_mm;
+    let detail = match accepted
+        .regions_mm
+        .iter()
+        .find(|(name, accepted)| error.regions_mm.get(*name).is_none_or(|error| error > *accepted))
+    {
+        Some((name, wanted)) if skin <= accepted.skin_mm => {
+            let own = error.regions_mm.get(name).copied().unwrap_or(f64::NAN);
+            format!(
+                "{name:?} is expected to be off by {own:.3} mm in the mean, and {wanted:.3} mm were to be met"
+            )
+        }
+        Some(_) | None => format!(
+            "the skin that moves is expected to be off by {skin:.3} mm in the mean, and {wanted:.3} mm were to be met: no adequate \
+             model fits the mesh, the time and the case"
+        ),
+    };
+    let warning = Warning::new("tolerance-not-met", detail).with("accepted_mm", wanted);
+    warning.with("expected_mm", skin)
 }

@@ -1,10 +1,12 @@
 //! Search for the cheapest adequate model: models in the order of their cost, until one is accurate enough.
 
-use super::accepted::{Accepted, MeanErrors};
-use super::crossing::overlap;
+use std::collections::BTreeMap;
+
+use super::accepted::{Accepted, MeanErrors, not_met};
 use super::duration::{SECOND_ORDER_TAKES, newton_relative_time};
+use super::objection::{Found, Objection};
 use super::rung::{Considered, Errors, Rung};
-use crate::mesh::{Vector, Warning};
+use crate::mesh::Vector;
 use crate::model::fem::finite_strain::Advance;
 use crate::model::fem::strain::deformations;
 use crate::model::problem::ModelError;
@@ -35,6 +37,9 @@ pub struct Adequate {
     pub rung: Rung,
     pub errors: Errors,
     pub considered: Vec<Considered>,
+    /// What speaks against the answer whatever its error is expected to be.
+    pub objections: Vec<Objection>,
+    /// Whether its expected error is accepted, and nothing speaks against it.
     pub is_met: bool,
 }
 
@@ -65,6 +70,7 @@ pub fn predict_adequately(
         moving: linear.skin.points(),
         errors: Errors::default(),
         considered: Vec::new(),
+        objections: BTreeMap::new(),
     };
     climb.run(case, plan)
 }
@@ -91,6 +97,8 @@ struct Climb<'a> {
     moving: Vec<u32>,
     errors: Errors,
     considered: Vec<Considered>,
+    /// Of each answer that is there.
+    objections: BTreeMap<Rung, Vec<Objection>>,
 }
 
 enum Failure {
@@ -108,27 +116,25 @@ impl Climb<'_> {
             Linear::Solved(known) => Some(&**known),
             Linear::Other(_) => None,
         };
-        self.read_linear_answer(&solved);
+        let first = Found::of_linear(self.scene, &solved);
+        self.read_linear_answer(&solved, &first);
         self.linear_s = self.elapsed();
-        self.note(Rung::Linear, Some(self.linear_s), self.linear_s);
+        self.note(Rung::Linear, self.linear_s, &first);
 
         // 2. To second order, by the same matrix.
         let mut second_order = None;
+        let expected = self.second_order_expected(&first.equilibrium.displacement);
         if let Some(known) = known
-            && self
-                .is_affordable(Rung::SecondOrder, self.second_order_expected(known.displacement()))
+            && self.is_affordable(Rung::SecondOrder, expected)
         {
             let begun = self.elapsed();
             let found = known.to_second_order(self.scene, progress)?;
             let third = found.nonlinearity.as_ref().ok();
             self.errors.third_order = third.map(|left| self.means(&left.left_out));
             if self.is_a_series() {
+                let spent = self.elapsed() - begun;
+                self.note(Rung::SecondOrder, spent, &Found::of(self.scene, &found));
                 second_order = Some(found);
-                self.note(
-                    Rung::SecondOrder,
-                    Some(self.elapsed() - begun),
-                    self.time_of(Rung::SecondOrder),
-                );
             } else {
                 self.errors.third_order = None;
                 let why = "its series is not to be trusted for this plan";
@@ -138,16 +144,14 @@ impl Climb<'_> {
 
         // 3. At finite strain.
         let mut finite_strain = None;
-        if self.is_affordable(Rung::FiniteStrain, self.errors.on(Rung::FiniteStrainCorrected)) {
+        let expected = self.errors.expected(Rung::FiniteStrainCorrected);
+        if self.is_affordable(Rung::FiniteStrain, expected) {
             let begun = self.elapsed();
             match at_finite_strain(case, plan, &self.scene.settings, progress) {
                 Ok((scene, found)) => {
-                    let mesh = found.numerical_error.as_ref().ok();
-                    let mesh = mesh.map(|error| self.means(&error.missing));
-                    self.errors.mesh_at_rest = mesh;
-                    let spent = self.elapsed() - begun;
-                    self.note(Rung::FiniteStrain, Some(spent), self.time_of(Rung::FiniteStrain));
-                    self.refuse_correction(&scene, &found);
+                    let own = Found::of(&scene, &found);
+                    self.errors.mesh_at_rest = own.missing.map(|missing| self.means(missing));
+                    self.note(Rung::FiniteStrain, self.elapsed() - begun, &own);
                     finite_strain = Some((scene, found));
                 }
                 Err(Failure::Stopped(error)) => return Err(error),
@@ -164,24 +168,26 @@ impl Climb<'_> {
     }
 
     /// Reads the estimates of the linear solution.
-    fn read_linear_answer(&mut self, solved: &Linear) {
-        let (displacement, mesh, linearity) = match solved {
-            Linear::Solved(own) => (own.displacement(), &own.numerical_error, &own.nonlinearity),
+    fn read_linear_answer(&mut self, solved: &Linear, first: &Found) {
+        let linearity = match solved {
+            Linear::Solved(own) => &own.nonlinearity,
             Linear::Other(own) => {
                 self.in_contact = own.contact.is_some();
-                (&*own.equilibrium.displacement, &own.numerical_error, &own.nonlinearity)
+                &own.nonlinearity
             }
         };
+        let displacement = &first.equilibrium.displacement;
         self.moving = self.scene.skin.moving_points(displacement);
         self.newton_relative_time = newton_relative_time(least_det_f(self.scene, displacement));
-        self.errors.mesh = mesh.as_ref().ok().map(|error| self.means(&error.missing));
+        self.errors.mesh = first.missing.map(|missing| self.means(missing));
         self.errors.linearity = linearity.as_ref().ok().map(|left| self.means(&left.left_out));
     }
 
     fn taken(&mut self, answers: Answers) -> Adequate {
         let rung = self.chosen();
         let error = self.errors.on(rung);
-        let is_met = self.accepted.share(error.as_ref()) <= 1.0;
+        let is_accepted = self.accepted.share(error.as_ref()) <= 1.0;
+        let objections = self.objections.remove(&rung).unwrap_or_default();
         let is_corrected = rung.is_corrected();
         let Answers { linear, second_order, finite_strain } = answers;
         let progress = self.watched.progress;
@@ -196,12 +202,12 @@ impl Climb<'_> {
             }
             (_, _, _) => as_linear(linear),
         };
-        prediction.warnings.extend((!is_met).then(|| not_met(error.as_ref(), self.accepted)));
-        let overlap = overlap(&self.scene.skin, &prediction, self.accepted);
-        let is_met = is_met && overlap.is_none();
-        prediction.warnings.extend(overlap);
-        let considered = std::mem::take(&mut self.considered);
-        Adequate { prediction, scene, rung, errors: self.errors.clone(), considered, is_met }
+        let warnings = &mut prediction.warnings;
+        warnings.extend((!is_accepted).then(|| not_met(error.as_ref(), self.accepted)));
+        warnings.extend(objections.iter().map(|own| own.not_met(self.accepted)));
+        let is_met = is_accepted && objections.is_empty();
+        let (errors, considered) = (self.errors.clone(), std::mem::take(&mut self.considered));
+        Adequate { prediction, scene, rung, errors, considered, objections, is_met }
     }
 
     fn means(&self, values: &[Vector]) -> MeanErrors {
@@ -264,20 +270,43 @@ impl Climb<'_> {
         false
     }
 
-    /// Notes a solution and its correction.
-    fn note(&mut self, solution: Rung, spent_s: Option<f64>, expected_s: f64) {
+    /// Notes a solution and its correction, with what speaks against them.
+    fn note(&mut self, solution: Rung, spent_s: f64, found: &Found) {
+        let expected_s = self.time_of(solution);
         for rung in Rung::ALL.into_iter().filter(|rung| rung.solution() == solution) {
             let error = self.errors.on(rung);
-            let unknown = rung.is_corrected() && error.is_none();
-            let passed_over = unknown.then(|| "its error is not known".to_owned());
+            let passed_over = self.why_not(rung, error.is_some(), found);
+            let spent_s = Some(spent_s);
             self.considered.push(Considered { rung, error, spent_s, expected_s, passed_over });
         }
+    }
+
+    /// Why an answer that is there is not taken where a dearer model may do.
+    fn why_not(&mut self, rung: Rung, is_known: bool, found: &Found) -> Option<String> {
+        if self.least_share() <= 1.0 {
+            // The answer itself is adequate: what is corrected is not looked at, which takes its time.
+            return None;
+        }
+        if rung.is_corrected() && !is_known {
+            return Some("its error is not known".to_owned());
+        }
+        if rung.is_corrected() && found.contact.is_some() {
+            let why =
+                "what the mesh leaves out is not added where tissue presses on what it touches";
+            return Some(why.to_owned());
+        }
+        let objections = found.objections(rung.is_corrected(), self.accepted);
+        let of_model = objections.iter().filter(|own| own.is_of_model);
+        let told: Vec<&str> = of_model.map(|own| own.warning.detail.as_str()).collect();
+        let why = (!told.is_empty()).then(|| told.join("; "));
+        self.objections.insert(rung, objections);
+        why
     }
 
     fn pass_over(&mut self, solution: Rung, why: String) {
         let expected_s = self.time_of(solution);
         for rung in Rung::ALL.into_iter().filter(|rung| rung.solution() == solution) {
-            let (error, passed_over) = (self.errors.on(rung), Some(why.clone()));
+            let (error, passed_over) = (self.errors.expected(rung), Some(why.clone()));
             self.considered.push(Considered {
                 rung,
                 error,
@@ -285,25 +314,6 @@ impl Climb<'_> {
                 expected_s,
                 passed_over,
             });
-        }
-    }
-
-    /// Passes over the corrected answer where something presses, and where what is added turns cells inside out that the answer
-    /// itself does not.
-    fn refuse_correction(&mut self, scene: &Scene, found: &Answer) {
-        let Ok(error) = &found.numerical_error else { return };
-        let pairs = found.equilibrium.displacement.iter().zip(&error.missing);
-        let corrected: Vec<Vector> = pairs.map(|(u, missing)| u + missing).collect();
-        let why = if found.contact.is_some() {
-            "what the mesh leaves out is not added where tissue presses on what it touches"
-        } else if least_det_f(scene, &corrected) <= 0.0 {
-            "what the mesh is estimated to leave out would turn cells inside out"
-        } else {
-            return;
-        };
-        let of_it = |considered: &&mut Considered| considered.rung == Rung::FiniteStrainCorrected;
-        for considered in self.considered.iter_mut().filter(of_it) {
-            considered.passed_over = Some(why.to_owned());
         }
     }
 
@@ -317,13 +327,15 @@ impl Climb<'_> {
         self.shares().map(|(_, share)| share).fold(f64::INFINITY, f64::min)
     }
 
-    /// The first rung that is adequate, or else the first that is nearly as good as the best. In contact, where no error is known,
-    /// finite strain where it was tried: linear elements hold nodes against faces that small strain makes too large.
+    /// The first rung that is adequate, or else the first that is nearly as good as the best. Where no error is known or something
+    /// speaks against every answer, the dearest that was found: linear elements turn cells inside out, and in contact hold nodes
+    /// against faces that small strain makes too large.
     fn chosen(&self) -> Rung {
         let least = self.least_share();
-        if self.in_contact && least.is_infinite() {
-            let solved = self.shares().filter(|(rung, _)| !rung.is_corrected());
-            return solved.last().map_or(Rung::Linear, |(rung, _)| rung);
+        if least.is_infinite() {
+            let is_there = |one: &&Considered| one.spent_s.is_some() && !one.rung.is_corrected();
+            let found = self.considered.iter().rfind(is_there);
+            return found.map_or(Rung::Linear, |found| found.rung);
         }
         let enough = if least <= 1.0 { 1.0 } else { least / WORTHWHILE };
         let found = self.shares().find(|(_, share)| *share <= enough);
@@ -357,31 +369,4 @@ fn at_finite_strain(
         Err(error @ ModelError::Solver(SolverError::Stopped)) => Err(Failure::Stopped(error)),
         Err(error) => Err(Failure::Refused(error.to_string())),
     }
-}
-
-fn not_met(error: Option<&MeanErrors>, accepted: &Accepted) -> Warning {
-    let wanted = accepted.skin_mm;
-    let Some(error) = error else {
-        let detail = "how far the skin is off is not known".to_owned();
-        return Warning::new("tolerance-not-met", detail).with("accepted_mm", wanted);
-    };
-    let skin = error.skin_mm;
-    let detail = match accepted
-        .regions_mm
-        .iter()
-        .find(|(name, accepted)| error.regions_mm.get(*name).is_none_or(|error| error > *accepted))
-    {
-        Some((name, wanted)) if skin <= accepted.skin_mm => {
-            let own = error.regions_mm.get(name).copied().unwrap_or(f64::NAN);
-            format!(
-                "{name:?} is expected to be off by {own:.3} mm in the mean, and {wanted:.3} mm were to be met"
-            )
-        }
-        Some(_) | None => format!(
-            "the skin that moves is expected to be off by {skin:.3} mm in the mean, and {wanted:.3} mm were to be met: no adequate \
-             model fits the mesh, the time and the case"
-        ),
-    };
-    let warning = Warning::new("tolerance-not-met", detail).with("accepted_mm", wanted);
-    warning.with("expected_mm", skin)
 }

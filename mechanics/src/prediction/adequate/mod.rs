@@ -5,16 +5,17 @@
 //! leaves out and e_3 of what the second order does, all means over the skin that moves or a part of it, an answer is expected to be off by
 //! e_m + e_l, e_m + e_3 or e_m, a corrected one by .8 e_m in place of e_m (docs/estimates.md: what adding an estimate left). A
 //! rung is tried while none below is adequate, if its own expected error is accepted or clearly smaller, and if the time for it
-//! is there. The cheapest one within what is accepted is taken; where there is none, the cheapest that is nearly as good as the
-//! best, which is then said not to be adequate.
+//! is there. The cheapest one within what is accepted is taken, unless its warnings speak against it (`objection`); where there is
+//! none, the cheapest that is nearly as good as the best, which is then said not to be adequate.
 
 mod accepted;
 mod climb;
-mod crossing;
 mod duration;
+mod objection;
 mod rung;
 
 pub use accepted::{Accepted, MeanErrors, USUALLY_ACCEPTED_MM};
 pub use climb::{Adequate, TimedProgress, predict_adequately};
 pub use duration::{NEWTON_MAY_TAKE, SECOND_ORDER_TAKES};
+pub use objection::Objection;
 pub use rung::{Considered, Errors, Rung};

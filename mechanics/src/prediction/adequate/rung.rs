@@ -84,18 +84,36 @@ impl Rung {
 }
 
 impl Errors {
+    /// Those that are expected of an answer before it is there: its mesh leaves out as much at finite strain.
+    pub(super) fn expected(&self, rung: Rung) -> Option<MeanErrors> {
+        let mesh_at_rest = self.mesh_at_rest.clone().or_else(|| self.mesh.clone());
+        Errors { mesh_at_rest, ..self.clone() }.on(rung)
+    }
+
     /// The mean errors of an answer of a rung: of the mesh, and of the model.
     pub(super) fn on(&self, rung: Rung) -> Option<MeanErrors> {
-        let at_rest = self.mesh_at_rest.as_ref().or(self.mesh.as_ref());
         let (mesh, model) = match rung.solution() {
             Rung::SecondOrder | Rung::SecondOrderCorrected => {
                 (self.mesh.as_ref()?, Some(self.third_order.as_ref()?))
             }
-            Rung::FiniteStrain | Rung::FiniteStrainCorrected => (at_rest?, None),
+            Rung::FiniteStrain | Rung::FiniteStrainCorrected => (self.mesh_at_rest.as_ref()?, None),
             Rung::Linear | Rung::Corrected => (self.mesh.as_ref()?, Some(self.linearity.as_ref()?)),
         };
         let left = if rung.is_corrected() { LEFT_BY_CORRECTION } else { 1.0 };
         let mesh = mesh.map(|error| left * error);
         Some(model.map_or_else(|| mesh.clone(), |model| mesh.plus(model)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_answer_of_finite_strain_has_its_own_error_or_none() {
+        let mesh = MeanErrors { skin_mm: 0.2, regions_mm: Default::default() };
+        let errors = Errors { mesh: Some(mesh.clone()), ..Errors::default() };
+        assert_eq!(errors.expected(Rung::FiniteStrain), Some(mesh));
+        assert_eq!(errors.on(Rung::FiniteStrain), None);
     }
 }

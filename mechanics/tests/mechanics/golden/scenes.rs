@@ -299,6 +299,7 @@ fn optimised() -> Found {
         targets: &targets,
         inner: &[],
         constants: &[],
+        second_order: None,
     };
     let optimum = optimise(&question).unwrap();
     let mut values: Vec<f64> = optimum.parameters.iter().flatten().copied().collect();

@@ -17,8 +17,15 @@ const SURGERY: [[f64; 6]; 2] =
     [[4.0, -6.0, 1.5, 7.0, -5.0, 11.0], [-1.0, -3.0, 2.0, -4.0, 2.0, 3.0]];
 
 fn found(response: &Response, bounds: &[SegmentBounds], targets: &[Target]) -> Optimum {
-    let optimum =
-        optimise(&Question { response, bounds, targets, inner: &[], constants: &[] }).unwrap();
+    let optimum = optimise(&Question {
+        response,
+        bounds,
+        targets,
+        inner: &[],
+        constants: &[],
+        second_order: None,
+    })
+    .unwrap();
     check(&optimum, bounds);
     optimum
 }
@@ -285,7 +292,15 @@ fn a_question_without_an_answer_is_refused() {
     let response = response(&skin());
     let wanted = every_node(&skin(), 1.0);
     let ask = |response: &Response, bounds: &[SegmentBounds], targets: &[Target]| {
-        optimise(&Question { response, bounds, targets, inner: &[], constants: &[] }).unwrap_err()
+        optimise(&Question {
+            response,
+            bounds,
+            targets,
+            inner: &[],
+            constants: &[],
+            second_order: None,
+        })
+        .unwrap_err()
     };
     let free = bounds(25.0, 30.0);
     let held = bounds(0.0, 0.0);
@@ -318,6 +333,7 @@ fn targets_far_from_any_skin_have_a_nearest_plan_or_say_that_it_was_not_found() 
                 targets: &targets,
                 inner: &[],
                 constants: &[],
+                second_order: None,
             };
             match optimise(&question) {
                 Ok(found) => {

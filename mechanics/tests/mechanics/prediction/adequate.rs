@@ -2,16 +2,19 @@
 
 use mechanics::material::{Fibre, FibreLaw, PlaneStress, Sheet};
 use mechanics::mesh::refinement::refine;
+use mechanics::mesh::sample::hard_block;
 use mechanics::mesh::{CellShape, Vector};
+use mechanics::plan::RigidMovement;
 use mechanics::prediction::{
-    Accepted, Adequate, Case, ContactKind, ElementChoice, FibreDirection, MeanErrors, Method, Plan,
-    Prediction, Rung, Scene, Settings, SkinMembrane, TimedProgress, predict, predict_adequately,
+    Accepted, Adequate, Case, CaseSegment, ContactKind, ElementChoice, FibreDirection, MeanErrors,
+    Method, Plan, Prediction, Rung, Scene, Settings, SkinMembrane, TimedProgress, predict,
+    predict_adequately,
 };
 use mechanics::progress::{Progress, Unobserved};
 
 use super::contact::{jaws, raised};
 use super::nonlinearity::{movements, slab};
-use crate::scenes::{StopsAfter, set};
+use crate::scenes::{StopsAfter, case_of, material, set};
 use crate::support::responses::plan_of;
 
 /// A stopwatch on which each look is a second later.
@@ -165,7 +168,7 @@ fn where_tissue_presses_only_finite_strain_is_called_adequate() {
     for (time_s, taken, is_met) in [(1e9, Rung::FiniteStrain, true), (0.0, Rung::Linear, false)] {
         let accepted = Accepted { time_s, ..within(100.0) };
         let found = adequate(&case, &plan, &settings, accepted);
-        assert_eq!((found.rung, found.is_met), (taken, is_met));
+        assert_eq!((found.rung, found.is_met), (taken, is_met), "{:?}", found.objections);
         let touch = found.prediction.contact.unwrap();
         assert!(touch.area() > 100.0, "{}", touch.area());
     }
@@ -188,6 +191,39 @@ fn skin_that_passes_through_itself_deeper_than_accepted_is_never_called_met() {
     assert!(told.detail.contains("deeper than at rest"), "{told:?}");
     let (is_met, told) = met(3.0, 1.5);
     assert!(is_met && told.is_none(), "{told:?}");
+}
+
+/// The estimates of an answer that no tissue can have are none, however much is accepted.
+#[test]
+fn an_answer_that_turns_cells_inside_out_is_never_called_adequate() {
+    let case = Case {
+        skin: Some(set("z_max")),
+        segments: vec![CaseSegment { name: "patch".to_owned(), nodes: set("patch") }],
+        fixed: vec![set("rest")],
+        ..case_of(hard_block([20, 20, 4]), material(15.0, 0.46))
+    };
+    let angles = Vector::new(0.0, 15_f64.to_radians(), 0.0);
+    let (pivot, along) = (Vector::new(50.0, 50.0, 0.0), Vector::new(25.0, 0.0, 10.0));
+    let plan = plan_of(&case, &[RigidMovement::about_pivot(angles, pivot, along)]);
+    let usual = Settings::default();
+    let linear = predict(&Scene::new(&case, &plan, &usual).unwrap(), &Unobserved).unwrap();
+    assert!(linear.deformation.iter().any(|cell| cell.det_f <= 0.0));
+
+    let found = adequate(&case, &plan, &usual, within(100.0));
+    assert_eq!((found.rung, found.is_met), (Rung::FiniteStrain, true), "{:?}", found.considered);
+    assert!(found.objections.is_empty());
+    assert!(found.prediction.deformation.iter().all(|cell| cell.det_f > 0.0));
+    let first = &found.considered[0];
+    assert!(first.error.as_ref().unwrap().skin_mm <= 100.0);
+    assert!(first.passed_over.as_ref().unwrap().contains("inside out"), "{first:?}");
+
+    let no_finite_strain = Some("no room".to_owned());
+    let found = adequate(&case, &plan, &usual, Accepted { no_finite_strain, ..within(100.0) });
+    assert!(!found.is_met && found.rung.solution() != Rung::FiniteStrain);
+    assert_eq!(found.objections[0].warning.code, "cells-inverted");
+    let mut told = found.prediction.warnings.iter();
+    let told = told.find(|one| one.code == "tolerance-not-met").unwrap();
+    assert!(told.detail.contains("inside out"), "{told:?}");
 }
 
 #[test]

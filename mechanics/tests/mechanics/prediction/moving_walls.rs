@@ -312,6 +312,7 @@ fn inverse_planning_finds_the_movement_of_a_jaw_that_carries_teeth() {
         targets: &targets,
         inner: &[],
         constants: &[],
+        second_order: None,
     })
     .unwrap();
     let corner = Vector::new(40.0, 20.0, 0.0);

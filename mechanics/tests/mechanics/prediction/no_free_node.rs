@@ -78,6 +78,7 @@ fn a_response_and_inverse_planning_do_without_a_free_node() {
         targets: &[Target { goals: vec![goal], sigma: 1.0 }],
         inner: &[],
         constants: &[],
+        second_order: None,
     };
     let optimum = optimise(&question).unwrap();
     assert!((optimum.movements[0].translation() - Vector::new(1.0, 2.0, 0.0)).norm() < 1e-6);

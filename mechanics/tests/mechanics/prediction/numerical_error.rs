@@ -242,7 +242,6 @@ fn methods_without_a_limit_of_finer_meshes_say_why_they_have_no_estimate() {
         ),
         (of(Method::VolumeSpline(Default::default())), NotEstimated::Spline),
         (of(Method::ThicknessWarp(Default::default())), NotEstimated::Warp),
-        (of(Method::MassTensorNonlinear), NotEstimated::NonlinearMassTensor),
         (
             Settings { element: ElementChoice::Quadratic, ..of(Method::FemLinear) },
             NotEstimated::Quadratic,

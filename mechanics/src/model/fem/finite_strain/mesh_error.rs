@@ -33,6 +33,8 @@ pub type MeshError = Result<DiscretisationError, NoMeshError>;
 pub enum NoMeshError {
     #[error("the state that was found is not stable, and its tangent no matrix to solve with")]
     Unstable,
+    #[error("the answer turns cells inside out, and no finer mesh is near to it")]
+    Inverted,
     #[error("the tangent of the answer could not be solved with")]
     NotSolved,
 }

@@ -41,13 +41,14 @@ use crate::model::dofs::{Constrained, nodes_of_cells, number};
 use crate::model::fem::contact::Contact;
 use crate::model::fem::displacement::check_finite;
 use crate::model::fem::edge_nodes::WithEdges;
+use crate::model::fem::strain::deformations;
 use crate::model::problem::{Equilibrium, InvertedCell, LoadCase, ModelError};
 use crate::model::reference_cell;
 use crate::progress::{Phase, Progress};
 use crate::solver::SolverError;
 use crate::solver::element_connectivity::ElementConnectivity;
 use another_rest::{another_rest, is_doubtful};
-use direction::{Directions, Tally};
+use direction::Directions;
 use elements::CellBulkModulus;
 pub use elements::Elements;
 pub use fibres::FibreField;
@@ -138,6 +139,27 @@ impl<'a> FiniteStrain<'a> {
         let (tissue, mut rest) = self.rest(question, None)?;
         let error = self.mesh_error(finer, &tissue, &mut rest, &question)?;
         Ok((self.equilibrium(&tissue, &question, rest, &case.forces)?, error))
+    }
+
+    /// What the mesh leaves out of an answer of the same tissue that another model found, without pressures.
+    pub fn mesh_error_at(
+        &self,
+        displacement: &[Vector],
+        case: &LoadCase,
+        finer: &FinerProblem,
+        progress: &dyn Progress,
+    ) -> Result<MeshError, ModelError> {
+        if deformations(self.mesh, displacement).iter().any(|cell| cell.det_f <= 0.0) {
+            return Ok(Err(NoMeshError::Inverted));
+        }
+        let numbering = number(&nodes_of_cells(self.mesh), self.nodes, self.holds);
+        let constrained = Constrained { holds: self.holds, numbering: &numbering };
+        let question = self.whole(&constrained, case, progress);
+        let pairs = self.nodes.iter().zip(displacement);
+        let moved: Vec<Vector> = pairs.map(|(rest, u)| rest + u).collect();
+        let start = Start::at(numbering.by_row(&moved), 1.0, None);
+        let (tissue, mut rest) = self.rest_from(question, start)?;
+        finer.of(&tissue, &mut rest, &constrained, progress)
     }
 
     fn mesh_error(
@@ -240,15 +262,8 @@ impl<'a> FiniteStrain<'a> {
         question: Question<'a>,
         touching: Option<Touching<'a>>,
     ) -> Result<(Tissue<'a>, Rest<'a>), ModelError> {
-        let start = Start {
-            x: question.constrained.numbering.by_row(self.nodes),
-            log_volumes: Vec::new(),
-            made: 0.0,
-            history: Vec::new(),
-            path: Vec::new(),
-            tally: Tally::default(),
-            touching,
-        };
+        let rest = question.constrained.numbering.by_row(self.nodes);
+        let start = Start::at(rest, 0.0, touching);
         match self.advance {
             Advance::AtOnce | Advance::AtOnceOrInParts => self.rest_at_share(question, start),
             Advance::InSteps(steps) => self.rest_in_steps(steps.get(), question, start),

@@ -35,6 +35,21 @@ pub(super) struct Start<'a> {
     pub touching: Option<Touching<'a>>,
 }
 
+impl<'a> Start<'a> {
+    /// At positions by row, with a share of movement and load made.
+    pub fn at(x: Vec<Vector>, made: f64, touching: Option<Touching<'a>>) -> Self {
+        Start {
+            x,
+            log_volumes: Vec::new(),
+            made,
+            history: Vec::new(),
+            path: Vec::new(),
+            tally: Tally::default(),
+            touching,
+        }
+    }
+}
+
 /// What tissue and bones were asked.
 #[derive(Clone, Copy)]
 pub(super) struct Question<'a> {
