@@ -14,7 +14,7 @@ use std::time::Instant;
 
 use measure::median;
 use measure::process::cpu_seconds;
-use mechanics::boundary::Hold;
+use mechanics::boundary::Constraint;
 use mechanics::format::vtk::vtu;
 use mechanics::format::{ArrayValues, NamedValues, VolumeOutput};
 use mechanics::material::hyperelastic::{Law, NeoHookean};
@@ -117,7 +117,7 @@ fn solve(mesh: &VolumeMesh, plan: &Plan) -> (Result<Equilibrium, ModelError>, f6
         membrane: None,
         inner: std::sync::Arc::default(),
         elements: plan.elements,
-        holds: &holds,
+        constraints: &holds,
         tolerance: Tolerance { relative_residual: 1e-6, memory_mb: 16e3 },
         with_states: false,
         advance: Advance::default(),
@@ -161,7 +161,7 @@ fn row(cells: usize, plan: &Plan) {
     }
 }
 
-fn holds(mesh: &VolumeMesh, plan: &Plan) -> Vec<Hold> {
+fn holds(mesh: &VolumeMesh, plan: &Plan) -> Vec<Constraint> {
     let turn = Rotation3::from_axis_angle(&Vector::y_axis(), (15.0 * plan.share).to_radians());
     let pivot = Vector::new(50.0, 50.0, 0.0);
     let bottom = (0..).zip(&mesh.nodes).filter(|(_, x)| x.z.abs() < 1e-9);
@@ -170,10 +170,9 @@ fn holds(mesh: &VolumeMesh, plan: &Plan) -> Vec<Hold> {
         let distance = outside[0].hypot(outside[1]);
         let moved = turn * (x - pivot) + pivot - x + Vector::new(25.0, 0.0, 10.0) * plan.share;
         match distance == 0.0 {
-            true => Some(Hold::at(node, moved)),
-            false => {
-                (plan.block == 'A' || distance > 25.0).then(|| Hold::at(node, Vector::zeros()))
-            }
+            true => Some(Constraint::at(node, moved)),
+            false => (plan.block == 'A' || distance > 25.0)
+                .then(|| Constraint::at(node, Vector::zeros())),
         }
     };
     bottom.filter_map(hold).collect()

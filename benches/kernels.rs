@@ -45,15 +45,15 @@ fn main() {
 fn system(scene: &Scene) -> System {
     let held: Vec<bool> =
         scene.conditions.classes.iter().map(|class| *class != NodeClass::Free).collect();
-    let numbering = DofMap::new(&scene.mesh, &held);
-    let matrix = scene.tissue().assemble(&numbering, &Unobserved);
+    let dof_map = DofMap::new(&scene.mesh, &held);
+    let matrix = scene.tissue().assemble(&dof_map, &Unobserved);
     let matrix = matrix.expect("no cell is inverted").expect("nobody stops it");
     let mut positions = scene.mesh.nodes.clone();
-    for (node, &row) in numbering.layout.place.iter().enumerate() {
+    for (node, &row) in dof_map.ordering.place.iter().enumerate() {
         positions[row as usize] = scene.mesh.nodes[node];
     }
-    let partly_constrained = partly_constrained(&scene.conditions.holds, &numbering);
-    System { layout: numbering.layout, matrix, partly_constrained, positions }
+    let partly_constrained = partly_constrained(&scene.conditions.constraints, &dof_map);
+    System { ordering: dof_map.ordering, matrix, partly_constrained, positions }
 }
 
 struct Table<'a> {
@@ -95,11 +95,11 @@ impl<'a> Table<'a> {
     fn assembly(&self, scene: &Scene) {
         let held: Vec<bool> =
             scene.conditions.classes.iter().map(|class| *class != NodeClass::Free).collect();
-        let numbering = DofMap::new(&scene.mesh, &held);
+        let dof_map = DofMap::new(&scene.mesh, &held);
         let tissue = scene.tissue();
         for threads in THREADS {
             let number = || drop(DofMap::new(&scene.mesh, &held));
-            let fill = || drop(tissue.assemble(&numbering, &Unobserved));
+            let fill = || drop(tissue.assemble(&dof_map, &Unobserved));
             self.row(
                 "numbering and pattern",
                 threads,
@@ -124,7 +124,7 @@ impl<'a> Table<'a> {
 
     /// A product reads the half matrix once; a cycle reads its own in f32 twice at every level.
     fn sweeps<const N: usize>(&self, system: &System, multigrid: &Multigrid) -> f64 {
-        let free = system.layout.free;
+        let free = system.ordering.free;
         let x = vec![[[1.0; N]; 3]; free];
         let mut product = x.clone();
         let mut workspace = multigrid.workspace::<N>();
@@ -151,7 +151,7 @@ impl<'a> Table<'a> {
             (scene.settings.relative_residual, scene.settings.memory_mb);
         let problem = Problem {
             tissue: scene.tissue(),
-            holds: &scene.conditions.holds,
+            constraints: &scene.conditions.constraints,
             forces: &scene.forces,
             tolerance: Tolerance { relative_residual, memory_mb },
         };

@@ -190,7 +190,7 @@ fn columns(case: &Case, plan: &Plan, settings: &Settings) -> Run {
     let scene = Scene::new(case, plan, settings).expect("the standard load is valid");
     let problem = Problem {
         tissue: scene.tissue(),
-        holds: &scene.conditions.holds,
+        constraints: &scene.conditions.constraints,
         forces: &scene.forces,
         tolerance: Tolerance {
             relative_residual: settings.relative_residual,
@@ -232,11 +232,12 @@ fn response_cases(scene: &Scene) -> Vec<LoadCase> {
                 let factor = if column % 4 < 3 { x[column % 4] } else { 1.0 };
                 Vector::from_fn(|i, _| if i == column / 4 { factor } else { 0.0 })
             };
-            let held =
-                scene.conditions.holds.iter().map(|hold| match is_joined(hold.node as usize) {
+            let held = scene.conditions.constraints.iter().map(|hold| {
+                match is_joined(hold.node as usize) {
                     true => of_node(hold.node as usize),
                     false => Vector::zeros(),
-                });
+                }
+            });
             cases.push(LoadCase {
                 held: held.collect(),
                 forces: scene.forces.clone(),

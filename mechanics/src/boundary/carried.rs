@@ -102,8 +102,8 @@ pub fn connected_parts(
             parts[*part as usize].take_in(node as u32, place);
         }
     }
-    for hold in conditions.holds.iter().filter(|hold| hold.count() == 3) {
-        fully_constrained[hold.node as usize] = true;
+    for constraint in conditions.constraints.iter().filter(|constraint| constraint.count() == 3) {
+        fully_constrained[constraint.node as usize] = true;
     }
     // Skin that is held is bone; where all of it is, it is what there is.
     let mut free: Vec<u32> = skin.to_vec();
@@ -112,18 +112,18 @@ pub fn connected_parts(
     for part in skin.iter().filter_map(|node| part_of_node[*node as usize]) {
         parts[part as usize].skin_share += 1.0 / skin.len() as f64;
     }
-    for hold in &conditions.holds {
-        let Some(part) = part_of_node[hold.node as usize] else { continue };
+    for constraint in &conditions.constraints {
+        let Some(part) = part_of_node[constraint.node as usize] else { continue };
         let part = &mut parts[part as usize];
-        let arm = part.arm(&mesh.nodes[hold.node as usize]);
+        let arm = part.arm(&mesh.nodes[constraint.node as usize]);
         let (identity, scale) = (Matrix3::identity(), part.size());
-        match conditions.classes[hold.node as usize] {
+        match conditions.classes[constraint.node as usize] {
             NodeClass::Fixed => part.rows_of(Holder::Rest).add(&arm, &identity),
             NodeClass::Joined(segment) => {
                 part.rows_of(Holder::Segment(segment)).add(&arm, &identity);
             }
             NodeClass::Sliding => {
-                for wall in conditions.walls.get(&hold.node).into_iter().flatten() {
+                for wall in conditions.walls.get(&constraint.node).into_iter().flatten() {
                     let holder = wall.carrier.map_or(Holder::Rest, Holder::Segment);
                     let across = wall.normal * wall.normal.transpose();
                     part.rows_of(holder).add(&arm, &across);
@@ -131,11 +131,11 @@ pub fn connected_parts(
             }
             NodeClass::Prescribed => {
                 let rows = part.rows_of(Holder::Prescribed);
-                let axes = hold.axes().columns(0, hold.count());
+                let axes = constraint.axes().columns(0, constraint.count());
                 rows.add(&arm, &(axes * axes.transpose()));
-                for held in 0..hold.count() {
-                    let axis = hold.axes().column(held).into_owned();
-                    rows.add_value(&arm, &axis, hold.values()[held] / scale);
+                for held in 0..constraint.count() {
+                    let axis = constraint.axes().column(held).into_owned();
+                    rows.add_value(&arm, &axis, constraint.values()[held] / scale);
                 }
             }
             NodeClass::Free => {}

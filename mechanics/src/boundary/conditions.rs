@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use nalgebra::Matrix3;
 
-use super::hold::Hold;
+use super::constraint::Constraint;
 use crate::mesh::{Vector, Warning};
 use crate::plan::RigidMovement;
 
@@ -69,7 +69,7 @@ pub struct Wall {
 #[derive(Clone, Debug)]
 pub struct Conditions {
     pub classes: Vec<NodeClass>,
-    pub holds: Vec<Hold>,
+    pub constraints: Vec<Constraint>,
     /// The walls of each node that slides, in the order in which they hold it.
     pub walls: BTreeMap<u32, Vec<Wall>>,
     /// Nodes that more than one segment holds, ascending; the first of the segments has them.
@@ -108,7 +108,7 @@ pub fn combine(positions: &[Vector], held: &HeldNodes) -> Result<Conditions, Con
         let wall = |normal: &Vector| Wall { normal: *normal, carrier: *carrier };
         nodes[*node as usize].walls.extend(across.iter().map(wall));
     }
-    let holds = nodes
+    let constraints = nodes
         .iter()
         .enumerate()
         .filter_map(|(node, conditions)| {
@@ -116,7 +116,7 @@ pub fn combine(positions: &[Vector], held: &HeldNodes) -> Result<Conditions, Con
                 let (_, movement) = &held.joined[segment as usize];
                 movement.displacement(&positions[node])
             };
-            conditions.hold(node as u32, &carried)
+            conditions.constraint(node as u32, &carried)
         })
         .collect();
     let classes: Vec<NodeClass> = nodes.iter().map(NodeConditions::class).collect();
@@ -128,26 +128,26 @@ pub fn combine(positions: &[Vector], held: &HeldNodes) -> Result<Conditions, Con
     let numbered = (0_u32..).zip(&nodes);
     let shared = numbered.filter(|(_, node)| node.segments > 1).map(|(node, _)| node).collect();
     let warnings = overlaps(&nodes).into_iter().collect();
-    Ok(Conditions { classes, holds, walls, shared, warnings })
+    Ok(Conditions { classes, constraints, walls, shared, warnings })
 }
 
 /// Holds a node across its walls, each of which has moved with what carries it.
-fn add_walls(hold: &mut Hold, walls: &[Wall], carried: &dyn Fn(u32) -> Vector) {
+fn add_walls(constraint: &mut Constraint, walls: &[Wall], carried: &dyn Fn(u32) -> Vector) {
     for Wall { normal, carrier } in walls {
         let value = carrier.map_or(0.0, |segment| normal.dot(&carried(segment)));
-        hold.add(normal, value);
+        constraint.add(normal, value);
     }
 }
 
 impl Conditions {
     /// Where a hold would be, along its axes, if segments displaced its node by `moved` and nothing else moved:
     /// linear in these displacements.
-    pub fn values(&self, hold: &Hold, moved: &dyn Fn(u32) -> Vector) -> Vector {
-        match self.classes[hold.node as usize] {
-            NodeClass::Joined(segment) => hold.axes().transpose() * moved(segment),
+    pub fn values(&self, constraint: &Constraint, moved: &dyn Fn(u32) -> Vector) -> Vector {
+        match self.classes[constraint.node as usize] {
+            NodeClass::Joined(segment) => constraint.axes().transpose() * moved(segment),
             NodeClass::Sliding => {
-                let mut moved_hold = Hold::free(hold.node);
-                let walls = self.walls.get(&hold.node).map(Vec::as_slice).unwrap_or_default();
+                let mut moved_hold = Constraint::free(constraint.node);
+                let walls = self.walls.get(&constraint.node).map(Vec::as_slice).unwrap_or_default();
                 add_walls(&mut moved_hold, walls, moved);
                 *moved_hold.values()
             }
@@ -239,24 +239,24 @@ impl NodeConditions {
 
     /// The conditions in their precedence; those that stronger ones already decide fall away. `carried` is the
     /// displacement that a segment gives what it carries here.
-    fn hold(&self, node: u32, carried: &dyn Fn(u32) -> Vector) -> Option<Hold> {
-        let mut hold = Hold::free(node);
+    fn constraint(&self, node: u32, carried: &dyn Fn(u32) -> Vector) -> Option<Constraint> {
+        let mut constraint = Constraint::free(node);
         for (component, value) in self.prescribed.into_iter().enumerate() {
             if let Some(value) = value {
-                hold.add(&Matrix3::identity().column(component).into_owned(), value);
+                constraint.add(&Matrix3::identity().column(component).into_owned(), value);
             }
         }
         let whole = self.joined.map(|(_, displacement)| displacement);
         if let Some(displacement) = whole.or(self.fixed.then(Vector::zeros)) {
             for component in 0..3 {
-                hold.add(
+                constraint.add(
                     &Matrix3::identity().column(component).into_owned(),
                     displacement[component],
                 );
             }
         }
-        add_walls(&mut hold, &self.walls, carried);
-        (hold.count() > 0).then_some(hold)
+        add_walls(&mut constraint, &self.walls, carried);
+        (constraint.count() > 0).then_some(constraint)
     }
 
     /// The classes that claim this node.

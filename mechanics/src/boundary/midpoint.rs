@@ -1,6 +1,6 @@
 //! Boundary condition of the middle of an edge between two constrained nodes.
 
-use super::hold::Hold;
+use super::constraint::Constraint;
 
 /// The smallest cosine between directions of the two ends that count as one direction, bent by the surface.
 const SAME_DIRECTION: f64 = 0.7;
@@ -9,13 +9,13 @@ const SAME_DIRECTION: f64 = 0.7;
 /// two ends' directions and values. Between nodes of one segment that is the rigid movement at the
 /// midpoint; between sliding nodes of a curved wall the middle slides across the mean normal. `None` where
 /// the ends have no direction in common.
-pub fn between(node: u32, first: &Hold, second: &Hold) -> Option<Hold> {
+pub fn between(node: u32, first: &Constraint, second: &Constraint) -> Option<Constraint> {
     if first.count() == 3 && second.count() == 3 {
-        return Some(Hold::at(node, (first.values() + second.values()) * 0.5));
+        return Some(Constraint::at(node, (first.values() + second.values()) * 0.5));
     }
     let (fewer, more) =
         if first.count() <= second.count() { (first, second) } else { (second, first) };
-    let mut hold = Hold::free(node);
+    let mut constraint = Constraint::free(node);
     for held in 0..fewer.count() {
         let axis = fewer.axes().column(held).into_owned();
         let parts = more.axes().transpose() * axis;
@@ -27,9 +27,9 @@ pub fn between(node: u32, first: &Hold, second: &Hold) -> Option<Hold> {
         let other = more.axes() * parts / length;
         let other_value = parts.dot(more.values()) / length;
         let sum = axis + other;
-        hold.add(&sum.normalize(), (fewer.values()[held] + other_value) / sum.norm());
+        constraint.add(&sum.normalize(), (fewer.values()[held] + other_value) / sum.norm());
     }
-    (hold.count() > 0).then_some(hold)
+    (constraint.count() > 0).then_some(constraint)
 }
 
 #[cfg(test)]
@@ -37,10 +37,10 @@ mod tests {
     use super::*;
     use crate::mesh::Vector;
 
-    fn sliding(node: u32, normal: Vector, value: f64) -> Hold {
-        let mut hold = Hold::free(node);
-        hold.add(&normal.normalize(), value);
-        hold
+    fn sliding(node: u32, normal: Vector, value: f64) -> Constraint {
+        let mut constraint = Constraint::free(node);
+        constraint.add(&normal.normalize(), value);
+        constraint
     }
 
     #[test]
@@ -54,7 +54,7 @@ mod tests {
 
     #[test]
     fn between_a_fixed_and_a_sliding_node_the_middle_is_held_across_only() {
-        let fixed = Hold::at(0, Vector::new(1.0, 0.0, 4.0));
+        let fixed = Constraint::at(0, Vector::new(1.0, 0.0, 4.0));
         let middle = between(2, &fixed, &sliding(1, Vector::z(), 2.0)).unwrap();
         assert_eq!(middle.count(), 1);
         assert!((middle.axes() * middle.values() - Vector::new(0.0, 0.0, 3.0)).norm() < 1e-15);

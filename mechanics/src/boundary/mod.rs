@@ -2,9 +2,9 @@
 
 pub mod carried;
 pub mod conditions;
+pub mod constraint;
 pub mod contact;
 pub mod freedom;
-pub mod hold;
 pub mod midpoint;
 pub mod selection;
 pub mod sliding;
@@ -13,6 +13,6 @@ pub mod tearing;
 
 pub use carried::{ConnectedPart, Form, HeldRows, Holder, RigidPart, connected_parts};
 pub use conditions::{ConditionError, Conditions, HeldNodes, NodeClass, Wall, WallNode};
+pub use constraint::Constraint;
 pub use freedom::Freedom;
-pub use hold::Hold;
 pub use selection::{NodeSelection, SelectionError, Selector};

@@ -5,8 +5,8 @@
 
 use nalgebra::{Matrix6, Vector6};
 
+use super::constraint::Constraint;
 use super::freedom::{Freedom, free_movements};
-use super::hold::Hold;
 use crate::mesh::{Vector, VolumeMesh};
 
 /// A part of the mesh that some rigid movement can carry away.
@@ -20,14 +20,18 @@ pub struct LoosePart {
 }
 
 /// The parts of the mesh that the holds do not keep in place. `part_of_cell` is the part of each cell by faces.
-pub fn loose_parts(mesh: &VolumeMesh, part_of_cell: &[u32], holds: &[Hold]) -> Vec<LoosePart> {
+pub fn loose_parts(
+    mesh: &VolumeMesh,
+    part_of_cell: &[u32],
+    constraints: &[Constraint],
+) -> Vec<LoosePart> {
     let mut parts = ConnectedBodies::new(mesh, part_of_cell);
-    for hold in holds {
-        for held in 0..hold.count() {
-            let axis = hold.axes().column(held).into_owned();
-            for place in parts.places_of(hold.node) {
+    for constraint in constraints {
+        for held in 0..constraint.count() {
+            let axis = constraint.axes().column(held).into_owned();
+            for place in parts.places_of(constraint.node) {
                 parts.bodies[parts.body_of[place] as usize]
-                    .hold(&mesh.nodes[hold.node as usize], &axis);
+                    .constrain(&mesh.nodes[constraint.node as usize], &axis);
             }
         }
     }
@@ -63,7 +67,7 @@ impl Body {
         Body { nodes, centre, radius, gram: Matrix6::zeros() }
     }
 
-    fn hold(&mut self, at: &Vector, axis: &Vector) {
+    fn constrain(&mut self, at: &Vector, axis: &Vector) {
         let turn = ((at - self.centre) / self.radius).cross(axis);
         let row = Vector6::new(axis.x, axis.y, axis.z, turn.x, turn.y, turn.z);
         self.gram += row * row.transpose();
@@ -133,7 +137,7 @@ impl ConnectedBodies {
                         continue;
                     }
                     for axis in [Vector::x(), Vector::y(), Vector::z()] {
-                        self.bodies[other].hold(&mesh.nodes[node as usize], &axis);
+                        self.bodies[other].constrain(&mesh.nodes[node as usize], &axis);
                     }
                     if held(&self.bodies[other]) {
                         passed[other] = true;

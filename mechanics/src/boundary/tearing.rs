@@ -114,8 +114,8 @@ fn held_edges<'a>(
     conditions: &Conditions,
 ) -> impl Iterator<Item = HeldEdge> + use<'a> {
     let mut displacement: Vec<Option<Vector>> = vec![None; mesh.nodes.len()];
-    for hold in conditions.holds.iter().filter(|hold| hold.count() == 3) {
-        displacement[hold.node as usize] = Some(hold.axes() * hold.values());
+    for constraint in conditions.constraints.iter().filter(|constraint| constraint.count() == 3) {
+        displacement[constraint.node as usize] = Some(constraint.axes() * constraint.values());
     }
     mesh.cells.iter().enumerate().flat_map(move |(cell, (shape, nodes))| {
         let edges = shape.edges().iter().map(|edge| edge.map(|local| nodes[local]));

@@ -6,19 +6,19 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use super::problem::{InvertedCell, LoadCase};
-use crate::boundary::Hold;
+use crate::boundary::Constraint;
 use crate::mesh::{Vector, VolumeMesh};
 use crate::progress::Progress;
 use crate::solver::element_connectivity::{ElementConnectivity, ElementsOfRow, renumbered};
 use crate::solver::half_matrix::{HalfMatrix, Pattern};
 use crate::solver::lanes::Lanes;
-use crate::solver::layout::Layout;
+use crate::solver::row_ordering::RowOrdering;
 use crate::solver::{Block, PartlyHeld, SolverError, System, Unknowns};
 
 /// Numbered nodes of which some are held, each along the first axes of a frame of its own.
 pub struct Constrained<'a> {
-    pub holds: &'a [Hold],
-    pub numbering: &'a DofMap,
+    pub constraints: &'a [Constraint],
+    pub dof_map: &'a DofMap,
 }
 
 /// Prescribed displacements and forces of a load case, by row, along the axes of the rows.
@@ -28,47 +28,51 @@ pub struct PrescribedValues {
     pub force: Unknowns,
 }
 
-/// The numbering of nodes at positions. Nodes held in all directions have no free unknown, nor have nodes
+/// The degree-of-freedom map of nodes at positions. Nodes held in all directions have no free unknown, nor have nodes
 /// of no cell, which nothing couples.
-pub fn number(cells: &ElementConnectivity, positions: &[Vector], holds: &[Hold]) -> DofMap {
+pub fn number(
+    cells: &ElementConnectivity,
+    positions: &[Vector],
+    constraints: &[Constraint],
+) -> DofMap {
     let mut held = vec![true; positions.len()];
     for cell in 0..cells.len() {
         cells.row(cell).iter().for_each(|&node| held[node as usize] = false);
     }
-    let whole = holds.iter().filter(|hold| hold.count() == 3);
-    whole.for_each(|hold| held[hold.node as usize] = true);
+    let whole = constraints.iter().filter(|constraint| constraint.count() == 3);
+    whole.for_each(|constraint| held[constraint.node as usize] = true);
     DofMap::of(cells, positions, &held)
 }
 
 impl Constrained<'_> {
     /// The system of a matrix, with partly held rows along their own axes. Positions are those of the nodes.
     pub fn system(&self, mut matrix: HalfMatrix<f64, 3>, positions: &[Vector]) -> System {
-        let partly_constrained = partly_constrained(self.holds, self.numbering);
+        let partly_constrained = partly_constrained(self.constraints, self.dof_map);
         rotate_into_local_axes(&mut matrix, &partly_constrained);
-        let positions = self.numbering.by_row(positions);
-        System { layout: self.numbering.layout.clone(), matrix, partly_constrained, positions }
+        let positions = self.dof_map.by_row(positions);
+        System { ordering: self.dof_map.ordering.clone(), matrix, partly_constrained, positions }
     }
 
     /// The number of unknowns that are not held.
     pub fn free_unknowns(&self) -> usize {
-        let partly = self.holds.iter().filter(|hold| hold.count() < 3);
-        3 * self.numbering.layout.free - partly.map(Hold::count).sum::<usize>()
+        let partly = self.constraints.iter().filter(|constraint| constraint.count() < 3);
+        3 * self.dof_map.ordering.free - partly.map(Constraint::count).sum::<usize>()
     }
 
     /// The values of the constraints and forces of a load case.
     pub fn known(&self, case: &LoadCase) -> PrescribedValues {
-        let rows = self.numbering.layout.place.len();
+        let rows = self.dof_map.ordering.place.len();
         let mut known =
             PrescribedValues { displacement: vec![[[0.0]; 3]; rows], force: vec![[0.0; 3]; rows] };
-        for (force, &row) in case.forces.iter().zip(&self.numbering.layout.place) {
+        for (force, &row) in case.forces.iter().zip(&self.dof_map.ordering.place) {
             known.force[row as usize] = (*force).into();
         }
-        for (hold, values) in self.holds.iter().zip(&case.held) {
-            let row = self.numbering.row(hold.node);
+        for (constraint, values) in self.constraints.iter().zip(&case.held) {
+            let row = self.dof_map.row(constraint.node);
             known.displacement[row] =
-                std::array::from_fn(|k| [if k < hold.count() { values[k] } else { 0.0 }]);
-            if !hold.is_aligned() {
-                let own = hold.axes().transpose() * Vector::from(known.force[row]);
+                std::array::from_fn(|k| [if k < constraint.count() { values[k] } else { 0.0 }]);
+            if !constraint.is_aligned() {
+                let own = constraint.axes().transpose() * Vector::from(known.force[row]);
                 known.force[row] = own.into();
             }
         }
@@ -77,11 +81,11 @@ impl Constrained<'_> {
 
     /// Forces of nodes on the free unknowns, zero where held.
     pub fn free_forces(&self, system: &System, forces: &[Vector]) -> Unknowns {
-        let mut by_row = vec![[0.0; 3]; self.numbering.layout.place.len()];
-        for (force, &row) in forces.iter().zip(&self.numbering.layout.place) {
+        let mut by_row = vec![[0.0; 3]; self.dof_map.ordering.place.len()];
+        for (force, &row) in forces.iter().zip(&self.dof_map.ordering.place) {
             by_row[row as usize] = (*force).into();
         }
-        by_row.truncate(system.layout.free);
+        by_row.truncate(system.ordering.free);
         for partly in &system.partly_constrained {
             let own = partly.axes.transpose() * Vector::from(by_row[partly.row]);
             let free = |k: usize| if partly.held[k] { 0.0 } else { own[k] };
@@ -92,12 +96,12 @@ impl Constrained<'_> {
 
     /// Nodal vectors along the axes of the coordinates.
     pub fn displacement(&self, total: &[Lanes<f64, 3, 1>]) -> Vec<Vector> {
-        let places = self.numbering.layout.place.iter();
+        let places = self.dof_map.ordering.place.iter();
         let mut displacement: Vec<Vector> =
             places.map(|&row| Vector::from(total[row as usize].map(|[value]| value))).collect();
-        for hold in self.holds.iter().filter(|hold| !hold.is_aligned()) {
-            let own = displacement[hold.node as usize];
-            displacement[hold.node as usize] = hold.axes() * own;
+        for constraint in self.constraints.iter().filter(|constraint| !constraint.is_aligned()) {
+            let own = displacement[constraint.node as usize];
+            displacement[constraint.node as usize] = constraint.axes() * own;
         }
         displacement
     }
@@ -105,15 +109,15 @@ impl Constrained<'_> {
     /// Reaction force of each constraint: the internal force less the acting one along its constrained axes, along the
     /// axes of the coordinates.
     pub fn reactions(&self, internal: &[Lanes<f64, 3, 1>], force: &Unknowns) -> Vec<Vector> {
-        let reaction = |hold: &Hold| {
-            let row = self.numbering.row(hold.node);
-            let own = Vector::from_fn(|k, _| match k < hold.count() {
+        let reaction = |constraint: &Constraint| {
+            let row = self.dof_map.row(constraint.node);
+            let own = Vector::from_fn(|k, _| match k < constraint.count() {
                 true => internal[row][k][0] - force[row][k],
                 false => 0.0,
             });
-            hold.axes() * own
+            constraint.axes() * own
         };
-        self.holds.iter().map(reaction).collect()
+        self.constraints.iter().map(reaction).collect()
     }
 
     /// A row of the solver is a node of the mesh.
@@ -121,7 +125,7 @@ impl Constrained<'_> {
         match error {
             SolverError::Singular { node: row } => {
                 let place = |place: &u32| *place as usize == row;
-                let node = self.numbering.layout.place.iter().position(place);
+                let node = self.dof_map.ordering.place.iter().position(place);
                 SolverError::Singular { node: node.unwrap_or(row) }
             }
             other => other,
@@ -132,8 +136,8 @@ impl Constrained<'_> {
 impl PrescribedValues {
     /// f - K u_b of the free unknowns, zero for held ones.
     pub fn right_hand_side(&self, system: &System) -> Unknowns {
-        let product = product_at_holds(system, &self.displacement);
-        let mut result: Unknowns = self.force[..system.layout.free].to_vec();
+        let product = product_at_constraints(system, &self.displacement);
+        let mut result: Unknowns = self.force[..system.ordering.free].to_vec();
         for (value, [x, y, z]) in result.iter_mut().zip(&product) {
             *value = [value[0] - x[0], value[1] - y[0], value[2] - z[0]];
         }
@@ -157,9 +161,9 @@ impl PrescribedValues {
 
 /// K x where it is of use: in the rows of held nodes, and what held nodes do to free ones. Partly held
 /// nodes lie among the free ones, and with them every row counts.
-pub fn product_at_holds(system: &System, x: &[Lanes<f64, 3, 1>]) -> Vec<Lanes<f64, 3, 1>> {
+pub fn product_at_constraints(system: &System, x: &[Lanes<f64, 3, 1>]) -> Vec<Lanes<f64, 3, 1>> {
     let mut product = vec![[[0.0]; 3]; x.len()];
-    let first = if system.partly_constrained.is_empty() { system.layout.free } else { 0 };
+    let first = if system.partly_constrained.is_empty() { system.ordering.free } else { 0 };
     system.matrix.add_rows(first..x.len(), x, &mut product);
     product
 }
@@ -171,7 +175,7 @@ const CHUNK: usize = 4096;
 /// Where nodes and cells go in the matrix. It depends on the cells and on which nodes are held, and
 /// serves any materials.
 pub struct DofMap {
-    pub layout: Arc<Layout>,
+    pub ordering: Arc<RowOrdering>,
     pub pattern: Arc<Pattern>,
     /// Places of the nodes of each cell, cells in the order of the layout.
     pub connectivity: ElementConnectivity,
@@ -188,17 +192,17 @@ impl DofMap {
     pub fn of(connectivity: &ElementConnectivity, positions: &[Vector], held: &[bool]) -> Self {
         let rows = positions.len();
         let around = connectivity.inverted(rows);
-        let layout = Layout::new(connectivity, &around, held, 3, far_end(positions));
-        let connectivity = renumbered(connectivity, &layout.element_order, &layout.place);
+        let ordering = RowOrdering::new(connectivity, &around, held, 3, far_end(positions));
+        let connectivity = renumbered(connectivity, &ordering.element_order, &ordering.place);
         let around = connectivity.inverted(rows);
         let pattern = Arc::new(Pattern::new(&connectivity, &around, rows));
-        DofMap { layout: Arc::new(layout), pattern, connectivity, around }
+        DofMap { ordering: Arc::new(ordering), pattern, connectivity, around }
     }
 
     /// Values of nodes in the order of rows.
     pub fn by_row<T: Copy>(&self, of_node: &[T]) -> Vec<T> {
         let mut by_row = of_node.to_vec();
-        for (value, &row) in of_node.iter().zip(&self.layout.place) {
+        for (value, &row) in of_node.iter().zip(&self.ordering.place) {
             by_row[row as usize] = *value;
         }
         by_row
@@ -206,7 +210,7 @@ impl DofMap {
 
     /// The row of a node.
     pub fn row(&self, node: u32) -> usize {
-        self.layout.place[node as usize] as usize
+        self.ordering.place[node as usize] as usize
     }
 
     /// Adds the matrices of whole cells, given by their places in the order of the layout; false where it
@@ -222,7 +226,8 @@ impl DofMap {
             if progress.is_cancelled() {
                 return Ok(false);
             }
-            let cell = |&element: &usize| cell_matrix(self.layout.element_order[element] as usize);
+            let cell =
+                |&element: &usize| cell_matrix(self.ordering.element_order[element] as usize);
             let matrices: Vec<Result<M, InvertedCell>> = chunk.par_iter().map(cell).collect();
             for (&element, blocks) in chunk.iter().zip(matrices) {
                 add_cell(matrix, self.connectivity.row(element), blocks?.as_ref());
@@ -263,15 +268,15 @@ pub(crate) fn add_cell(matrix: &mut HalfMatrix<f64, 3>, rows: &[u32], blocks: &[
 }
 
 /// The rows of partly constrained nodes.
-pub fn partly_constrained(holds: &[Hold], numbering: &DofMap) -> Vec<PartlyHeld> {
-    holds
+pub fn partly_constrained(constraints: &[Constraint], dof_map: &DofMap) -> Vec<PartlyHeld> {
+    constraints
         .iter()
-        .map(|hold| (hold, numbering.row(hold.node)))
-        .filter(|(hold, row)| *row < numbering.layout.free && hold.count() > 0)
-        .map(|(hold, row)| PartlyHeld {
+        .map(|constraint| (constraint, dof_map.row(constraint.node)))
+        .filter(|(constraint, row)| *row < dof_map.ordering.free && constraint.count() > 0)
+        .map(|(constraint, row)| PartlyHeld {
             row,
-            held: std::array::from_fn(|k| k < hold.count()),
-            axes: *hold.axes(),
+            held: std::array::from_fn(|k| k < constraint.count()),
+            axes: *constraint.axes(),
         })
         .collect()
 }

@@ -17,7 +17,7 @@ use std::collections::BTreeMap;
 use rayon::prelude::*;
 
 use super::problem::{Equilibrium, ModelError};
-use crate::boundary::{Conditions, Hold, NodeClass};
+use crate::boundary::{Conditions, Constraint, NodeClass};
 use crate::mesh::{SurfaceSearch, TriangleSurface, Vector, VolumeMesh, Warning};
 use crate::solver::SolveReport;
 
@@ -77,7 +77,7 @@ impl Warped<'_> {
         let warnings = [self.ignored(), self.off_bone(&bones, &held), self.jumps(&followed)];
         Ok(Equilibrium {
             displacement: followed.into_iter().map(|followed| followed.displacement).collect(),
-            reactions: vec![Vector::zeros(); self.conditions.holds.len()],
+            reactions: vec![Vector::zeros(); self.conditions.constraints.len()],
             solver: SolveReport::without_equations(
                 "a warp solves no equations",
                 0,
@@ -91,8 +91,10 @@ impl Warped<'_> {
     /// For each node its prescribed displacement, if it is fully constrained.
     fn fully_constrained(&self) -> Vec<Option<Vector>> {
         let mut held = vec![None; self.mesh.nodes.len()];
-        for hold in self.conditions.holds.iter().filter(|hold| hold.count() == 3) {
-            held[hold.node as usize] = Some(hold.axes() * hold.values());
+        for constraint in
+            self.conditions.constraints.iter().filter(|constraint| constraint.count() == 3)
+        {
+            held[constraint.node as usize] = Some(constraint.axes() * constraint.values());
         }
         held
     }
@@ -177,9 +179,12 @@ impl Warped<'_> {
     /// Statements of a case that a warp ignores.
     fn ignored(&self) -> Option<Warning> {
         let partly = |class: NodeClass| {
-            let of_class = |hold: &&Hold| self.conditions.classes[hold.node as usize] == class;
-            let holds = self.conditions.holds.iter().filter(|hold| hold.count() < 3);
-            holds.filter(of_class).count() as f64
+            let of_class = |constraint: &&Constraint| {
+                self.conditions.classes[constraint.node as usize] == class
+            };
+            let constraints =
+                self.conditions.constraints.iter().filter(|constraint| constraint.count() < 3);
+            constraints.filter(of_class).count() as f64
         };
         let (sliding, prescribed) = (partly(NodeClass::Sliding), partly(NodeClass::Prescribed));
         let detail = "a warp knows bone that moves and nothing else: materials, sliding nodes and nodes \

@@ -12,7 +12,7 @@ use super::skin::{self, Skin};
 use super::stated::StatedCondition;
 use crate::boundary::conditions::combine;
 use crate::boundary::support::loose_parts;
-use crate::boundary::{Conditions, HeldNodes, Hold, NodeClass, NodeSelection, Selector};
+use crate::boundary::{Conditions, Constraint, HeldNodes, NodeClass, NodeSelection, Selector};
 use crate::material::LinearElastic;
 use crate::mesh::ignored::listed;
 use crate::mesh::volume::BoundaryFace;
@@ -125,7 +125,7 @@ impl<'a> Check<'a> {
             let classes = vec![NodeClass::Free; self.case.volume.nodes.len()];
             Conditions {
                 classes,
-                holds: Vec::new(),
+                constraints: Vec::new(),
                 walls: BTreeMap::new(),
                 shared: Vec::new(),
                 warnings: Vec::new(),
@@ -281,7 +281,7 @@ impl<'a> Check<'a> {
                     nodes.iter().for_each(|&node| forces[node as usize] += force);
                     self.warnings.extend(load_on_constrained(
                         &nodes,
-                        &scene.conditions.holds,
+                        &scene.conditions.constraints,
                         &pointer,
                     ));
                     continue;
@@ -307,7 +307,11 @@ impl<'a> Check<'a> {
             };
             let faces = self.loaded_faces(faces, &pointer);
             let nodes: Vec<u32> = faces.iter().flat_map(BoundaryFace::nodes).copied().collect();
-            self.warnings.extend(load_on_constrained(&nodes, &scene.conditions.holds, &pointer));
+            self.warnings.extend(load_on_constrained(
+                &nodes,
+                &scene.conditions.constraints,
+                &pointer,
+            ));
             self.face_load(&faces, load, edges, &mut forces);
             scene.distributed.faces.push((faces, load));
         }
@@ -338,7 +342,7 @@ impl<'a> Check<'a> {
     }
 
     pub(super) fn support(&mut self, scene: &Scene, part_of_cell: &[u32]) {
-        let loose = loose_parts(&scene.mesh, part_of_cell, &scene.conditions.holds);
+        let loose = loose_parts(&scene.mesh, part_of_cell, &scene.conditions.constraints);
         for part in &loose {
             let detail = format!(
                 "the part of {} nodes that contains node {} can move freely in {} of the 6 rigid ways: \
@@ -355,9 +359,16 @@ impl<'a> Check<'a> {
 }
 
 /// The warning of a load on constrained nodes only, which moves nothing.
-fn load_on_constrained(nodes: &[u32], holds: &[Hold], pointer: &str) -> Option<Warning> {
-    let held: BTreeSet<u32> =
-        holds.iter().filter(|hold| hold.count() == 3).map(|hold| hold.node).collect();
+fn load_on_constrained(
+    nodes: &[u32],
+    constraints: &[Constraint],
+    pointer: &str,
+) -> Option<Warning> {
+    let held: BTreeSet<u32> = constraints
+        .iter()
+        .filter(|constraint| constraint.count() == 3)
+        .map(|constraint| constraint.node)
+        .collect();
     let all = !nodes.is_empty() && nodes.iter().all(|node| held.contains(node));
     let detail =
         format!("the load at {pointer} acts on fixed or moved nodes only: it moves nothing");

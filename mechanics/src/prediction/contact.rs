@@ -133,8 +133,12 @@ fn pressed(
         return Ok(None);
     }
     progress.phase(Phase::Contact);
-    let surfaces =
-        FacingSurfaces::new(&scene.mesh, &scene.boundary, &scene.conditions.holds, &scene.bones);
+    let surfaces = FacingSurfaces::new(
+        &scene.mesh,
+        &scene.boundary,
+        &scene.conditions.constraints,
+        &scene.bones,
+    );
     let found = solve(&surfaces)?;
     let nothing_presses = found.is_none();
     let Pressing { equilibrium, contact, numerical_error } = found.unwrap_or_else(|| {

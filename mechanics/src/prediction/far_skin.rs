@@ -15,8 +15,8 @@ pub(super) fn outrun(scene: &Scene, displacement: &[Vector]) -> Option<Warning> 
         return None;
     }
     let length = |node: u32| displacement[node as usize].norm();
-    let holds = scene.conditions.holds.iter();
-    let moving = holds.map(|hold| length(hold.node)).fold(0.0, f64::max);
+    let constraints = scene.conditions.constraints.iter();
+    let moving = constraints.map(|constraint| length(constraint.node)).fold(0.0, f64::max);
     let (node, skin) = scene
         .skin
         .nodes()

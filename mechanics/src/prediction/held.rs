@@ -35,9 +35,9 @@ impl Check<'_> {
         pointer: String,
         segment: Option<u32>,
         nodes: Vec<u32>,
-        holds: StatedHold,
+        constraints: StatedHold,
     ) {
-        self.stated.push(StatedCondition { pointer, segment, nodes, holds });
+        self.stated.push(StatedCondition { pointer, segment, nodes, constraints });
     }
 
     /// The segments of the case with their movements, then those that the plan names after node sets.

@@ -39,8 +39,8 @@ pub(super) fn by_class(
 ) -> BTreeMap<String, Vector> {
     let mut sums: BTreeMap<String, Vector> =
         scene.segments.iter().map(|segment| (segment.name.clone(), Vector::zeros())).collect();
-    for (hold, reaction) in scene.conditions.holds.iter().zip(reactions) {
-        let holder = match scene.conditions.classes[hold.node as usize] {
+    for (constraint, reaction) in scene.conditions.constraints.iter().zip(reactions) {
+        let holder = match scene.conditions.classes[constraint.node as usize] {
             NodeClass::Joined(segment) => scene.segments[segment as usize].name.clone(),
             other => other.name().to_owned(),
         };
@@ -70,8 +70,8 @@ pub(super) fn by_condition(
     contact: Option<&Touch>,
 ) -> Vec<ConditionReaction> {
     let mut rest = vec![Rest::default(); scene.mesh.nodes.len()];
-    for (hold, reaction) in scene.conditions.holds.iter().zip(&equilibrium.reactions) {
-        rest[hold.node as usize] = Rest { force: *reaction, is_held: [true; 3] };
+    for (constraint, reaction) in scene.conditions.constraints.iter().zip(&equilibrium.reactions) {
+        rest[constraint.node as usize] = Rest { force: *reaction, is_held: [true; 3] };
     }
     let name = |segment: u32| scene.segments[segment as usize].name.clone();
     let mut sums: Vec<ConditionReaction> = { scene.stated.iter() }
@@ -82,7 +82,7 @@ pub(super) fn by_condition(
             force: Vector::zeros(),
         })
         .collect();
-    let strength = |stated: &StatedCondition| match stated.holds {
+    let strength = |stated: &StatedCondition| match stated.constraints {
         StatedHold::Components(_) => 0,
         StatedHold::Joined => 1,
         StatedHold::Fixed => 2,
@@ -93,7 +93,7 @@ pub(super) fn by_condition(
     let mut walls: BTreeMap<u32, Vec<(usize, Vector)>> = BTreeMap::new();
     for place in order {
         let stated = &scene.stated[place];
-        let components = match &stated.holds {
+        let components = match &stated.constraints {
             StatedHold::Components(components) => *components,
             StatedHold::Joined | StatedHold::Fixed => [true; 3],
             StatedHold::Walls(normals) => {

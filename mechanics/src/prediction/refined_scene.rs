@@ -15,7 +15,9 @@ use super::scene::Scene;
 use super::skin::Skin;
 use super::stated::{StatedCondition, StatedHold};
 use crate::boundary::conditions::combine;
-use crate::boundary::{ConditionError, Conditions, HeldNodes, Hold, WallNode, connected_parts};
+use crate::boundary::{
+    ConditionError, Conditions, Constraint, HeldNodes, WallNode, connected_parts,
+};
 use crate::mesh::bisection::{Bisection, Carrier};
 use crate::mesh::connectivity::Faces;
 use crate::mesh::volume::BoundaryFace;
@@ -123,13 +125,13 @@ impl FinerScene<'_> {
     fn stated(&self) -> Vec<StatedCondition> {
         let carried = |stated: &StatedCondition| {
             let nodes = self.carrier.nodes(&stated.nodes);
-            let holds = match &stated.holds {
+            let constraints = match &stated.constraints {
                 StatedHold::Walls(across) => StatedHold::Walls(self.walls(stated, across, &nodes)),
                 same @ (StatedHold::Components(_) | StatedHold::Joined | StatedHold::Fixed) => {
                     same.clone()
                 }
             };
-            StatedCondition { nodes, holds, ..stated.clone() }
+            StatedCondition { nodes, constraints, ..stated.clone() }
         };
         self.scene.stated.iter().map(carried).collect()
     }
@@ -162,8 +164,8 @@ impl FinerScene<'_> {
             ..HeldNodes::default()
         };
         let prescribed = self.prescribed();
-        for StatedCondition { segment, nodes, holds, .. } in stated {
-            match holds {
+        for StatedCondition { segment, nodes, constraints, .. } in stated {
+            match constraints {
                 StatedHold::Components(components) => {
                     let value = |&node: &u32| {
                         let place = prescribed[node as usize];
@@ -190,10 +192,12 @@ impl FinerScene<'_> {
 
     /// For each node what is prescribed there, and between such nodes the mean; what else is held stands beside it.
     fn prescribed(&self) -> Vec<Vector> {
-        let Conditions { holds, .. } = &self.scene.conditions;
+        let Conditions { constraints, .. } = &self.scene.conditions;
         let mut values = vec![Vector::zeros(); self.scene.mesh.nodes.len()];
-        let displaced = |hold: &Hold| hold.axes() * hold.values();
-        holds.iter().for_each(|hold| values[hold.node as usize] = displaced(hold));
+        let displaced = |constraint: &Constraint| constraint.axes() * constraint.values();
+        constraints
+            .iter()
+            .for_each(|constraint| values[constraint.node as usize] = displaced(constraint));
         self.carrier.vectors(&values)
     }
 

@@ -147,7 +147,8 @@ impl Scene {
 
     /// Prescribed displacements, forces and grown volumes of the plan.
     pub fn load_case(&self) -> LoadCase {
-        let held = self.conditions.holds.iter().map(|hold| *hold.values()).collect();
+        let held =
+            self.conditions.constraints.iter().map(|constraint| *constraint.values()).collect();
         // A cell without volume is refused where its matrix is made.
         let grown = self.distributed.inner.grown_volumes(&self.mesh).unwrap_or_default();
         LoadCase { held, forces: self.forces.clone(), grown }
@@ -156,8 +157,8 @@ impl Scene {
     /// Whether nothing is held away from its place and nothing acts.
     pub(super) fn is_at_rest(&self) -> bool {
         let moves = |vector: &Vector| *vector != Vector::zeros();
-        let holds = &self.conditions.holds;
-        !holds.iter().any(|hold| moves(hold.values()))
+        let constraints = &self.conditions.constraints;
+        !constraints.iter().any(|constraint| moves(constraint.values()))
             && !self.forces.iter().any(moves)
             && self.distributed.inner.is_zero()
     }
@@ -256,7 +257,7 @@ impl Scene {
             fibres: FibreField { of_law: &fibres, of_cell: &self.fibres },
             membrane: self.membrane.as_ref(),
             inner: Arc::new(self.distributed.inner.clone()),
-            holds: &self.conditions.holds,
+            constraints: &self.conditions.constraints,
             tolerance: Tolerance { relative_residual, memory_mb },
             with_states: self.settings.states,
             advance: self.settings.advance,
@@ -273,7 +274,7 @@ impl Scene {
             mesh: &self.mesh,
             materials: &self.materials,
             material_of_cell: &self.material_of_cell,
-            holds: &self.conditions.holds,
+            constraints: &self.conditions.constraints,
             tolerance: Tolerance { relative_residual, memory_mb },
         }
     }
@@ -283,7 +284,7 @@ impl Scene {
         let Settings { relative_residual, memory_mb, .. } = self.settings;
         Problem {
             tissue: self.tissue(),
-            holds: &self.conditions.holds,
+            constraints: &self.conditions.constraints,
             forces: &self.forces,
             tolerance: Tolerance { relative_residual, memory_mb },
         }

@@ -59,10 +59,10 @@ fn inward_skin(scene: &Scene) -> Option<Warning> {
     let place = |node: u32| scene.mesh.nodes[node as usize];
     let held: Vec<Vector> = scene
         .conditions
-        .holds
+        .constraints
         .iter()
-        .filter(|hold| hold.count() == 3)
-        .map(|hold| place(hold.node))
+        .filter(|constraint| constraint.count() == 3)
+        .map(|constraint| place(constraint.node))
         .collect();
     if held.is_empty() {
         return None;

@@ -23,7 +23,7 @@ use rayon::prelude::*;
 
 use super::Scene;
 use super::nonlinearity::Estimated;
-use crate::boundary::{Hold, NodeClass};
+use crate::boundary::{Constraint, NodeClass};
 use crate::mesh::{Vector, Warning};
 use crate::model::fem::strain::CellDeformation;
 
@@ -114,8 +114,8 @@ fn around_skin_nodes(scene: &Scene, deformation: &[CellDeformation]) -> Vec<[f64
 }
 
 /// The holds of nodes that cannot slide.
-fn holds_in_place(scene: &Scene) -> impl Iterator<Item = &Hold> {
-    scene.conditions.holds.iter().filter(|hold| hold.count() == 3)
+fn holds_in_place(scene: &Scene) -> impl Iterator<Item = &Constraint> {
+    scene.conditions.constraints.iter().filter(|constraint| constraint.count() == 3)
 }
 
 /// Evenly chosen free nodes among some points of the skin.
@@ -124,7 +124,8 @@ fn measured(scene: &Scene, points: &[u32], around: &[[f64; 2]]) -> Vec<AtNode> {
     let is_free = |point: &u32| scene.conditions.classes[node_of(*point)] == NodeClass::Free;
     let free: Vec<u32> = points.iter().copied().filter(is_free).collect();
     let place = |node: usize| scene.mesh.nodes[node];
-    let held: Vec<Vector> = holds_in_place(scene).map(|hold| place(hold.node as usize)).collect();
+    let held: Vec<Vector> =
+        holds_in_place(scene).map(|constraint| place(constraint.node as usize)).collect();
     let step = free.len().div_ceil(MEASURED_NODES).max(1);
     let chosen: Vec<u32> = free.into_iter().step_by(step).collect();
     chosen

@@ -11,7 +11,7 @@ pub struct StatedCondition {
     pub segment: Option<u32>,
     /// The nodes that it names.
     pub nodes: Vec<u32>,
-    pub holds: StatedHold,
+    pub constraints: StatedHold,
 }
 
 /// Components that a boundary condition constrains; of several at one node the first in this order prevails.

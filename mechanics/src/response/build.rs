@@ -12,7 +12,7 @@ use super::rigid_numbers::SAMPLES;
 use super::second_order::Solutions;
 use super::superposition::{Amounts, InnerLoad};
 use super::{COLUMNS_PER_SEGMENT, Response, ResponseSegment, superposition};
-use crate::boundary::{ConnectedPart, Hold, NodeClass};
+use crate::boundary::{ConnectedPart, Constraint, NodeClass};
 use crate::mesh::Vector;
 use crate::mesh::ignored::listed;
 use crate::model::fem::force_series::ForceSeries;
@@ -317,14 +317,14 @@ pub(super) fn held_values(
         displacement
     };
     let conditions = &scene.conditions;
-    let values = |hold: &Hold| {
+    let values = |constraint: &Constraint| {
         let moved = |other: u32| match other as usize == segment {
-            true => value(hold.node),
+            true => value(constraint.node),
             false => Vector::zeros(),
         };
-        conditions.values(hold, &moved)
+        conditions.values(constraint, &moved)
     };
-    conditions.holds.iter().map(values).collect()
+    conditions.constraints.iter().map(values).collect()
 }
 
 /// All load cases stand in memory together.

@@ -17,9 +17,10 @@ pub fn solved_skin(
     amounts: &Amounts,
     progress: &dyn Progress,
 ) -> Result<Vec<Vector>, ResponseError> {
-    let (nodes, holds) = (scene.mesh.nodes.len(), scene.conditions.holds.len());
+    let (nodes, constraints) = (scene.mesh.nodes.len(), scene.conditions.constraints.len());
     let zeros = |count: usize| vec![Vector::zeros(); count];
-    let mut case = LoadCase { held: zeros(holds), forces: zeros(nodes), ..LoadCase::default() };
+    let mut case =
+        LoadCase { held: zeros(constraints), forces: zeros(nodes), ..LoadCase::default() };
     for (number, movement) in chosen(scene, asked.segments)?.into_iter().zip(amounts.movements) {
         let centre = segment_of(scene, number)?.centre;
         let factors = coefficients(movement, &centre);

@@ -59,7 +59,7 @@ pub(super) fn load_case(scene: &Scene, load: &InnerLoad) -> Result<LoadCase, Res
     let nodes = scene.edge_nodes().map_or(scene.mesh.nodes.len(), |edges| edges.node_count());
     let mut forces = vec![Vector::zeros(); nodes];
     scene.add_inner_forces(&inner, &mut forces).map_err(ModelError::from)?;
-    let held = vec![Vector::zeros(); scene.conditions.holds.len()];
+    let held = vec![Vector::zeros(); scene.conditions.constraints.len()];
     let grown = inner.grown_volumes(&scene.mesh).map_err(ModelError::from)?;
     Ok(LoadCase { held, forces, grown })
 }

@@ -136,7 +136,8 @@ pub(super) fn of_scene(scene: &Scene, segments: &[usize], parts: &[ConnectedPart
 /// held, a tenth of the diagonal of the mesh.
 fn thickness(scene: &Scene) -> f64 {
     let place = |node: u32| scene.mesh.nodes[node as usize];
-    let held: Vec<Vector> = scene.conditions.holds.iter().map(|hold| place(hold.node)).collect();
+    let held: Vec<Vector> =
+        scene.conditions.constraints.iter().map(|constraint| place(constraint.node)).collect();
     let is_free = |node: &u32| scene.conditions.classes[*node as usize] == NodeClass::Free;
     let free: Vec<u32> = scene.skin.nodes().iter().copied().filter(is_free).collect();
     let step = free.len().div_ceil(MEASURED_NODES).max(1);

@@ -61,7 +61,7 @@ impl Solver {
             let (needed_mb, allowed_mb) = (iterations_mb, tolerance.memory_mb);
             return Err(SolverError::OverBudget { needed_mb, allowed_mb });
         }
-        let rows = system.layout.free;
+        let rows = system.ordering.free;
         let factorise = |ordering: &Ordering, why: &str| {
             let factor = self.factor(system, ordering)?;
             let wanted = tolerance.relative_residual;

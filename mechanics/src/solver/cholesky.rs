@@ -129,7 +129,7 @@ struct FreeUnknowns {
 
 impl FreeUnknowns {
     fn new(system: &System, ordering: &Ordering) -> Self {
-        let mut held = vec![[false; 3]; system.layout.free];
+        let mut held = vec![[false; 3]; system.ordering.free];
         for partly in &system.partly_constrained {
             held[partly.row] = partly.held;
         }
@@ -139,7 +139,7 @@ impl FreeUnknowns {
             .flat_map(|&row| (0..3).map(move |component| (row, component)))
             .filter(|&(row, component)| !held[row][component])
             .collect();
-        let mut place = vec![[usize::MAX; 3]; system.layout.free];
+        let mut place = vec![[usize::MAX; 3]; system.ordering.free];
         for (at, &(row, component)) in unknown.iter().enumerate() {
             place[row][component] = at;
         }

@@ -10,7 +10,7 @@ use rayon::prelude::*;
 
 use super::element_connectivity::{ElementConnectivity, ElementsOfRow};
 use super::lanes::{Lanes, Real, add_product, add_transposed};
-use super::layout::Layout;
+use super::row_ordering::RowOrdering;
 use super::vectorised::vectorised;
 use crate::rows::Rows;
 
@@ -163,12 +163,12 @@ impl<T: Real, const B: usize> HalfMatrix<T, B> {
     /// `product` = A x over the free rows of a layout.
     pub fn multiply<const N: usize>(
         &self,
-        layout: &Layout,
+        ordering: &RowOrdering,
         x: &[Lanes<T, B, N>],
         product: &mut [Lanes<T, B, N>],
     ) {
-        let shares = layout.split(product);
-        shares.into_par_iter().zip(&layout.parts).for_each(|(share, part)| {
+        let shares = ordering.split(product);
+        shares.into_par_iter().zip(&ordering.parts).for_each(|(share, part)| {
             vectorised(
                 #[inline(always)]
                 || self.multiply_rows(part.clone(), x, share, part.start),
@@ -176,7 +176,7 @@ impl<T: Real, const B: usize> HalfMatrix<T, B> {
         });
         vectorised(
             #[inline(always)]
-            || self.multiply_rows(layout.separator(), x, product, 0),
+            || self.multiply_rows(ordering.separator(), x, product, 0),
         );
     }
 

@@ -138,7 +138,7 @@ impl<'a, const N: usize> Run<'a, N> {
 
     /// Unknowns that are displacements.
     pub fn displacements(&self) -> usize {
-        3 * self.system.stiffness.layout.free
+        3 * self.system.stiffness.ordering.free
     }
 
     /// Takes the residual from the solution itself.

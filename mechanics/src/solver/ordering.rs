@@ -19,7 +19,7 @@ pub struct Ordering {
 /// Approximate minimum degree on the graph of the blocks (Amestoy, Davis, Duff 1996): nine times less
 /// to order than the unknowns, and the three unknowns of a row stay together.
 pub fn minimum_degree(system: &System) -> Ordering {
-    let rows = system.layout.free;
+    let rows = system.ordering.free;
     let mut starts = Vec::with_capacity(rows + 1);
     starts.push(0);
     let mut upper: Vec<usize> = Vec::new();

@@ -39,7 +39,7 @@ impl<'a> Preconditioned<'a> {
 
     /// Unknowns that are displacements.
     pub fn displacements(&self) -> usize {
-        3 * self.system.layout.free
+        3 * self.system.ordering.free
     }
 
     /// A x.

@@ -118,7 +118,7 @@ pub fn largest_eigenvalue(system: &System, growth: f64) -> Result<f64, SolverErr
 
 fn check_memory(system: &System, allowed_mb: f64) -> Result<(), SolverError> {
     // Inverse blocks, and five vectors.
-    let own_mb = (system.layout.free * (72 + 5 * 24)) as f64 / 1e6;
+    let own_mb = (system.ordering.free * (72 + 5 * 24)) as f64 / 1e6;
     let needed_mb = system.matrix.megabytes() + own_mb;
     match needed_mb <= allowed_mb {
         true => Ok(()),
@@ -128,7 +128,7 @@ fn check_memory(system: &System, allowed_mb: f64) -> Result<(), SolverError> {
 
 /// D^-1 of the free rows, zero where held.
 fn inverse_diagonal(system: &System) -> Result<Vec<Block>, SolverError> {
-    let mut held = vec![[false; 3]; system.layout.free];
+    let mut held = vec![[false; 3]; system.ordering.free];
     system.partly_constrained.iter().for_each(|partly| held[partly.row] = partly.held);
     let invert = |(row, held): (usize, &[bool; 3])| {
         let block = &system.matrix.diagonal[row];
@@ -162,7 +162,7 @@ fn power_iteration(
 ) -> Result<f64, SolverError> {
     let value = |k: usize| [((k * 7919 + 13) % 1009) as f64 / 1009.0 - 0.5];
     let mut x: Rows =
-        (0..system.layout.free).map(|row| std::array::from_fn(|c| value(3 * row + c))).collect();
+        (0..system.ordering.free).map(|row| std::array::from_fn(|c| value(3 * row + c))).collect();
     system.zero_constrained(&mut x);
     let mut product = x.clone();
     let mut lambda = 0.0;
@@ -315,7 +315,7 @@ impl<'a> GaussSeidel<'a> {
 
     /// One sweep from the first row to the last; leaves the residual and returns |x - x_old|.
     fn sweep(&mut self, x: &mut Rows, residual: &mut Rows) -> f64 {
-        let layout = &self.system.layout;
+        let ordering = &self.system.ordering;
         std::mem::swap(&mut self.above, &mut self.above_before);
         let (above, before) = (&mut self.above, &self.above_before);
         let rows = RowSweep {
@@ -324,12 +324,12 @@ impl<'a> GaussSeidel<'a> {
             right_hand_side: self.right_hand_side,
             before,
         };
-        let shares = layout.split(x).into_par_iter().zip(layout.split(above));
+        let shares = ordering.split(x).into_par_iter().zip(ordering.split(above));
         let in_parts: Vec<f64> = shares
-            .zip(&layout.parts)
+            .zip(&ordering.parts)
             .map(|((x, above), part)| rows.sweep(part.clone(), part.start, x, above))
             .collect();
-        let in_separator = rows.sweep(layout.separator(), 0, x, above);
+        let in_separator = rows.sweep(ordering.separator(), 0, x, above);
         for ((residual, above), before) in residual.iter_mut().zip(above).zip(before) {
             *residual = std::array::from_fn(|c| [above[c][0] - before[c][0]]);
         }

@@ -2,8 +2,8 @@
 
 use super::half_matrix::HalfMatrix;
 use super::lanes::{Lanes, Real};
-use super::layout::Layout;
 use super::report::SolveReport;
+use super::row_ordering::RowOrdering;
 use crate::progress::Progress;
 use nalgebra::{Matrix3, Vector3};
 use std::sync::Arc;
@@ -16,7 +16,7 @@ pub type Unknowns = Vec<[f64; 3]>;
 
 /// K x = f for the free unknowns. Rows are numbered by place.
 pub struct System {
-    pub layout: Arc<Layout>,
+    pub ordering: Arc<RowOrdering>,
     /// All rows, held ones last.
     pub matrix: HalfMatrix<f64, 3>,
     /// Free rows that are not free in all three unknowns, or have axes of their own.
@@ -109,7 +109,7 @@ pub fn tell(
 impl System {
     /// Displacements by row of unknowns of which three belong to each free row; zero where held.
     pub fn by_row(&self, unknowns: &[[f64; 1]]) -> Vec<Lanes<f64, 3, 1>> {
-        let (displacements, _) = unknowns.split_at(3 * self.layout.free);
+        let (displacements, _) = unknowns.split_at(3 * self.ordering.free);
         let mut by_row = vec![[[0.0]; 3]; self.matrix.rows()];
         by_row.iter_mut().zip(displacements.as_chunks::<3>().0).for_each(|(own, u)| *own = *u);
         by_row
@@ -119,7 +119,7 @@ impl System {
     pub fn megabytes(&self) -> f64 {
         // The hierarchy has half of the bytes of the finest level and some 40 % of that for coarser ones.
         let hierarchy = 0.7 * self.matrix.megabytes();
-        let vectors = self.layout.free as f64 * (4.0 * 24.0 + 3.0 * 12.0 + 64.0) / 1e6;
+        let vectors = self.ordering.free as f64 * (4.0 * 24.0 + 3.0 * 12.0 + 64.0) / 1e6;
         self.matrix.megabytes() + hierarchy + vectors
     }
 
@@ -127,7 +127,7 @@ impl System {
     pub fn free_unknowns(&self) -> usize {
         let held =
             self.partly_constrained.iter().flat_map(|row| row.held).filter(|held| *held).count();
-        3 * self.layout.free - held
+        3 * self.ordering.free - held
     }
 
     /// K x over the free unknowns; zero where held.
@@ -136,7 +136,7 @@ impl System {
         x: &[Lanes<f64, 3, N>],
         product: &mut [Lanes<f64, 3, N>],
     ) {
-        self.matrix.multiply(&self.layout, x, product);
+        self.matrix.multiply(&self.ordering, x, product);
         self.zero_constrained(product);
     }
 

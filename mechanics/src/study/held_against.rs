@@ -138,7 +138,7 @@ fn solved(
     (truth_error, truth_contact): (Option<[f64; 2]>, bool),
 ) -> Solved {
     let partial = (PARTIAL, is_partial(measured.covered_share));
-    let codes = codes.iter().chain([&partial]).filter(|(_, holds)| *holds);
+    let codes = codes.iter().chain([&partial]).filter(|(_, constraints)| *constraints);
     answer.warnings.extend(codes.map(|(code, _)| (*code).to_owned()));
     Solved {
         unknowns: answer.unknowns,

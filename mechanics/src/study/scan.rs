@@ -130,8 +130,8 @@ impl<'a> ScannedSkin<'a> {
                 };
                 let named = self.skin.regions.iter();
                 let regions = named.filter_map(|(name, points)| {
-                    let holds = |point: u32| points.binary_search(&point).is_ok();
-                    Some((name.clone(), of(&self.areas, &holds).ok()?))
+                    let constraints = |point: u32| points.binary_search(&point).is_ok();
+                    Some((name.clone(), of(&self.areas, &constraints).ok()?))
                 });
                 (of(&self.moving_areas, &|_| true).map_err(failed)?, regions.collect())
             }
@@ -188,11 +188,11 @@ impl<'a> ScannedSkin<'a> {
     ) -> Result<BTreeMap<String, Errors>, StatisticsError> {
         let mut regions = BTreeMap::new();
         for (name, points) in &self.skin.regions {
-            let holds = |at: &MeasuredPoint| {
+            let constraints = |at: &MeasuredPoint| {
                 let corners = self.skin.surface.triangles[at.triangle as usize];
                 !at.is_beyond_border && corners.iter().all(|c| points.binary_search(c).is_ok())
             };
-            let [there, back] = distances.map(|own| own.part(holds));
+            let [there, back] = distances.map(|own| own.part(constraints));
             if there.has_area() && back.has_area() {
                 regions.insert(name.clone(), errors(&there.pooled(&back))?);
             }

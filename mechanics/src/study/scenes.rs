@@ -84,7 +84,7 @@ fn plan_of(segment: &str, movement: RigidMovement) -> Plan {
 }
 
 /// The nodes for which something holds, ascending.
-fn nodes_where(mesh: &VolumeMesh, holds: impl Fn(&Vector) -> bool) -> Vec<u32> {
-    let nodes = (0_u32..).zip(&mesh.nodes).filter(|(_, x)| holds(x));
+fn nodes_where(mesh: &VolumeMesh, is_inside: impl Fn(&Vector) -> bool) -> Vec<u32> {
+    let nodes = (0_u32..).zip(&mesh.nodes).filter(|(_, x)| is_inside(x));
     nodes.map(|(node, _)| node).collect()
 }

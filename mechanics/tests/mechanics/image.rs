@@ -14,7 +14,7 @@ use mechanics::prediction::{
 };
 
 use crate::material::anisotropy::{MUSCLE, fibred};
-use crate::scenes::{SHAPES, case_of, exact, hold, material, solve};
+use crate::scenes::{SHAPES, case_of, constraint, exact, material, solve};
 
 /// A grid of steps of 3 mm, turned out of the axes, with `value` at each centre; it holds all of [-60, 60]³.
 fn oblique(value: impl Fn(usize, usize, usize) -> f32) -> ImageVolume {
@@ -158,7 +158,8 @@ fn imaged(mesh: VolumeMesh, hounsfield: Hounsfield) -> Case {
 }
 
 fn pulled() -> Plan {
-    let held = [hold("x_min", [Some(0.0); 3]), hold("x_max", [Some(3.0), None, Some(1.0)])];
+    let held =
+        [constraint("x_min", [Some(0.0); 3]), constraint("x_max", [Some(3.0), None, Some(1.0)])];
     Plan { prescribed: held.to_vec(), ..Plan::default() }
 }
 
@@ -289,7 +290,10 @@ fn mixtures_that_differ_from_cell_to_cell_do_not_lock() {
     asked.tissues[1].material = material(90.0, 0.4995);
     let case = imaged(mesh(), asked);
     let bent = Plan {
-        prescribed: vec![hold("x_min", [Some(0.0); 3]), hold("x_max", [None, None, Some(4.0)])],
+        prescribed: vec![
+            constraint("x_min", [Some(0.0); 3]),
+            constraint("x_max", [None, None, Some(4.0)]),
+        ],
         ..Plan::default()
     };
     let moved = |element| solve(&case, &bent, &Settings { element, ..Settings::default() });

@@ -63,7 +63,7 @@ pub fn on_the_boundary(mesh: &mut VolumeMesh, field: impl Fn(&Vector) -> Vector)
 }
 
 /// Prescribes some components of a node set.
-pub fn hold(name: &str, displacement: [Option<f64>; 3]) -> Prescribed {
+pub fn constraint(name: &str, displacement: [Option<f64>; 3]) -> Prescribed {
     Prescribed::Uniform { nodes: set(name), displacement }
 }
 

@@ -47,7 +47,8 @@ impl Prepared {
         let scene = &self.scene;
         let skin = &scene.skin;
         let nodes = scene.mesh.nodes.len();
-        let held: usize = scene.conditions.holds.iter().map(|hold| hold.count()).sum();
+        let held: usize =
+            scene.conditions.constraints.iter().map(|constraint| constraint.count()).sum();
         let collisions = collisions(&self.case, scene);
         let mut of_plan: Vec<Warning> = collisions.iter().filter_map(Collision::warning).collect();
         of_plan.extend(suspect_landmarks(&input.case, &self.case));

@@ -99,7 +99,8 @@ pub fn with_contact(scene: &Scene, band: TimeBandDocument, takes: f64) -> TimeBa
 /// The same where nothing presses.
 pub fn time_without_contact_s(scene: &Scene, method: MethodName) -> Option<TimeBandDocument> {
     let nodes = scene.mesh.nodes.len();
-    let held: usize = scene.conditions.holds.iter().map(|hold| hold.count()).sum();
+    let held: usize =
+        scene.conditions.constraints.iter().map(|constraint| constraint.count()).sum();
     let unknowns = (3 * nodes - held) as f64;
     match scene.settings.method.properties().unknowns {
         Unknowns::None | Unknowns::ControlPoints => return None,

@@ -18,7 +18,7 @@ use super::fold::Folds;
 use super::line::{Meeting, meeting};
 use super::moved_boundary::{Boundary, MovedBoundary};
 use super::row::{ContactRow, OnBone};
-use crate::boundary::Hold;
+use crate::boundary::Constraint;
 use crate::mesh::volume::BoundaryFace;
 use crate::mesh::{TriangleSurface, Vector, VolumeMesh};
 
@@ -53,7 +53,7 @@ pub struct FacingSurfaces<'a> {
     at_rest: Vec<f64>,
     bones: Vec<BesideTissue>,
     /// Of points that are held in one or two directions.
-    partly_constrained: BTreeMap<u32, Hold>,
+    partly_constrained: BTreeMap<u32, Constraint>,
 }
 
 /// A bone beside the tissue.
@@ -77,15 +77,15 @@ impl<'a> FacingSurfaces<'a> {
     pub fn new(
         mesh: &'a VolumeMesh,
         boundary: &[BoundaryFace],
-        holds: &[Hold],
+        constraints: &[Constraint],
         bones: &[BoneSurface],
     ) -> Self {
         let rest = mesh.surface_of(boundary);
         let mut held = vec![false; mesh.nodes.len()];
-        holds
+        constraints
             .iter()
-            .filter(|hold| hold.count() == 3)
-            .for_each(|hold| held[hold.node as usize] = true);
+            .filter(|constraint| constraint.count() == 3)
+            .for_each(|constraint| held[constraint.node as usize] = true);
         let nodes = rest.node_ids.as_deref().unwrap_or_default();
         let mut surfaces = FacingSurfaces {
             mesh,
@@ -96,7 +96,7 @@ impl<'a> FacingSurfaces<'a> {
             reach: longest_edges(&rest),
             at_rest: vec![0.0; rest.points.len()],
             bones: beside(bones, rest.points.len()),
-            partly_constrained: partly_constrained(holds),
+            partly_constrained: partly_constrained(constraints),
             boundary: Boundary::new(rest),
         };
         surfaces.set_depths_at_rest();
@@ -232,7 +232,9 @@ impl<'a> FacingSurfaces<'a> {
         };
         let is_free = |normal: &Vector| {
             let held = self.partly_constrained.get(&self.nodes()[at]);
-            held.is_none_or(|hold| (normal - hold.part_along(normal)).norm() > LEAST_FREE)
+            held.is_none_or(|constraint| {
+                (normal - constraint.part_along(normal)).norm() > LEAST_FREE
+            })
         };
         (is_free(&found.normal) && (found.gap >= 0.0 || is_behind())).then_some(found)
     }
@@ -347,9 +349,9 @@ fn beside(bones: &[BoneSurface], points: usize) -> Vec<BesideTissue> {
     numbered.filter_map(of_bone).collect()
 }
 
-fn partly_constrained(holds: &[Hold]) -> BTreeMap<u32, Hold> {
-    let partly = holds.iter().filter(|hold| (1..3).contains(&hold.count()));
-    partly.map(|hold| (hold.node, hold.clone())).collect()
+fn partly_constrained(constraints: &[Constraint]) -> BTreeMap<u32, Constraint> {
+    let partly = constraints.iter().filter(|constraint| (1..3).contains(&constraint.count()));
+    partly.map(|constraint| (constraint.node, constraint.clone())).collect()
 }
 
 fn shares(mesh: &VolumeMesh, boundary: &[BoundaryFace]) -> Vec<(u32, Vector)> {

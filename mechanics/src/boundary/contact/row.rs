@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::boundary::Hold;
+use crate::boundary::Constraint;
 use crate::mesh::Vector;
 
 /// Rows whose gaps differ by less than this, in mm, say the same
@@ -77,14 +77,14 @@ impl ContactRow {
 
 /// Holds, with those of nodes whose rows press: along the normal of what they press on.
 pub fn with_pressing<'a>(
-    holds: &[Hold],
+    constraints: &[Constraint],
     pressing: impl Iterator<Item = &'a ContactRow>,
-) -> Vec<Hold> {
-    let mut by_node: BTreeMap<u32, Hold> =
-        holds.iter().map(|hold| (hold.node, hold.clone())).collect();
+) -> Vec<Constraint> {
+    let mut by_node: BTreeMap<u32, Constraint> =
+        constraints.iter().map(|constraint| (constraint.node, constraint.clone())).collect();
     for row in pressing {
-        let hold = by_node.entry(row.node).or_insert_with(|| Hold::free(row.node));
-        hold.add(&row.normal(), 0.0);
+        let constraint = by_node.entry(row.node).or_insert_with(|| Constraint::free(row.node));
+        constraint.add(&row.normal(), 0.0);
     }
     by_node.into_values().collect()
 }

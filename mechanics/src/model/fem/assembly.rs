@@ -63,10 +63,10 @@ impl Tissue<'_> {
     /// K over all nodes, held or not, in kPa mm.
     pub fn assemble(
         &self,
-        numbering: &DofMap,
+        dof_map: &DofMap,
         progress: &dyn Progress,
     ) -> Result<Option<HalfMatrix<f64, 3>>, InvertedCell> {
-        self.assemble_with(numbering, progress, &|cell| self.tensor(cell))
+        self.assemble_with(dof_map, progress, &|cell| self.tensor(cell))
     }
 
     /// The stiffness of the tissue of a cell.
@@ -78,12 +78,12 @@ impl Tissue<'_> {
     /// K with another stiffness for each cell. The membrane is part of it.
     pub(super) fn assemble_with(
         &self,
-        numbering: &DofMap,
+        dof_map: &DofMap,
         progress: &dyn Progress,
         tensor: &(dyn Fn(usize) -> ElasticTensor + Sync),
     ) -> Result<Option<HalfMatrix<f64, 3>>, InvertedCell> {
-        let mut matrix = HalfMatrix::zeros(numbering.pattern.clone());
-        let order = &numbering.layout.element_order;
+        let mut matrix = HalfMatrix::zeros(dof_map.pattern.clone());
+        let order = &dof_map.ordering.element_order;
         let simplex = |&cell: &u32| self.simplex(cell as usize, &tensor(cell as usize));
         let simplices: Vec<Option<Simplex>> =
             order.par_iter().map(simplex).collect::<Result<_, _>>()?;
@@ -91,16 +91,16 @@ impl Tissue<'_> {
             return Ok(None);
         }
         matrix.row_chunks(ROW_CHUNK).into_par_iter().for_each_init(
-            || vec![0_u32; numbering.pattern.rows()],
-            |at, chunk| add_rows(numbering, &simplices, chunk, at),
+            || vec![0_u32; dof_map.pattern.rows()],
+            |at, chunk| add_rows(dof_map, &simplices, chunk, at),
         );
         let others: Vec<usize> =
             (0..order.len()).filter(|&element| simplices[element].is_none()).collect();
-        let finished = numbering.add_cells(&mut matrix, &others, progress, |cell| {
+        let finished = dof_map.add_cells(&mut matrix, &others, progress, |cell| {
             self.cell_matrix(cell, &tensor(cell))
         })?;
         if let Some(membrane) = self.membrane {
-            membrane.add_linear(&mut matrix, numbering, self.mesh);
+            membrane.add_linear(&mut matrix, dof_map, self.mesh);
         }
         Ok(finished.then_some(matrix))
     }
@@ -142,21 +142,21 @@ impl Simplex {
 /// Row by row: no two threads write to the same block, and cells are added in their order. `at` is
 /// scratch: where the block of each column of the row lies.
 fn add_rows(
-    numbering: &DofMap,
+    dof_map: &DofMap,
     simplices: &[Option<Simplex>],
     chunk: RowChunk<f64, 3>,
     at: &mut [u32],
 ) {
-    let begin = numbering.pattern.range(chunk.first).start;
+    let begin = dof_map.pattern.range(chunk.first).start;
     for (local, diagonal) in chunk.diagonal.iter_mut().enumerate() {
         let row = chunk.first + local;
-        let offset = numbering.pattern.range(row).start - begin;
-        for (k, &column) in numbering.pattern.columns(row).iter().enumerate() {
+        let offset = dof_map.pattern.range(row).start - begin;
+        for (k, &column) in dof_map.pattern.columns(row).iter().enumerate() {
             at[column as usize] = (offset + k) as u32;
         }
-        for &element in numbering.around.row(row) {
+        for &element in dof_map.around.row(row) {
             let Some(simplex) = &simplices[element as usize] else { continue };
-            let members = numbering.connectivity.row(element as usize);
+            let members = dof_map.connectivity.row(element as usize);
             let Some(j) = members.iter().position(|&member| member as usize == row) else {
                 continue;
             };

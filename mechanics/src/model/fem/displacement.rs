@@ -6,10 +6,10 @@
 use rayon::prelude::*;
 
 use super::assembly::Tissue;
-use crate::boundary::Hold;
+use crate::boundary::Constraint;
 use crate::mesh::Vector;
 use crate::model::dofs::{
-    Constrained, DofMap, PrescribedValues, nodes_of_cells, number, product_at_holds,
+    Constrained, DofMap, PrescribedValues, nodes_of_cells, number, product_at_constraints,
 };
 use crate::model::problem::{Equilibrium, LoadCase, ModelError};
 use crate::progress::{Phase, Progress};
@@ -18,7 +18,7 @@ use crate::solver::{Solution, SolverError, System, Tolerance, Unknowns};
 /// A mechanical problem: tissue, what holds it and what acts on it.
 pub struct Problem<'a> {
     pub tissue: Tissue<'a>,
-    pub holds: &'a [Hold],
+    pub constraints: &'a [Constraint],
     /// For each node, in mN.
     pub forces: &'a [Vector],
     pub tolerance: Tolerance,
@@ -33,17 +33,17 @@ impl Problem<'_> {
         solve: SolveBy,
     ) -> Result<Vec<Equilibrium>, ModelError> {
         progress.phase(Phase::Assemble);
-        let numbering = self.numbering();
-        let matrix = self.tissue.assemble(&numbering, progress)?.ok_or(SolverError::Stopped)?;
-        let constrained = Constrained { holds: self.holds, numbering: &numbering };
+        let dof_map = self.dof_map();
+        let matrix = self.tissue.assemble(&dof_map, progress)?.ok_or(SolverError::Stopped)?;
+        let constrained = Constrained { constraints: self.constraints, dof_map: &dof_map };
         let system = constrained.system(matrix, &self.tissue.mesh.nodes);
         solve_displacement(&constrained, &system, cases, progress, solve)
     }
 
     /// Of the nodes of the mesh.
-    pub(super) fn numbering(&self) -> DofMap {
+    pub(super) fn dof_map(&self) -> DofMap {
         let mesh = self.tissue.mesh;
-        number(&nodes_of_cells(mesh), &mesh.nodes, self.holds)
+        number(&nodes_of_cells(mesh), &mesh.nodes, self.constraints)
     }
 }
 
@@ -73,7 +73,7 @@ pub(super) fn solve_displacement(
     // 3. Displacement and reactions, back along the axes of the coordinates.
     let equilibrium = |(known, solution): (PrescribedValues, Solution)| {
         let total = known.total(&solution.unknowns);
-        let internal = product_at_holds(system, &total);
+        let internal = product_at_constraints(system, &total);
         Equilibrium {
             displacement: constrained.displacement(&total),
             reactions: constrained.reactions(&internal, &known.force),

@@ -52,14 +52,14 @@ pub(super) fn check_memory(
 
 /// What matrices, hierarchy and vectors take, in MB.
 pub(super) fn megabytes(stiffness: &System, coupling: &Coupling) -> f64 {
-    let unknowns = 3 * stiffness.layout.free + coupling.mass.len();
+    let unknowns = 3 * stiffness.ordering.free + coupling.mass.len();
     stiffness.megabytes() + coupling.megabytes() + 8e-6 * (VECTORS * unknowns) as f64
 }
 
 /// K: tetrahedra with what no pressure carries, 2 mu eps : eps where they are isotropic.
 pub(super) fn shear_stiffness(
     tissue: &Tissue,
-    numbering: &DofMap,
+    dof_map: &DofMap,
     progress: &dyn Progress,
 ) -> Result<Option<HalfMatrix<f64, 3>>, InvertedCell> {
     let tensor = |cell: usize| {
@@ -69,7 +69,7 @@ pub(super) fn shear_stiffness(
             CellShape::Hex8 | CellShape::Wedge6 => tensor,
         }
     };
-    tissue.assemble_with(numbering, progress, &tensor)
+    tissue.assemble_with(dof_map, progress, &tensor)
 }
 
 /// The stiffness without the part that pressures carry.
@@ -95,7 +95,7 @@ pub struct PressureCells {
 
 impl PressureCells {
     /// Numbers the pressures: corners share one where they share node and material.
-    pub(super) fn new(tissue: &Tissue, numbering: &DofMap) -> Self {
+    pub(super) fn new(tissue: &Tissue, dof_map: &DofMap) -> Self {
         let materials = tissue.materials;
         let used: BTreeSet<u16> = tissue.pressure_of_cell.iter().copied().collect();
         let same = |own: u16| {
@@ -104,7 +104,7 @@ impl PressureCells {
         };
         let kinds: BTreeMap<u16, u16> = used.iter().map(|&own| (own, same(own))).collect();
         let mut cells_of_kind: BTreeMap<u16, Vec<u32>> = BTreeMap::new();
-        for &cell in &numbering.layout.element_order {
+        for &cell in &dof_map.ordering.element_order {
             let (cell, shape) = (cell as usize, tissue.mesh.cells.shape(cell as usize));
             let kind = kinds[&tissue.pressure_of_cell[cell]];
             if carries_pressure(shape, &tissue.tensor(cell)) {
@@ -128,7 +128,7 @@ impl PressureCells {
                     }
                     *number - 1
                 });
-                all.rows.push(corners.map(|node| numbering.layout.place[node as usize]));
+                all.rows.push(corners.map(|node| dof_map.ordering.place[node as usize]));
                 all.pressures.push(numbers);
             }
             all.cells.extend_from_slice(cells);
@@ -163,8 +163,9 @@ pub(super) fn couple(
     constrained: &Constrained,
     all: &PressureCells,
 ) -> Result<Coupling, InvertedCell> {
-    let turned = constrained.holds.iter().filter(|hold| !hold.is_aligned());
-    let axes: BTreeMap<u32, Matrix3<f64>> = turned.map(|hold| (hold.node, *hold.axes())).collect();
+    let turned = constrained.constraints.iter().filter(|constraint| !constraint.is_aligned());
+    let axes: BTreeMap<u32, Matrix3<f64>> =
+        turned.map(|constraint| (constraint.node, *constraint.axes())).collect();
     let terms: Result<Vec<CellTerms>, InvertedCell> =
         all.cells.par_iter().map(|&cell| cell_terms(tissue, cell as usize, &axes)).collect();
     let terms = terms?;

@@ -1,6 +1,6 @@
 //! Nodes in the middle of the edges of tetrahedra, with the boundary conditions and loads there.
 
-use crate::boundary::{Hold, midpoint};
+use crate::boundary::{Constraint, midpoint};
 use crate::element::tetrahedron10;
 use crate::mesh::{Vector, VolumeMesh};
 use crate::model::problem::{Equilibrium, LoadCase};
@@ -56,30 +56,36 @@ impl EdgeNodes {
 
     /// The holds and, after them, those of edge nodes that have none of their own yet; with the two holds
     /// between which each of these lies.
-    fn holds(&self, mesh: &VolumeMesh, holds: &[Hold]) -> (Vec<Hold>, Vec<[usize; 2]>) {
-        let mut hold_of = vec![None; self.node_count()];
-        for (index, hold) in holds.iter().enumerate() {
-            hold_of[hold.node as usize] = Some(index);
+    fn constraints(
+        &self,
+        mesh: &VolumeMesh,
+        constraints: &[Constraint],
+    ) -> (Vec<Constraint>, Vec<[usize; 2]>) {
+        let mut constraint_of = vec![None; self.node_count()];
+        for (index, constraint) in constraints.iter().enumerate() {
+            constraint_of[constraint.node as usize] = Some(index);
         }
-        let mut all = holds.to_vec();
+        let mut all = constraints.to_vec();
         let mut parents = Vec::new();
         for face in mesh.boundary_faces() {
             let nodes = face.nodes();
             let Some(held) =
-                nodes.iter().map(|&n| hold_of[n as usize]).collect::<Option<Vec<usize>>>()
+                nodes.iter().map(|&n| constraint_of[n as usize]).collect::<Option<Vec<usize>>>()
             else {
                 continue;
             };
             for side in 0..nodes.len() {
                 let next = (side + 1) % nodes.len();
                 let middle = self.between(nodes[side], nodes[next]);
-                if hold_of[middle as usize].is_some() {
+                if constraint_of[middle as usize].is_some() {
                     continue;
                 }
                 let [a, b] = [held[side], held[next]];
-                if let Some(hold) = midpoint::between(middle, &holds[a], &holds[b]) {
-                    hold_of[middle as usize] = Some(all.len());
-                    all.push(hold);
+                if let Some(constraint) =
+                    midpoint::between(middle, &constraints[a], &constraints[b])
+                {
+                    constraint_of[middle as usize] = Some(all.len());
+                    all.push(constraint);
                     parents.push([a, b]);
                 }
             }
@@ -90,9 +96,9 @@ impl EdgeNodes {
 
 /// A problem with nodes in the middle of edges: they come after the nodes of the mesh, their holds after those that are given.
 pub(super) struct WithEdges<'a> {
-    given: &'a [Hold],
+    given: &'a [Constraint],
     pub edges: EdgeNodes,
-    pub holds: Vec<Hold>,
+    pub constraints: Vec<Constraint>,
     /// The two holds between which each hold of an edge node lies.
     parents: Vec<[usize; 2]>,
     /// Of all nodes at rest, in mm.
@@ -103,12 +109,12 @@ pub(super) struct WithEdges<'a> {
 
 impl<'a> WithEdges<'a> {
     /// Of a mesh of tetrahedra; holds may name edge nodes themselves.
-    pub fn new(mesh: &VolumeMesh, given: &'a [Hold]) -> Self {
+    pub fn new(mesh: &VolumeMesh, given: &'a [Constraint]) -> Self {
         let edges = EdgeNodes::new(mesh);
-        let (holds, parents) = edges.holds(mesh, given);
+        let (constraints, parents) = edges.constraints(mesh, given);
         let mut cells = ElementConnectivity::default();
         (0..mesh.cells.len()).for_each(|cell| cells.push(edges.of_cell(mesh, cell)));
-        WithEdges { given, holds, parents, positions: edges.positions(mesh), cells, edges }
+        WithEdges { given, constraints, parents, positions: edges.positions(mesh), cells, edges }
     }
 
     /// A load case with values for edge nodes too, whose forces may be left out.
@@ -121,14 +127,15 @@ impl<'a> WithEdges<'a> {
     /// The values of all holds: those that are given, and those of edge nodes between them.
     fn values(&self, case: &LoadCase) -> Vec<Vector> {
         let mut given = self.given.to_vec();
-        for (hold, values) in given.iter_mut().zip(&case.held) {
-            hold.set_values(values);
+        for (constraint, values) in given.iter_mut().zip(&case.held) {
+            constraint.set_values(values);
         }
-        let of_edges = self.holds[given.len()..].iter().zip(&self.parents);
-        let middles = of_edges.filter_map(|(hold, &[a, b])| {
-            midpoint::between(hold.node, &given[a], &given[b]).map(|hold| *hold.values())
+        let of_edges = self.constraints[given.len()..].iter().zip(&self.parents);
+        let middles = of_edges.filter_map(|(constraint, &[a, b])| {
+            midpoint::between(constraint.node, &given[a], &given[b])
+                .map(|constraint| *constraint.values())
         });
-        given.iter().map(|hold| *hold.values()).chain(middles).collect()
+        given.iter().map(|constraint| *constraint.values()).chain(middles).collect()
     }
 
     /// Leaves the reactions of the holds that are given: what an edge node's hold exerts counts half at each of its ends.

@@ -7,9 +7,9 @@ use super::displacement::{Problem, check_finite, solve_displacement};
 use super::displacement_pressure::{
     PressureCells, check_memory, couple, megabytes, shear_stiffness,
 };
-use crate::boundary::Hold;
+use crate::boundary::Constraint;
 use crate::mesh::Vector;
-use crate::model::dofs::{Constrained, DofMap, PrescribedValues, product_at_holds};
+use crate::model::dofs::{Constrained, DofMap, PrescribedValues, product_at_constraints};
 use crate::model::problem::{Equilibrium, LoadCase, ModelError};
 use crate::progress::{Phase, Progress};
 use crate::solver::lanes::Lanes;
@@ -19,8 +19,8 @@ use crate::solver::{Solver, SolverError, System, Tolerance, Unknowns, mixed};
 
 /// K, for tetrahedra with pressures B and C beside it, and what was made to solve with them.
 pub struct LinearSystem<'a> {
-    pub holds: &'a [Hold],
-    pub numbering: DofMap,
+    pub constraints: &'a [Constraint],
+    pub dof_map: DofMap,
     /// K; where there are pressures without what they carry.
     pub stiffness: System,
     pub pressures: Option<Pressures>,
@@ -74,7 +74,7 @@ pub struct Correction {
 impl Problem<'_> {
     /// Solves for equilibrium without pressures.
     pub fn solve(&self, progress: &dyn Progress) -> Result<Equilibrium, ModelError> {
-        let held = self.holds.iter().map(|hold| *hold.values()).collect();
+        let held = self.constraints.iter().map(|constraint| *constraint.values()).collect();
         let case = LoadCase { held, forces: self.forces.to_vec(), ..LoadCase::default() };
         let mut equilibria = self.solve_cases(&[case], progress)?;
         Ok(equilibria.remove(0))
@@ -95,39 +95,39 @@ impl<'a> LinearSystem<'a> {
     /// Displacements alone.
     pub fn plain(problem: &Problem<'a>, progress: &dyn Progress) -> Result<Self, ModelError> {
         progress.phase(Phase::Assemble);
-        let numbering = problem.numbering();
-        let matrix = problem.tissue.assemble(&numbering, progress)?.ok_or(SolverError::Stopped)?;
-        let constrained = Constrained { holds: problem.holds, numbering: &numbering };
+        let dof_map = problem.dof_map();
+        let matrix = problem.tissue.assemble(&dof_map, progress)?.ok_or(SolverError::Stopped)?;
+        let constrained = Constrained { constraints: problem.constraints, dof_map: &dof_map };
         let stiffness = constrained.system(matrix, &problem.tissue.mesh.nodes);
-        Ok(LinearSystem::of(problem, numbering, stiffness, None))
+        Ok(LinearSystem::of(problem, dof_map, stiffness, None))
     }
 
     /// Displacements, and the pressures of tetrahedra.
     pub fn mixed(problem: &Problem<'a>, progress: &dyn Progress) -> Result<Self, ModelError> {
         progress.phase(Phase::Assemble);
         let tissue = &problem.tissue;
-        let numbering = problem.numbering();
-        let constrained = Constrained { holds: problem.holds, numbering: &numbering };
-        let assembled = shear_stiffness(tissue, &numbering, progress)?;
+        let dof_map = problem.dof_map();
+        let constrained = Constrained { constraints: problem.constraints, dof_map: &dof_map };
+        let assembled = shear_stiffness(tissue, &dof_map, progress)?;
         let matrix = assembled.ok_or(SolverError::Stopped)?;
         let stiffness = constrained.system(matrix, &tissue.mesh.nodes);
-        let cells = PressureCells::new(tissue, &numbering);
+        let cells = PressureCells::new(tissue, &dof_map);
         let coupling = couple(tissue, &constrained, &cells)?;
         check_memory(&stiffness, &coupling, problem.tolerance.memory_mb)?;
         let pressures = Pressures { coupling, cells };
-        Ok(LinearSystem::of(problem, numbering, stiffness, Some(pressures)))
+        Ok(LinearSystem::of(problem, dof_map, stiffness, Some(pressures)))
     }
 
     fn of(
         problem: &Problem<'a>,
-        numbering: DofMap,
+        dof_map: DofMap,
         stiffness: System,
         pressures: Option<Pressures>,
     ) -> Self {
-        let Problem { holds, tolerance, .. } = *problem;
+        let Problem { constraints, tolerance, .. } = *problem;
         LinearSystem {
-            holds,
-            numbering,
+            constraints,
+            dof_map,
             stiffness,
             pressures,
             tolerance,
@@ -183,7 +183,7 @@ impl<'a> LinearSystem<'a> {
         // 3. Displacement and reactions, back along the axes of the coordinates.
         let solved = |(known, mixed): (PrescribedValues, MixedSolution)| {
             let total = known.total(&mixed.solution.unknowns);
-            let internal = self.internal_at_holds(&total, &mixed.pressures);
+            let internal = self.internal_at_constraints(&total, &mixed.pressures);
             let equilibrium = Equilibrium {
                 displacement: constrained.displacement(&total),
                 reactions: constrained.reactions(&internal, &known.force),
@@ -236,23 +236,24 @@ impl<'a> LinearSystem<'a> {
     /// beside those of K.
     pub fn reactions(&self, correction: &Correction, beside: &[Vector]) -> Vec<Vector> {
         let constrained = self.constrained();
-        let held = vec![Vector::zeros(); self.holds.len()];
+        let held = vec![Vector::zeros(); self.constraints.len()];
         let known = constrained.known(&LoadCase {
             held,
             forces: beside.iter().map(|force| -force).collect(),
             ..LoadCase::default()
         });
         let mut total: Vec<[[f64; 1]; 3]> = self
-            .numbering
+            .dof_map
             .by_row(&correction.displacement)
             .iter()
             .map(|u| [[u.x], [u.y], [u.z]])
             .collect();
-        for hold in self.holds.iter().filter(|hold| !hold.is_aligned()) {
-            let own = hold.axes().transpose() * correction.displacement[hold.node as usize];
-            total[self.numbering.row(hold.node)] = [[own.x], [own.y], [own.z]];
+        for constraint in self.constraints.iter().filter(|constraint| !constraint.is_aligned()) {
+            let own =
+                constraint.axes().transpose() * correction.displacement[constraint.node as usize];
+            total[self.dof_map.row(constraint.node)] = [[own.x], [own.y], [own.z]];
         }
-        let mut internal = product_at_holds(&self.stiffness, &total);
+        let mut internal = product_at_constraints(&self.stiffness, &total);
         if let Some(Pressures { coupling, .. }) = &self.pressures {
             let pressures: Vec<[f64; 1]> = correction.pressures.iter().map(|&p| [p]).collect();
             coupling.gradient.add_expanded(&pressures, &mut internal);
@@ -275,7 +276,7 @@ impl<'a> LinearSystem<'a> {
         iterations: usize,
         relative_residual: f64,
     ) -> Correction {
-        let (_, pressures) = found.split_at(3 * self.stiffness.layout.free);
+        let (_, pressures) = found.split_at(3 * self.stiffness.ordering.free);
         Correction {
             displacement: self.constrained().displacement(&self.stiffness.by_row(found)),
             pressures: pressures.as_flattened().to_vec(),
@@ -315,12 +316,12 @@ impl<'a> LinearSystem<'a> {
     }
 
     /// Internal forces of displacements and pressures by row, where something is held.
-    pub(super) fn internal_at_holds(
+    pub(super) fn internal_at_constraints(
         &self,
         total: &[Lanes<f64, 3, 1>],
         pressures: &[[f64; 1]],
     ) -> Vec<Lanes<f64, 3, 1>> {
-        let mut internal = product_at_holds(&self.stiffness, total);
+        let mut internal = product_at_constraints(&self.stiffness, total);
         if let Some(own) = &self.pressures {
             own.coupling.gradient.add_expanded(pressures, &mut internal);
         }
@@ -328,6 +329,6 @@ impl<'a> LinearSystem<'a> {
     }
 
     pub(super) fn constrained(&self) -> Constrained<'_> {
-        Constrained { holds: self.holds, numbering: &self.numbering }
+        Constrained { constraints: self.constraints, dof_map: &self.dof_map }
     }
 }

@@ -56,11 +56,11 @@ impl Membrane {
     pub(super) fn add_linear(
         &self,
         matrix: &mut HalfMatrix<f64, 3>,
-        numbering: &DofMap,
+        dof_map: &DofMap,
         mesh: &VolumeMesh,
     ) {
         for (triangle, nodes) in self.in_space(mesh) {
-            let rows = nodes.map(|node| numbering.row(node) as u32);
+            let rows = nodes.map(|node| dof_map.row(node) as u32);
             add_cell(matrix, &rows, &triangle.linear());
         }
     }
@@ -69,14 +69,14 @@ impl Membrane {
     pub(super) fn add_quadratic(
         &self,
         matrix: &mut HalfMatrix<f64, 3>,
-        numbering: &DofMap,
+        dof_map: &DofMap,
         mesh: &VolumeMesh,
         edges: &EdgeNodes,
     ) {
         for (triangle, [a, b, c]) in self.in_space(mesh) {
             let middles = [edges.between(a, b), edges.between(b, c), edges.between(c, a)];
             let nodes = [a, b, c, middles[0], middles[1], middles[2]];
-            let rows = nodes.map(|node| numbering.row(node) as u32);
+            let rows = nodes.map(|node| dof_map.row(node) as u32);
             add_cell(matrix, &rows, &triangle.quadratic());
         }
     }

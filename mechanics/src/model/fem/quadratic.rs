@@ -43,14 +43,14 @@ pub fn solve_with_edges(
     // 1. The matrix over corners and edge nodes.
     progress.phase(Phase::Assemble);
     let mesh = problem.tissue.mesh;
-    let with = WithEdges::new(mesh, problem.holds);
-    let numbering = number(&with.cells, &with.positions, &with.holds);
-    let assembled = assemble(&problem.tissue, &numbering, &with.edges, progress)?;
+    let with = WithEdges::new(mesh, problem.constraints);
+    let dof_map = number(&with.cells, &with.positions, &with.constraints);
+    let assembled = assemble(&problem.tissue, &dof_map, &with.edges, progress)?;
     let matrix = assembled.ok_or(SolverError::Stopped)?;
 
     // 2. Each load case with values for edge nodes too.
     let cases: Vec<LoadCase> = cases.iter().map(|case| with.case(case)).collect();
-    let constrained = Constrained { holds: &with.holds, numbering: &numbering };
+    let constrained = Constrained { constraints: &with.constraints, dof_map: &dof_map };
     let system = constrained.system(matrix, &with.positions);
     let solve = |system: &System, right_hand_sides: &[Unknowns]| {
         solver::solve(system, right_hand_sides, &problem.tolerance, progress)
@@ -65,18 +65,18 @@ pub fn solve_with_edges(
 /// K over all nodes, in kPa mm.
 fn assemble(
     tissue: &Tissue,
-    numbering: &DofMap,
+    dof_map: &DofMap,
     edges: &EdgeNodes,
     progress: &dyn Progress,
 ) -> Result<Option<HalfMatrix<f64, 3>>, InvertedCell> {
-    let mut matrix = HalfMatrix::zeros(numbering.pattern.clone());
+    let mut matrix = HalfMatrix::zeros(dof_map.pattern.clone());
     let all: Vec<usize> = (0..tissue.mesh.cells.len()).collect();
-    let finished = numbering.add_cells(&mut matrix, &all, progress, |cell| {
+    let finished = dof_map.add_cells(&mut matrix, &all, progress, |cell| {
         let (volume, gradients) = tetrahedron(tissue.mesh, cell)?;
         Ok(cell_stiffness(volume, &gradients, &tissue.tensor(cell)))
     })?;
     if let Some(membrane) = tissue.membrane {
-        membrane.add_quadratic(&mut matrix, numbering, tissue.mesh, edges);
+        membrane.add_quadratic(&mut matrix, dof_map, tissue.mesh, edges);
     }
     Ok(finished.then_some(matrix))
 }

@@ -27,7 +27,7 @@ pub fn solve(
     progress: &dyn Progress,
 ) -> Result<Equilibrium, ModelError> {
     progress.phase(Phase::Assemble);
-    let network = Network::new(&problem.tissue, problem.holds, case)?;
+    let network = Network::new(&problem.tissue, problem.constraints, case)?;
     progress.phase(Phase::Solve);
     let wanted = problem.tolerance.relative_residual;
     let found = match (network.scale > 0.0, settings.search) {

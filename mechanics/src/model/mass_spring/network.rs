@@ -1,7 +1,7 @@
 //! Spring network: springs, boundary conditions and loads.
 
 use super::springs::Springs;
-use crate::boundary::Hold;
+use crate::boundary::Constraint;
 use crate::mesh::Vector;
 use crate::model::fem::assembly::Tissue;
 use crate::model::problem::{LoadCase, ModelError};
@@ -45,9 +45,9 @@ impl SpringEquilibrium {
 pub(super) struct Network<'a> {
     pub(super) springs: Springs,
     pub(super) rest: &'a [Vector],
-    pub(super) holds: &'a [Hold],
+    pub(super) constraints: &'a [Constraint],
     /// For each node its entry in `holds`.
-    pub(super) hold_of: BTreeMap<u32, usize>,
+    pub(super) constraint_of: BTreeMap<u32, usize>,
     /// For each node, in mN.
     pub(super) acting: &'a [Vector],
     /// Nodes at rest, held ones where they are held to.
@@ -60,20 +60,25 @@ pub(super) struct Network<'a> {
 impl<'a> Network<'a> {
     pub(super) fn new(
         tissue: &Tissue<'a>,
-        holds: &'a [Hold],
+        constraints: &'a [Constraint],
         case: &'a LoadCase,
     ) -> Result<Self, ModelError> {
         let springs = Springs::new(tissue)?;
         let rest = tissue.mesh.nodes.as_slice();
         let mut moved = vec![Vector::zeros(); rest.len()];
-        for (hold, values) in holds.iter().zip(&case.held) {
-            let held = (0..hold.count()).map(|k| hold.axes().column(k) * values[k]);
-            moved[hold.node as usize] = held.sum();
+        for (constraint, values) in constraints.iter().zip(&case.held) {
+            let held = (0..constraint.count()).map(|k| constraint.axes().column(k) * values[k]);
+            moved[constraint.node as usize] = held.sum();
         }
         let start = rest.iter().zip(&moved).map(|(x, u)| x + u).collect();
-        let hold_of = holds.iter().enumerate().map(|(entry, hold)| (hold.node, entry)).collect();
+        let constraint_of = constraints
+            .iter()
+            .enumerate()
+            .map(|(entry, constraint)| (constraint.node, entry))
+            .collect();
         let acting = case.forces.as_slice();
-        let mut network = Network { springs, rest, holds, hold_of, acting, start, scale: 0.0 };
+        let mut network =
+            Network { springs, rest, constraints, constraint_of, acting, start, scale: 0.0 };
         let resistance = network.springs.linear_forces(rest, &moved);
         network.scale = length(&network.unbalanced(&resistance));
         match network.scale.is_finite() {
@@ -87,11 +92,12 @@ impl<'a> Network<'a> {
         if self.springs.total_stiffness[node] == 0.0 {
             return Vector::zeros();
         }
-        match self.hold_of.get(&(node as u32)) {
+        match self.constraint_of.get(&(node as u32)) {
             None => force,
             Some(&entry) => {
-                let hold = &self.holds[entry];
-                let held = (0..hold.count()).map(|k| hold.axes().column(k).into_owned());
+                let constraint = &self.constraints[entry];
+                let held =
+                    (0..constraint.count()).map(|k| constraint.axes().column(k).into_owned());
                 held.fold(force, |rest, axis| rest - axis * axis.dot(&force))
             }
         }
@@ -105,19 +111,21 @@ impl<'a> Network<'a> {
 
     /// Reaction force of each constraint, in mN.
     pub(super) fn reactions(&self, resistance: &[Vector]) -> Vec<Vector> {
-        let reaction = |hold: &Hold| {
-            let node = hold.node as usize;
+        let reaction = |constraint: &Constraint| {
+            let node = constraint.node as usize;
             let force = resistance[node] - self.acting[node];
-            let along = |k: usize| hold.axes().column(k) * hold.axes().column(k).dot(&force);
-            (0..hold.count()).map(along).sum()
+            let along =
+                |k: usize| constraint.axes().column(k) * constraint.axes().column(k).dot(&force);
+            (0..constraint.count()).map(along).sum()
         };
-        self.holds.iter().map(reaction).collect()
+        self.constraints.iter().map(reaction).collect()
     }
 
     pub(super) fn unknowns(&self) -> usize {
         let nodes = self.springs.total_stiffness.iter().filter(|k| **k > 0.0).count();
-        let is_sprung = |hold: &&Hold| self.springs.total_stiffness[hold.node as usize] > 0.0;
-        let held: usize = self.holds.iter().filter(is_sprung).map(Hold::count).sum();
+        let is_sprung =
+            |constraint: &&Constraint| self.springs.total_stiffness[constraint.node as usize] > 0.0;
+        let held: usize = self.constraints.iter().filter(is_sprung).map(Constraint::count).sum();
         3 * nodes - held
     }
 }

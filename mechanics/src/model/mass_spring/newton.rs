@@ -37,8 +37,8 @@ pub(super) fn solve(
     progress: &dyn Progress,
 ) -> Result<SpringEquilibrium, ModelError> {
     let mesh = problem.tissue.mesh;
-    let numbering = number(&nodes_of_cells(mesh), &mesh.nodes, problem.holds);
-    let constrained = Constrained { holds: problem.holds, numbering: &numbering };
+    let dof_map = number(&nodes_of_cells(mesh), &mesh.nodes, problem.constraints);
+    let constrained = Constrained { constraints: problem.constraints, dof_map: &dof_map };
     let wanted = problem.tolerance.relative_residual;
     let positions = network.start.clone();
     let mut newton = Newton {
@@ -161,11 +161,11 @@ impl Newton<'_> {
         unbalanced: &[Vector],
         geometric: GeometricStiffness,
     ) -> Result<Vec<Vector>, SolverError> {
-        let Problem { holds, tolerance, .. } = self.problem;
-        let matrix = self.network.springs.tangent(positions, geometric, self.constrained.numbering);
+        let Problem { constraints, tolerance, .. } = self.problem;
+        let matrix = self.network.springs.tangent(positions, geometric, self.constrained.dof_map);
         let system = self.constrained.system(matrix, positions);
         let case = LoadCase {
-            held: vec![Vector::zeros(); holds.len()],
+            held: vec![Vector::zeros(); constraints.len()],
             forces: unbalanced.to_vec(),
             ..LoadCase::default()
         };

@@ -163,12 +163,12 @@ impl Springs {
         &self,
         positions: &[Vector],
         geometric: GeometricStiffness,
-        numbering: &DofMap,
+        dof_map: &DofMap,
     ) -> HalfMatrix<f64, 3> {
-        let mut matrix = HalfMatrix::zeros(numbering.pattern.clone());
+        let mut matrix = HalfMatrix::zeros(dof_map.pattern.clone());
         for spring in &self.springs {
             let block = spring.tangent(positions, geometric);
-            let [i, j] = spring.nodes.map(|node| numbering.row(node));
+            let [i, j] = spring.nodes.map(|node| dof_map.row(node));
             add(matrix.block_mut(i, i), &block, 1.0);
             add(matrix.block_mut(j, j), &block, 1.0);
             add(matrix.block_mut(i.max(j), i.min(j)), &block, -1.0);

@@ -7,7 +7,7 @@
 use std::collections::BTreeMap;
 
 use super::stiffness::Assembly;
-use crate::boundary::Hold;
+use crate::boundary::Constraint;
 use crate::mesh::Vector;
 use crate::solver::half_matrix::HalfMatrix;
 use crate::solver::{Block, Unknowns};
@@ -32,17 +32,19 @@ impl BonePoints {
     /// Eliminates the control points of bone from a system: their displacements become boundary conditions.
     pub fn eliminate(
         assembly: &Assembly,
-        holds: &[Hold],
+        constraints: &[Constraint],
         matrix: &mut HalfMatrix<f64, 3>,
         force: &mut Unknowns,
     ) -> BonePoints {
-        let rows = holds.iter().filter_map(|hold| Some((hold, nearest_row(assembly, hold)?)));
-        let (holds, of_hold): (Vec<&Hold>, Vec<Option<usize>>) = rows.unzip();
+        let rows = constraints
+            .iter()
+            .filter_map(|constraint| Some((constraint, nearest_row(assembly, constraint)?)));
+        let (constraints, of_hold): (Vec<&Constraint>, Vec<Option<usize>>) = rows.unzip();
         let mut points: BTreeMap<usize, BonePoint> = BTreeMap::new();
-        for (hold, row) in holds.iter().zip(&of_hold) {
+        for (constraint, row) in constraints.iter().zip(&of_hold) {
             let Some(row) = row else { continue };
             let point = points.entry(*row).or_default();
-            let along = hold.axes() * hold.values();
+            let along = constraint.axes() * constraint.values();
             point.displacement += assembly.lattice.frame.axes.transpose() * along;
             point.nodes += 1;
         }
@@ -102,14 +104,14 @@ impl BonePoints {
 }
 
 /// The row of the control point that is nearest to a held node, none where the node slides; `None` beside all tissue.
-fn nearest_row(assembly: &Assembly, hold: &Hold) -> Option<Option<usize>> {
+fn nearest_row(assembly: &Assembly, constraint: &Constraint) -> Option<Option<usize>> {
     let lattice = assembly.lattice;
-    let local = lattice.frame.local(&assembly.tissue.mesh.nodes[hold.node as usize]);
+    let local = lattice.frame.local(&assembly.tissue.mesh.nodes[constraint.node as usize]);
     let place = lattice.place(&local)?;
     let distance = |control: &u32| (lattice.points[*control as usize] - local).norm_squared();
     let members = lattice.connectivity.row(place.span).iter().copied();
     let nearest = members.min_by(|a, b| distance(a).total_cmp(&distance(b)))?;
-    Some((hold.count() == 3).then(|| assembly.numbering.row(nearest)))
+    Some((constraint.count() == 3).then(|| assembly.dof_map.row(nearest)))
 }
 
 fn times(block: &Block, x: &Vector) -> Vector {

@@ -13,7 +13,7 @@ use rayon::prelude::*;
 
 use super::lattice::{Lattice, LatticeCoordinates};
 use super::stiffness::Assembly;
-use crate::boundary::Hold;
+use crate::boundary::Constraint;
 use crate::mesh::{Vector, Warning};
 use crate::progress::Unobserved;
 use crate::solver::Unknowns;
@@ -40,26 +40,27 @@ impl HeldPoints {
     /// harder.
     pub fn new(
         assembly: &Assembly,
-        holds: &[Hold],
+        constraints: &[Constraint],
         stiffness: &HalfMatrix<f64, 3>,
         hold_weight: f64,
     ) -> Self {
         let (lattice, mesh) = (assembly.lattice, assembly.tissue.mesh);
-        let held = |hold: &Hold| {
-            let place = lattice.place(&lattice.frame.local(&mesh.nodes[hold.node as usize]))?;
+        let held = |constraint: &Constraint| {
+            let place =
+                lattice.place(&lattice.frame.local(&mesh.nodes[constraint.node as usize]))?;
             let direction = |k: usize| {
-                let axis = hold.axes().column(k).into_owned();
-                (lattice.frame.axes.transpose() * axis, hold.values()[k])
+                let axis = constraint.axes().column(k).into_owned();
+                (lattice.frame.axes.transpose() * axis, constraint.values()[k])
             };
-            let directions = (0..hold.count()).map(direction).collect();
+            let directions = (0..constraint.count()).map(direction).collect();
             let members = lattice.connectivity.row(place.span).iter();
             let diagonals = members.map(|&control| {
-                let block = stiffness.diagonal[assembly.numbering.row(control)];
+                let block = stiffness.diagonal[assembly.dof_map.row(control)];
                 block[0][0].max(block[1][1]).max(block[2][2])
             });
             Some(HeldPoint { place, directions, weight: diagonals.fold(0.0, f64::max) })
         };
-        let mut points: Vec<HeldPoint> = holds.iter().filter_map(held).collect();
+        let mut points: Vec<HeldPoint> = constraints.iter().filter_map(held).collect();
         let mut spans: Vec<usize> = points.iter().map(|point| point.place.span).collect();
         spans.sort_unstable();
         spans.dedup();
@@ -138,7 +139,7 @@ pub fn add_at(
 ) {
     let members = assembly.lattice.connectivity.row(place.span).iter();
     for (&control, value) in members.zip(place.products(assembly.lattice.orders())) {
-        let sum = &mut forces[assembly.numbering.row(control)];
+        let sum = &mut forces[assembly.dof_map.row(control)];
         (0..3).for_each(|k| sum[k] += force[k] * value);
     }
 }

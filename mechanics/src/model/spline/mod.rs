@@ -126,8 +126,8 @@ pub fn solve(
     let lattice = Lattice::fit(mesh, &points, spline.degrees, spline.control);
     check_memory(&lattice, problem)?;
     let nothing_held = vec![false; lattice.points.len()];
-    let numbering = DofMap::of(&lattice.connectivity, &lattice.points, &nothing_held);
-    let assembly = Assembly::new(&lattice, &numbering, &problem.tissue, &points);
+    let dof_map = DofMap::of(&lattice.connectivity, &lattice.points, &nothing_held);
+    let assembly = Assembly::new(&lattice, &dof_map, &problem.tissue, &points);
 
     // 2. What holds them together, and what holds the tissue.
     let stopped = || ModelError::from(SolverError::Stopped);
@@ -168,7 +168,7 @@ fn assemble<'a>(
     spline: &VolumeSpline,
 ) -> Option<Assembled<'a>> {
     let (lattice, mesh) = (assembly.lattice, problem.tissue.mesh);
-    let held = HeldPoints::new(&assembly, problem.holds, &stiffness, spline.hold_weight);
+    let held = HeldPoints::new(&assembly, problem.constraints, &stiffness, spline.hold_weight);
     let springs = match spline.bone {
         Bone::Springs => None,
         Bone::ControlPoints => Some(held.sliding()),
@@ -191,12 +191,12 @@ fn assemble<'a>(
     let bone = match spline.bone {
         Bone::Springs => None,
         Bone::ControlPoints => {
-            Some(BonePoints::eliminate(&assembly, problem.holds, &mut matrix, &mut force))
+            Some(BonePoints::eliminate(&assembly, problem.constraints, &mut matrix, &mut force))
         }
     };
-    let layout = assembly.numbering.layout.clone();
-    let positions = assembly.numbering.by_row(&lattice.points);
-    let system = System { layout, matrix, partly_constrained: Vec::new(), positions };
+    let ordering = assembly.dof_map.ordering.clone();
+    let positions = assembly.dof_map.by_row(&lattice.points);
+    let system = System { ordering, matrix, partly_constrained: Vec::new(), positions };
     Some(Assembled { assembly, held, bone, system, force })
 }
 
@@ -255,7 +255,7 @@ impl Assembled<'_> {
     }
 
     fn by_control(&self, by_row: Vec<Vector>) -> Vec<Vector> {
-        let places = self.assembly.numbering.layout.place.iter();
+        let places = self.assembly.dof_map.ordering.place.iter();
         places.map(|&row| by_row[row as usize]).collect()
     }
 
@@ -310,7 +310,7 @@ impl Assembled<'_> {
         let missed = self.held.missed(lattice, control);
         let mut reactions = self.held.reactions(lattice, &missed);
         if let Some(bone) = &self.bone {
-            let places = &self.assembly.numbering.layout.place;
+            let places = &self.assembly.dof_map.ordering.place;
             let mut of_row = vec![Vector::zeros(); control.len()];
             places.iter().zip(control).for_each(|(&row, d)| of_row[row as usize] = *d);
             let of_bone = bone.reactions(&of_row);

@@ -163,7 +163,7 @@ impl Motion<'_> {
     fn lumped(&self) -> Vec<f64> {
         let ones = vec![[[1.0]; 3]; self.force.len()];
         let mut product = ones.clone();
-        self.mass.multiply(&self.stiffness.layout, &ones, &mut product);
+        self.mass.multiply(&self.stiffness.ordering, &ones, &mut product);
         product.iter().map(|row| row[0][0]).collect()
     }
 
@@ -220,7 +220,7 @@ impl Motion<'_> {
             let backward = order == 1.0 || state.history.len() < 4;
             let order = if backward { 1.0 } else { order };
             let mut right = self.unbalanced(&state.displacement);
-            self.mass.multiply(&system.layout, &state.velocity, &mut product);
+            self.mass.multiply(&system.ordering, &state.velocity, &mut product);
             for (right, m) in right.iter_mut().zip(&product) {
                 (0..3).for_each(|c| right[c] = order * (right[c] + m[c][0] / h));
             }
@@ -235,7 +235,7 @@ impl Motion<'_> {
 
     /// M / h^2 + D / h + K.
     fn step_matrix(&self, h: f64) -> System {
-        let System { layout, matrix, positions, .. } = self.stiffness;
+        let System { ordering, matrix, positions, .. } = self.stiffness;
         let mass = 1.0 / (h * h) + self.damping.mass / h;
         let stiffness = 1.0 + self.damping.stiffness / h;
         let mut sum = matrix.clone();
@@ -246,7 +246,7 @@ impl Motion<'_> {
             add_to_diagonal(block, mass * m[0][0]);
         }
         System {
-            layout: layout.clone(),
+            ordering: ordering.clone(),
             matrix: sum,
             partly_constrained: Vec::new(),
             positions: positions.clone(),

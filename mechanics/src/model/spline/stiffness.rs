@@ -46,7 +46,7 @@ const AT_ONCE: usize = 4;
 /// Matrices over control points.
 pub struct Assembly<'a> {
     pub lattice: &'a Lattice,
-    pub numbering: &'a DofMap,
+    pub dof_map: &'a DofMap,
     pub tissue: &'a Tissue<'a>,
     /// Of each span, by material.
     points: Rows<Located>,
@@ -66,7 +66,7 @@ struct Gradients([[[f64; MOST_MEMBERS]; 3]; AT_ONCE]);
 impl<'a> Assembly<'a> {
     pub fn new(
         lattice: &'a Lattice,
-        numbering: &'a DofMap,
+        dof_map: &'a DofMap,
         tissue: &'a Tissue<'a>,
         points: &[TissuePoint],
     ) -> Self {
@@ -80,7 +80,7 @@ impl<'a> Assembly<'a> {
         points.sort_by_key(|point| (point.span, point.material));
         let mut lengths = vec![0; lattice.connectivity.len()];
         points.iter().for_each(|point| lengths[point.span as usize] += 1);
-        Assembly { lattice, numbering, tissue, points: Rows::of_lengths(&lengths, points) }
+        Assembly { lattice, dof_map, tissue, points: Rows::of_lengths(&lengths, points) }
     }
 
     fn points(&self, span: usize) -> &[Located] {
@@ -120,9 +120,9 @@ impl<'a> Assembly<'a> {
 
     /// Links of that many mN/mm between neighbouring control points.
     pub fn links(&self, stiffness: f64) -> HalfMatrix<f64, 3> {
-        let mut matrix = HalfMatrix::zeros(self.numbering.pattern.clone());
+        let mut matrix = HalfMatrix::zeros(self.dof_map.pattern.clone());
         for link in self.linked() {
-            let [a, b] = link.map(|control| self.numbering.row(control));
+            let [a, b] = link.map(|control| self.dof_map.row(control));
             add_to_diagonal(matrix.block_mut(a, a), stiffness);
             add_to_diagonal(matrix.block_mut(b, b), stiffness);
             add_to_diagonal(matrix.block_mut(a.max(b), a.min(b)), -stiffness);
@@ -135,15 +135,15 @@ impl<'a> Assembly<'a> {
     pub fn linked(&self) -> Vec<[u32; 2]> {
         let mut links = self.lattice.links();
         links.retain(|link| {
-            let [a, b] = link.map(|control| self.numbering.row(control));
-            self.numbering.pattern.couples(a.max(b), a.min(b))
+            let [a, b] = link.map(|control| self.dof_map.row(control));
+            self.dof_map.pattern.couples(a.max(b), a.min(b))
         });
         links
     }
 
     /// The mass of the tissue in equal shares, in mg.
     pub fn equal_masses(&self) -> HalfMatrix<f64, 3> {
-        let mut matrix = HalfMatrix::zeros(self.numbering.pattern.clone());
+        let mut matrix = HalfMatrix::zeros(self.dof_map.pattern.clone());
         let density = |point: &Located| self.tissue.materials[point.material as usize].density();
         let mass: f64 =
             self.points.entries().iter().map(|point| density(point) * point.volume).sum();
@@ -158,11 +158,11 @@ impl<'a> Assembly<'a> {
         progress: &dyn Progress,
         span_matrix: impl Fn(usize) -> Vec<Block> + Sync,
     ) -> Option<HalfMatrix<f64, 3>> {
-        let mut matrix = HalfMatrix::zeros(self.numbering.pattern.clone());
+        let mut matrix = HalfMatrix::zeros(self.dof_map.pattern.clone());
         let spans: Vec<usize> = (0..self.lattice.connectivity.len()).collect();
         for spans in spans.chunks(SPANS_AT_ONCE) {
             let matrix_of = |span| Ok::<_, InvertedCell>(span_matrix(span));
-            let added = self.numbering.add_cells(&mut matrix, spans, progress, matrix_of);
+            let added = self.dof_map.add_cells(&mut matrix, spans, progress, matrix_of);
             if !added.unwrap_or(false) {
                 return None;
             }

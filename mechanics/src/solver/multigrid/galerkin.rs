@@ -14,7 +14,7 @@ use rayon::prelude::*;
 use super::prolongator::{Weight, Weights};
 use crate::solver::element_connectivity::{ElementConnectivity, renumbered};
 use crate::solver::half_matrix::{HalfMatrix, Pattern};
-use crate::solver::layout::Layout;
+use crate::solver::row_ordering::RowOrdering;
 use crate::solver::vectorised::vectorised;
 
 /// Aggregates that most aggregates meet below themselves.
@@ -64,14 +64,14 @@ impl Accumulator {
 /// The coarse matrix over aggregates in a layout of its own.
 pub(super) struct Coarse {
     pub matrix: HalfMatrix<f64, 6>,
-    pub layout: Layout,
+    pub ordering: RowOrdering,
 }
 
 /// A level to be made coarser. Positions are those of its rows; `turned` writes a block, given its row and
 /// column, along the axes of the coordinates, with zeros where it is held.
 pub(super) struct Fine<'a, const B: usize, F> {
     pub matrix: &'a HalfMatrix<f64, B>,
-    pub layout: &'a Layout,
+    pub ordering: &'a RowOrdering,
     pub positions: &'a [Vector3<f64>],
     pub origin: Vector3<f64>,
     pub turned: F,
@@ -82,9 +82,9 @@ pub(super) fn galerkin<const B: usize, F>(fine: &Fine<B, F>, weights: &Weights) 
 where
     F: Fn(usize, usize, &[[f64; B]; B]) -> [[f64; B]; B] + Sync,
 {
-    let layout = fine.layout;
-    let mut ranges = layout.parts.clone();
-    ranges.push(layout.separator());
+    let ordering = fine.ordering;
+    let mut ranges = ordering.parts.clone();
+    ranges.push(ordering.separator());
     let sums: Vec<Accumulator> =
         ranges.into_par_iter().map(|rows| accumulate(fine, rows, weights)).collect();
     let mut pairs = ElementConnectivity::default();
@@ -93,8 +93,8 @@ where
     }
     let aggregates = weights.aggregates;
     let around = pairs.inverted(aggregates);
-    let layout = Layout::new(&pairs, &around, &vec![false; aggregates], 6, 0);
-    let renumbered = renumbered(&pairs, &layout.element_order, &layout.place);
+    let ordering = RowOrdering::new(&pairs, &around, &vec![false; aggregates], 6, 0);
+    let renumbered = renumbered(&pairs, &ordering.element_order, &ordering.place);
     let around = renumbered.inverted(aggregates);
     let pattern = Arc::new(Pattern::new(&renumbered, &around, aggregates));
     let mut coarse = HalfMatrix::zeros(pattern);
@@ -104,7 +104,7 @@ where
         let block = Matrix6::from_fn(|i, j| block[i][j]);
         let moved = shift[aggregate].transpose() * block * shift[partner as usize];
         let (row, column) =
-            (layout.place[aggregate] as usize, layout.place[partner as usize] as usize);
+            (ordering.place[aggregate] as usize, ordering.place[partner as usize] as usize);
         let target = coarse.block_mut(row.max(column), row.min(column));
         for i in 0..6 {
             for j in 0..6 {
@@ -117,7 +117,7 @@ where
             }
         }
     }
-    Coarse { matrix: coarse, layout }
+    Coarse { matrix: coarse, ordering }
 }
 
 /// S_I for the arm from the centre to the origin: the same movement taken about the origin.

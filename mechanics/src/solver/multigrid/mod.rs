@@ -121,7 +121,7 @@ impl Multigrid {
             special.mask(row, column, block);
         };
         let (finest, below) = rayon::join(
-            || Smoother::new(&system.matrix, system.layout.clone(), mask),
+            || Smoother::new(&system.matrix, system.ordering.clone(), mask),
             || CoarseLevels::new(system, &special, progress),
         );
         let partly_constrained = system.partly_constrained.clone();
@@ -185,34 +185,34 @@ impl CoarseLevels {
         special: &SpecialRows,
         progress: &dyn Progress,
     ) -> Result<Self, SolverError> {
-        let free = &system.positions[..system.layout.free];
+        let free = &system.positions[..system.ordering.free];
         let origin = mean(free);
         check_cancelled(progress)?;
         let strength =
-            StrengthOfConnection::new(&system.matrix, &system.layout, |row| special.axes(row));
+            StrengthOfConnection::new(&system.matrix, &system.ordering, |row| special.axes(row));
         check_cancelled(progress)?;
         let weights = Weights::new(&strength, free, FIRST_AGGREGATE);
         check_cancelled(progress)?;
         let fine = Fine {
             matrix: &system.matrix,
-            layout: &system.layout,
+            ordering: &system.ordering,
             positions: free,
             origin,
             turned: |row, column, block: &_| special.to_coordinates(row, column, block),
         };
         let mut current = galerkin(&fine, &weights);
-        let mut centres = permuted(&weights.centres, &current.layout);
-        let place = &current.layout.place;
-        let first = weights.into_prolongator(place, free, system.layout.clone(), &origin);
+        let mut centres = permuted(&weights.centres, &current.ordering);
+        let place = &current.ordering.place;
+        let first = weights.into_prolongator(place, free, system.ordering.clone(), &origin);
         let mut levels = Vec::new();
         while current.matrix.rows() > DENSE_ROWS {
             check_cancelled(progress)?;
             let Some((weights, next)) = coarsen(&current, &centres, &origin) else { break };
-            let next_centres = permuted(&weights.centres, &next.layout);
-            let layout = Arc::new(current.layout);
-            let place = &next.layout.place;
-            let below = weights.into_prolongator(place, &centres, layout.clone(), &origin);
-            let smoother = Smoother::new(&current.matrix, layout, |_, _, _| ());
+            let next_centres = permuted(&weights.centres, &next.ordering);
+            let ordering = Arc::new(current.ordering);
+            let place = &next.ordering.place;
+            let below = weights.into_prolongator(place, &centres, ordering.clone(), &origin);
+            let smoother = Smoother::new(&current.matrix, ordering, |_, _, _| ());
             levels.push(CoarseLevel { smoother, below });
             centres = next_centres;
             current = next;
@@ -255,14 +255,14 @@ fn coarsen(
     centres: &[Vector3<f64>],
     origin: &Vector3<f64>,
 ) -> Option<(Weights, Coarse)> {
-    let strength = StrengthOfConnection::new(&current.matrix, &current.layout, |_| None);
+    let strength = StrengthOfConnection::new(&current.matrix, &current.ordering, |_| None);
     let weights = Weights::new(&strength, centres, LATER_AGGREGATE);
     if weights.aggregates >= current.matrix.rows() {
         return None;
     }
     let fine = Fine {
         matrix: &current.matrix,
-        layout: &current.layout,
+        ordering: &current.ordering,
         positions: centres,
         origin: *origin,
         turned: |_, _, block: &[[f64; 6]; 6]| *block,
@@ -275,9 +275,12 @@ fn mean(positions: &[Vector3<f64>]) -> Vector3<f64> {
     positions.iter().sum::<Vector3<f64>>() / positions.len().max(1) as f64
 }
 
-fn permuted(centres: &[Vector3<f64>], layout: &super::layout::Layout) -> Vec<Vector3<f64>> {
+fn permuted(
+    centres: &[Vector3<f64>],
+    ordering: &super::row_ordering::RowOrdering,
+) -> Vec<Vector3<f64>> {
     let mut placed = vec![Vector3::zeros(); centres.len()];
-    for (centre, &place) in centres.iter().zip(&layout.place) {
+    for (centre, &place) in centres.iter().zip(&ordering.place) {
         placed[place as usize] = *centre;
     }
     placed

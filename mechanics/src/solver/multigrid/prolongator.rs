@@ -14,7 +14,7 @@ use super::smoother::Vector;
 use super::strength_of_connection::StrengthOfConnection;
 use crate::rows::Rows;
 use crate::solver::lanes::Lanes;
-use crate::solver::layout::Layout;
+use crate::solver::row_ordering::RowOrdering;
 use crate::solver::vectorised::vectorised;
 
 /// Damping of the Jacobi step that smooths the weights.
@@ -36,7 +36,7 @@ pub(super) struct Weight {
 pub(super) struct Prolongator {
     /// For each row its aggregates.
     weights: Rows<Weight>,
-    layout: Arc<Layout>,
+    ordering: Arc<RowOrdering>,
     /// Positions and centres are told from a point in their midst, so that f32 loses little.
     positions: Vec<[f32; 3]>,
     centres: Vec<[f32; 3]>,
@@ -74,12 +74,12 @@ impl Weights {
         self.of_row.row(row)
     }
 
-    /// `place` renumbers the aggregates. Positions are those of the rows of `layout`.
+    /// `place` renumbers the aggregates. Positions are those of the rows of `row_ordering`.
     pub fn into_prolongator(
         mut self,
         place: &[u32],
         positions: &[Vector3<f64>],
-        layout: Arc<Layout>,
+        ordering: Arc<RowOrdering>,
         origin: &Vector3<f64>,
     ) -> Prolongator {
         for weight in self.of_row.entries_mut() {
@@ -91,7 +91,7 @@ impl Weights {
             centres[place as usize] = single(centre);
         }
         let positions = positions.iter().map(single).collect();
-        Prolongator { weights: self.of_row, layout, positions, centres }
+        Prolongator { weights: self.of_row, ordering, positions, centres }
     }
 }
 
@@ -135,7 +135,7 @@ impl Prolongator {
 
     /// What `restrict` needs: a sum of its own for each part and for the separator.
     pub fn partial_sums<const N: usize>(&self) -> Vec<Vec<Lanes<f32, 6, N>>> {
-        vec![vec![[[0.0; N]; 6]; self.centres.len()]; self.layout.parts.len() + 1]
+        vec![vec![[[0.0; N]; 6]; self.centres.len()]; self.ordering.parts.len() + 1]
     }
 
     /// P^T residual. Moments are summed about the origin and then taken about each centre.
@@ -145,8 +145,8 @@ impl Prolongator {
         partial: &mut [Vec<Lanes<f32, 6, N>>],
         coarse: &mut Vector<6, N>,
     ) {
-        let separator = self.layout.separator();
-        let ranges = self.layout.parts.par_iter().cloned().chain([separator].into_par_iter());
+        let separator = self.ordering.separator();
+        let ranges = self.ordering.parts.par_iter().cloned().chain([separator].into_par_iter());
         partial.par_iter_mut().zip(ranges).for_each(|(sums, rows)| {
             vectorised(
                 #[inline(always)]

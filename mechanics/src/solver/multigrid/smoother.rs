@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use super::inverse::inverse_block;
 use crate::solver::half_matrix::{HalfMatrix, Pattern};
 use crate::solver::lanes::{Lanes, add_product, add_transposed, negated};
-use crate::solver::layout::Layout;
+use crate::solver::row_ordering::RowOrdering;
 use crate::solver::vectorised::vectorised;
 
 /// Rows that one thread prepares at a time.
@@ -18,7 +18,7 @@ const CHUNK: usize = 4096;
 /// The free rows of a matrix, ready to be swept.
 pub(super) struct Smoother<const B: usize> {
     pattern: Arc<Pattern>,
-    pub layout: Arc<Layout>,
+    pub ordering: Arc<RowOrdering>,
     lower: Vec<[[f32; B]; B]>,
     inverse_diagonal: Vec<[[f32; B]; B]>,
 }
@@ -30,7 +30,7 @@ impl<const B: usize> Smoother<B> {
     /// `mask` clears what is held from a block, given its row and column.
     pub fn new(
         matrix: &HalfMatrix<f64, B>,
-        layout: Arc<Layout>,
+        ordering: Arc<RowOrdering>,
         mask: impl Fn(usize, usize, &mut [[f64; B]; B]) + Sync,
     ) -> Self {
         let pattern = matrix.pattern.clone();
@@ -39,12 +39,12 @@ impl<const B: usize> Smoother<B> {
             mask(row, column, &mut block);
             block
         };
-        let end = if layout.free == 0 { 0 } else { pattern.range(layout.free - 1).end };
+        let end = if ordering.free == 0 { 0 } else { pattern.range(ordering.free - 1).end };
         let mut lower = vec![[[0.0; B]; B]; end];
         let mut rest = lower.as_mut_slice();
         let mut chunks = Vec::new();
-        for first in (0..layout.free).step_by(CHUNK) {
-            let rows = first..(first + CHUNK).min(layout.free);
+        for first in (0..ordering.free).step_by(CHUNK) {
+            let rows = first..(first + CHUNK).min(ordering.free);
             let count = pattern.range(rows.end - 1).end - pattern.range(first).start;
             let (own, others) = rest.split_at_mut(count);
             rest = others;
@@ -62,7 +62,7 @@ impl<const B: usize> Smoother<B> {
                 rows.map(|row| inverse_block(&masked(row, row, &matrix.diagonal[row])))
             })
             .collect();
-        Smoother { pattern, layout, lower, inverse_diagonal }
+        Smoother { pattern, ordering, lower, inverse_diagonal }
     }
 
     pub fn rows(&self) -> usize {
@@ -80,8 +80,8 @@ impl<const B: usize> Smoother<B> {
         x: &mut Vector<B, N>,
         rest: &mut Vector<B, N>,
     ) {
-        let shares = self.layout.split(x).into_par_iter().zip(self.layout.split(rest));
-        shares.zip(&self.layout.parts).for_each(|((x, rest), part)| {
+        let shares = self.ordering.split(x).into_par_iter().zip(self.ordering.split(rest));
+        shares.zip(&self.ordering.parts).for_each(|((x, rest), part)| {
             vectorised(
                 #[inline(always)]
                 || self.forward_rows(part.clone(), right, Share { first: part.start, x, rest }),
@@ -89,7 +89,7 @@ impl<const B: usize> Smoother<B> {
         });
         vectorised(
             #[inline(always)]
-            || self.forward_rows(self.layout.separator(), right, Share { first: 0, x, rest }),
+            || self.forward_rows(self.ordering.separator(), right, Share { first: 0, x, rest }),
         );
     }
 
@@ -98,10 +98,15 @@ impl<const B: usize> Smoother<B> {
     pub fn backward<const N: usize>(&self, x: &mut Vector<B, N>, remaining: &mut Vector<B, N>) {
         vectorised(
             #[inline(always)]
-            || self.backward_rows(self.layout.separator(), Share { first: 0, x, rest: remaining }),
+            || {
+                self.backward_rows(
+                    self.ordering.separator(),
+                    Share { first: 0, x, rest: remaining },
+                )
+            },
         );
-        let shares = self.layout.split(x).into_par_iter().zip(self.layout.split(remaining));
-        shares.zip(&self.layout.parts).for_each(|((x, remaining), part)| {
+        let shares = self.ordering.split(x).into_par_iter().zip(self.ordering.split(remaining));
+        shares.zip(&self.ordering.parts).for_each(|((x, remaining), part)| {
             vectorised(
                 #[inline(always)]
                 || {

@@ -4,7 +4,7 @@ use nalgebra::Matrix3;
 
 use crate::rows::{Rows, Sorting};
 use crate::solver::half_matrix::HalfMatrix;
-use crate::solver::layout::Layout;
+use crate::solver::row_ordering::RowOrdering;
 
 /// Minus the trace of the displacement part of each block, clipped at 0, both ways round.
 pub(super) struct StrengthOfConnection {
@@ -18,10 +18,10 @@ impl StrengthOfConnection {
     /// Between the free rows of a matrix. `axes` are those of a row, where it has axes of its own.
     pub fn new<'a, const B: usize>(
         matrix: &HalfMatrix<f64, B>,
-        layout: &Layout,
+        ordering: &RowOrdering,
         axes: impl Fn(usize) -> Option<&'a Matrix3<f64>>,
     ) -> Self {
-        let free = layout.free;
+        let free = ordering.free;
         let mut lengths = vec![0_u32; free];
         for row in 0..free {
             lengths[row] += matrix.pattern.columns(row).len() as u32;

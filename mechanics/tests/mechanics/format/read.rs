@@ -149,7 +149,7 @@ fn an_unstructured_grid_of_flat_cells_is_a_surface() {
 
 #[test]
 fn arrays_that_number_things_are_ignored_and_named() {
-    let numbering: Vec<String> = (0..70).map(|n| n.to_string()).collect();
+    let dof_map: Vec<String> = (0..70).map(|n| n.to_string()).collect();
     let points: Vec<[f64; 3]> =
         (0..70).map(|n| if n < 4 { TETRAHEDRON[n] } else { [f64::from(n as u32); 3] }).collect();
     let array = |kind: &str, name: &str, text: &str| {
@@ -158,7 +158,7 @@ fn arrays_that_number_things_are_ignored_and_named() {
     let ones = vec!["1"; 70].join(" ");
     let more = [
         "<PointData>".to_string(),
-        array("Int32", "element_id", &numbering.join(" ")),
+        array("Int32", "element_id", &dof_map.join(" ")),
         array("Int32", "node_id", &ones),
         array("Float64", "temperature", &ones),
         array("UInt8", "set_all", &ones),

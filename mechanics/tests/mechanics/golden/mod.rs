@@ -46,7 +46,7 @@ enum Numbers {
 
 impl Line {
     fn of(found: &Found) -> Line {
-        let numbers = match found.holds {
+        let numbers = match found.constraints {
             Holds::Bits => Numbers::Bits(hash(&found.values)),
             Holds::Near => Numbers::Near(sums(&found.values)),
         };
@@ -180,15 +180,15 @@ fn the_numbers_of_every_method_are_those_of_their_revision() {
 #[test]
 fn the_last_bit_of_one_number_is_another_hash_and_one_billionth_other_sums() {
     let values = vec![0.25, -1.5, 3.0];
-    let found = |values: &[f64], holds| {
+    let found = |values: &[f64], constraints| {
         let values = values.to_vec();
-        table_of(7, &[Found { name: "a".to_owned(), solver: "none", holds, values }])
+        table_of(7, &[Found { name: "a".to_owned(), solver: "none", constraints, values }])
     };
-    for (holds, small, large) in [(Holds::Bits, 0.0, 4e-16), (Holds::Near, 1e-10, 1e-8)] {
-        let kept = found(&values, holds);
+    for (constraints, small, large) in [(Holds::Bits, 0.0, 4e-16), (Holds::Near, 1e-10, 1e-8)] {
+        let kept = found(&values, constraints);
         assert_eq!(Table::parse(&kept.text()), kept);
         let changed = |by: f64| {
-            let now = found(&[0.25, -1.5, 3.0 + by], holds);
+            let now = found(&[0.25, -1.5, 3.0 + by], constraints);
             kept.complaint(&now)
         };
         assert_eq!(changed(small), None);

@@ -41,7 +41,7 @@ pub enum Holds {
 pub struct Found {
     pub name: String,
     pub solver: &'static str,
-    pub holds: Holds,
+    pub constraints: Holds,
     pub values: Vec<f64>,
 }
 
@@ -148,23 +148,23 @@ pub fn all() -> Vec<Found> {
     found
 }
 
-fn predicted(name: &str, holds: Holds, case: &Case, settings: &Settings) -> Found {
+fn predicted(name: &str, constraints: Holds, case: &Case, settings: &Settings) -> Found {
     let scene = Scene::new(case, &plan(&settings.method), settings).unwrap();
     let prediction = predict(&scene, &Unobserved).unwrap();
     let mut values: Vec<f64> = prediction.displacement.iter().flatten().copied().collect();
     // Forces in mN would hide lengths in mm in sums of both.
-    if matches!(holds, Holds::Bits) {
+    if matches!(constraints, Holds::Bits) {
         values.extend(prediction.deformation.iter().map(|cell| cell.det_f));
         values.extend(prediction.reactions.values().flatten());
     }
-    Found { name: name.to_owned(), solver: prediction.solver.method, holds, values }
+    Found { name: name.to_owned(), solver: prediction.solver.method, constraints, values }
 }
 
 fn elements() -> Vec<Found> {
     use ElementChoice::{MeanDilatation, Plain, Quadratic, Stabilised};
-    let of = |name: &str, holds, shape, cells, element| {
+    let of = |name: &str, constraints, shape, cells, element| {
         let settings = with_memory_for(cells, with_element(element));
-        predicted(&format!("fem_linear {name}"), holds, &tissue(shape, cells), &settings)
+        predicted(&format!("fem_linear {name}"), constraints, &tissue(shape, cells), &settings)
     };
     let (tet, hex, wedge) = (CellShape::Tet4, CellShape::Hex8, CellShape::Wedge6);
     vec![
@@ -201,10 +201,10 @@ fn tissues() -> Vec<Found> {
 
 fn mass_tensors() -> Vec<Found> {
     let case = tissue(CellShape::Tet4, SMALL);
-    let of = |name: &str, holds, iterations| {
+    let of = |name: &str, constraints, iterations| {
         let method = Method::MassTensor(MassTensorSettings { iterations });
         let settings = Settings { relative_residual: 1e-6, ..with_method(method) };
-        predicted(&format!("mtm {name}"), holds, &case, &settings)
+        predicted(&format!("mtm {name}"), constraints, &case, &settings)
     };
     let own = |iteration| {
         Iterations::Stationary(Stationary {
@@ -231,7 +231,7 @@ fn diverged(case: &Case, iterations: Iterations) -> Found {
         Err(ModelError::Solver(SolverError::Diverged { history, .. })) => history,
         other => panic!("{other:?}"),
     };
-    Found { name: "mtm jacobi".to_owned(), solver: "diverged", holds: Holds::Bits, values }
+    Found { name: "mtm jacobi".to_owned(), solver: "diverged", constraints: Holds::Bits, values }
 }
 
 fn other_models() -> Vec<Found> {
@@ -262,14 +262,14 @@ fn other_models() -> Vec<Found> {
 }
 
 /// The columns of a response, and a plan applied to them.
-fn columns(holds: Holds, cells: [usize; 3]) -> Vec<Found> {
+fn columns(constraints: Holds, cells: [usize; 3]) -> Vec<Found> {
     let settings = with_memory_for(cells, with_element(ElementChoice::MeanDilatation));
     let case = tissue(CellShape::Hex8, cells);
     let scene = Scene::new(&case, &Plan::default(), &settings).unwrap();
     let columns = build(&scene, &[], &Unobserved).unwrap();
     let solver = columns.solver.method;
     let how = if cells == ITERATED { "iterated" } else { "factorised" };
-    let applied = match holds {
+    let applied = match constraints {
         Holds::Bits => columns.to_response().apply(&[moved()]),
         // Single precision would make one last bit of a column 1e-7 of it.
         Holds::Near => columns.apply(&[moved()]),
@@ -277,7 +277,7 @@ fn columns(holds: Holds, cells: [usize; 3]) -> Vec<Found> {
     let found = |what: &str, values| Found {
         name: format!("response {what} {how}"),
         solver,
-        holds,
+        constraints,
         values,
     };
     vec![
@@ -305,7 +305,7 @@ fn optimised() -> Found {
     let mut values: Vec<f64> = optimum.parameters.iter().flatten().copied().collect();
     values.extend(optimum.certainty.covariance.iter());
     values.push(optimum.weighted_square_sum);
-    Found { name: "optimise".to_owned(), solver: "none", holds: Holds::Near, values }
+    Found { name: "optimise".to_owned(), solver: "none", constraints: Holds::Near, values }
 }
 
 fn of_distances(found: &DistanceStatistics) -> Vec<f64> {
@@ -317,7 +317,7 @@ fn of_distances(found: &DistanceStatistics) -> Vec<f64> {
     [numbers(unsigned).as_slice(), &numbers(signed), &shares].concat()
 }
 
-fn compared(name: &str, holds: Holds, alignment: Alignment) -> Found {
+fn compared(name: &str, constraints: Holds, alignment: Alignment) -> Found {
     let prediction = sphere(30.0, Vector::zeros(), 3);
     let squeezed = |point: &Vector| point.component_mul(&Vector::new(1.05, 0.9, 1.0)) + Vector::x();
     let actual = map(&prediction, squeezed);
@@ -330,7 +330,7 @@ fn compared(name: &str, holds: Holds, alignment: Alignment) -> Found {
     }
     values.extend(comparison.alignment.transform.rotation.iter());
     values.extend(comparison.alignment.transform.translation.iter());
-    Found { name: format!("comparison {name}"), solver: "none", holds, values }
+    Found { name: format!("comparison {name}"), solver: "none", constraints, values }
 }
 
 fn closest_points() -> Found {
@@ -351,7 +351,7 @@ fn ranked() -> Found {
         let test = signed_rank(pairs, &vec![0.0; pairs.len()], equality).unwrap();
         values.extend([test.two_sided_p, test.effect]);
     }
-    Found { name: "study signed rank".to_owned(), solver: "none", holds: Holds::Near, values }
+    Found { name: "study signed rank".to_owned(), solver: "none", constraints: Holds::Near, values }
 }
 
 /// What a displacement does to cells.
@@ -365,5 +365,5 @@ fn strain() -> Found {
     let cells = prediction.deformation.iter();
     let values = cells.flat_map(|cell| [&cell.principal_strain[..], &[cell.rotation]].concat());
     let (name, solver) = ("strain".to_owned(), prediction.solver.method);
-    Found { name, solver, holds: Holds::Near, values: values.collect() }
+    Found { name, solver, constraints: Holds::Near, values: values.collect() }
 }

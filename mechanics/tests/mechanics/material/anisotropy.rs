@@ -8,7 +8,7 @@ use mechanics::model::fem::cell_stiffness::{Dilatation, cell_stiffness};
 use mechanics::prediction::{ElementChoice, FibreDirection, Load, Plan, Settings};
 use nalgebra::{Matrix3, Matrix6, Rotation3};
 
-use crate::scenes::{case_of, hold, material, set, solve};
+use crate::scenes::{case_of, constraint, material, set, solve};
 
 /// Every element with the cells it is made of.
 pub const ELEMENTS: [(CellShape, ElementChoice); 7] = [
@@ -205,9 +205,9 @@ fn pulled(stated: Stated, direction: Vector, (shape, element): (CellShape, Eleme
     };
     // Three nodes hold the six rigid movements and nothing else.
     let prescribed = vec![
-        hold("o", [Some(0.0); 3]),
-        hold("x", [None, Some(0.0), Some(0.0)]),
-        hold("y", [None, None, Some(0.0)]),
+        constraint("o", [Some(0.0); 3]),
+        constraint("x", [None, Some(0.0), Some(0.0)]),
+        constraint("y", [None, None, Some(0.0)]),
     ];
     let plan = Plan {
         prescribed,

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use mechanics::boundary::Hold;
+use mechanics::boundary::Constraint;
 use mechanics::element::tetrahedron10;
 use mechanics::material::LinearElastic;
 use mechanics::mesh::sample::block;
@@ -67,7 +67,7 @@ fn l2_error(n: usize, shape: CellShape, nu: f64, dilatation: fn(CellShape) -> Di
 type Solve<'a> = &'a dyn Fn(&Problem) -> Vec<Vector>;
 
 fn load_case(problem: &Problem) -> LoadCase {
-    let held = problem.holds.iter().map(|hold| *hold.values()).collect();
+    let held = problem.constraints.iter().map(|constraint| *constraint.values()).collect();
     LoadCase { held, forces: problem.forces.to_vec(), ..LoadCase::default() }
 }
 
@@ -87,8 +87,8 @@ fn l2_error_of(
         }
     });
     let boundary = mesh.nodes.iter().enumerate().filter(|(_, x)| on_boundary(x));
-    let holds: Vec<Hold> =
-        boundary.map(|(node, x)| Hold::at(node as u32, manufactured(x))).collect();
+    let constraints: Vec<Constraint> =
+        boundary.map(|(node, x)| Constraint::at(node as u32, manufactured(x))).collect();
     let material_of_cell = vec![0; mesh.cells.len()];
     let problem = Problem {
         tissue: Tissue {
@@ -100,7 +100,7 @@ fn l2_error_of(
             membrane: None,
             dilatation,
         },
-        holds: &holds,
+        constraints: &constraints,
         forces: &forces,
         tolerance: Tolerance { relative_residual: 1e-10, memory_mb: 4000.0 },
     };
@@ -188,7 +188,8 @@ fn quadratic_error(n: usize, nu: f64) -> f64 {
         }
     }
     let held = positions.iter().enumerate().filter(|(_, x)| on_boundary(x));
-    let holds: Vec<Hold> = held.map(|(node, x)| Hold::at(node as u32, manufactured(x))).collect();
+    let constraints: Vec<Constraint> =
+        held.map(|(node, x)| Constraint::at(node as u32, manufactured(x))).collect();
     let material_of_cell = vec![0; mesh.cells.len()];
     let problem = Problem {
         tissue: Tissue {
@@ -200,7 +201,7 @@ fn quadratic_error(n: usize, nu: f64) -> f64 {
             membrane: None,
             dilatation: |_| Dilatation::Pointwise,
         },
-        holds: &holds,
+        constraints: &constraints,
         forces: &forces,
         tolerance: Tolerance { relative_residual: 1e-10, memory_mb: 4000.0 },
     };

@@ -1,6 +1,6 @@
 //! Finite strain: exact states, the linear limit, the hard block, and what is refused.
 
-use mechanics::boundary::Hold;
+use mechanics::boundary::Constraint;
 use mechanics::material::hyperelastic::{Law, NeoHookean, SaintVenantKirchhoff};
 use mechanics::mesh::sample::block;
 use mechanics::mesh::{CellShape, Vector, VolumeMesh};
@@ -11,7 +11,7 @@ use mechanics::progress::{Progress, Unobserved};
 use mechanics::solver::{SolverError, Tolerance};
 use nalgebra::{Matrix3, Rotation3};
 
-use crate::scenes::{StopsAfter, case_of, hold, material, on_the_boundary, set, solve};
+use crate::scenes::{StopsAfter, case_of, constraint, material, on_the_boundary, set, solve};
 
 /// E 15 kPa.
 fn lame(poisson_ratio: f64) -> (f64, f64) {
@@ -28,27 +28,27 @@ pub(super) fn neo_hookean(poisson_ratio: f64) -> Law {
 fn rest(
     mesh: &VolumeMesh,
     law: Law,
-    holds: &[Hold],
+    constraints: &[Constraint],
     progress: &dyn Progress,
 ) -> Result<Equilibrium, ModelError> {
-    rest_of(Elements::PLAIN, mesh, law, holds, progress)
+    rest_of(Elements::PLAIN, mesh, law, constraints, progress)
 }
 
 pub(super) fn rest_of(
     elements: Elements,
     mesh: &VolumeMesh,
     law: Law,
-    holds: &[Hold],
+    constraints: &[Constraint],
     progress: &dyn Progress,
 ) -> Result<Equilibrium, ModelError> {
-    rest_by((Advance::default(), elements), mesh, law, holds, progress)
+    rest_by((Advance::default(), elements), mesh, law, constraints, progress)
 }
 
 pub(super) fn rest_by(
     (advance, elements): (Advance, Elements),
     mesh: &VolumeMesh,
     law: Law,
-    holds: &[Hold],
+    constraints: &[Constraint],
     progress: &dyn Progress,
 ) -> Result<Equilibrium, ModelError> {
     let one = vec![0; mesh.cells.len()];
@@ -62,23 +62,23 @@ pub(super) fn rest_by(
         fibres: FibreField::default(),
         membrane: None,
         inner: std::sync::Arc::default(),
-        holds,
+        constraints,
         tolerance: Tolerance { relative_residual: 1e-7, memory_mb: 1000.0 },
         with_states: false,
         advance,
     };
-    let held = holds.iter().map(|hold| *hold.values()).collect();
+    let held = constraints.iter().map(|constraint| *constraint.values()).collect();
     let forces = vec![Vector::zeros(); mesh.nodes.len()];
     problem.solve(&LoadCase { held, forces, ..LoadCase::default() }, progress)
 }
 
 /// Holds the nodes that something is said of.
-pub(super) fn holds(
+pub(super) fn constraints(
     mesh: &VolumeMesh,
     displacement: impl Fn(&Vector) -> Option<Vector>,
-) -> Vec<Hold> {
+) -> Vec<Constraint> {
     let nodes = (0..).zip(&mesh.nodes);
-    nodes.filter_map(|(node, x)| displacement(x).map(|u| Hold::at(node, u))).collect()
+    nodes.filter_map(|(node, x)| displacement(x).map(|u| Constraint::at(node, u))).collect()
 }
 
 fn least_det_f(mesh: &VolumeMesh, displacement: &[Vector]) -> f64 {
@@ -124,7 +124,7 @@ fn tissue_that_is_turned_as_a_whole_stays_as_it_is() {
     let turned = |x: &Vector| turn * x - x + Vector::new(0.0, 12.0, -5.0);
     for (shape, elements, _) in EVERY {
         let mesh = block(Vector::new(30.0, 20.0, 10.0), [6, 4, 2], shape);
-        let ends = holds(&mesh, |x| (x.x < 1e-9 || x.x > 29.9).then(|| turned(x)));
+        let ends = constraints(&mesh, |x| (x.x < 1e-9 || x.x > 29.9).then(|| turned(x)));
         let moved = rest_of(elements, &mesh, neo_hookean(0.46), &ends, &Unobserved).unwrap();
         let error = crate::scenes::largest_error(&mesh, &moved.displacement, turned);
         assert!(error < 1e-5, "{shape:?} {elements:?}: {error}");
@@ -144,7 +144,7 @@ fn lifted(by_mm: f64, shape: CellShape, settings: &Settings) -> Prediction {
     mesh.node_sets.insert("jaw".to_owned(), jaw);
     mesh.node_sets.insert("rest".to_owned(), rest);
     let case = Case { fixed: vec![set("rest")], ..case_of(mesh, material(15.0, 0.4)) };
-    let up = hold("jaw", [Some(0.3 * by_mm), Some(0.0), Some(by_mm)]);
+    let up = constraint("jaw", [Some(0.3 * by_mm), Some(0.0), Some(by_mm)]);
     solve(&case, &Plan { prescribed: vec![up], ..Plan::default() }, settings)
 }
 
@@ -186,10 +186,10 @@ fn pull_a_bar(shape: CellShape, element: ElementChoice) {
     corner("low", 2, &mut mesh);
     let case = case_of(mesh, material(15.0, 0.46));
     let prescribed = vec![
-        hold("left", [Some(0.0), None, None]),
-        hold("front", [None, Some(0.0), None]),
-        hold("low", [None, None, Some(0.0)]),
-        hold("x_max", [Some(5.0), None, None]),
+        constraint("left", [Some(0.0), None, None]),
+        constraint("front", [None, Some(0.0), None]),
+        constraint("low", [None, None, Some(0.0)]),
+        constraint("x_max", [Some(5.0), None, None]),
     ];
     let pulled = solve(&case, &Plan { prescribed, ..Plan::default() }, &nonlinear_of(element));
     // docs/verification.md#printed-values: 5.359007 kPa and a lateral stretch of .827750 at 1.5, on 16 mm^2.
@@ -204,11 +204,15 @@ fn pull_a_bar(shape: CellShape, element: ElementChoice) {
 /// around it, of 25 mm for block B and of none for block A of docs/verification.md#hard-block.
 pub(super) const RING: f64 = 25.0;
 
-pub(super) fn hard_block(cells: [usize; 3], share: f64, ring_mm: f64) -> (VolumeMesh, Vec<Hold>) {
+pub(super) fn hard_block(
+    cells: [usize; 3],
+    share: f64,
+    ring_mm: f64,
+) -> (VolumeMesh, Vec<Constraint>) {
     let mesh = block(Vector::new(100.0, 100.0, 20.0), cells, CellShape::Tet4);
     let turn = Rotation3::from_axis_angle(&Vector::y_axis(), (15.0 * share).to_radians());
     let pivot = Vector::new(50.0, 50.0, 0.0);
-    let held = holds(&mesh, |x| {
+    let held = constraints(&mesh, |x| {
         let outside = [x.x, x.y].map(|v| (35.0 - v).max(v - 65.0).max(0.0));
         match (x.z.abs() < 1e-9, outside[0].hypot(outside[1])) {
             (true, 0.0) => {
@@ -271,7 +275,7 @@ fn pressures_take_the_hard_block_to_rest_in_as_many_steps_for_every_poisson_rati
 /// A bar of 100 mm, held at its ends, of which one goes by so many mm.
 fn bar(shape: CellShape, by_mm: f64) -> Equilibrium {
     let mesh = block(Vector::new(100.0, 10.0, 10.0), [20, 2, 2], shape);
-    let ends = holds(&mesh, |x| match x.x {
+    let ends = constraints(&mesh, |x| match x.x {
         x if x < 1e-9 => Some(Vector::zeros()),
         x if x > 99.9 => Some(Vector::x() * by_mm),
         _ => None,
@@ -375,7 +379,7 @@ fn bones_that_fold_a_cell_between_them_are_refused_before_anything_is_solved() {
             let is_top = x.z > 9.0;
             Some(Vector::new(0.0, 0.0, if is_top { -12.0 } else { 0.0 }))
         };
-        let held = holds(&mesh, pressed);
+        let held = constraints(&mesh, pressed);
         let refused = rest(&mesh, neo_hookean(0.3), &held, &StopsAfter::iterations(0));
         let Err(ModelError::Folded { cell, det_f }) = refused else {
             panic!("{shape:?} is not refused")

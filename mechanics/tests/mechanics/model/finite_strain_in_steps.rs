@@ -2,7 +2,7 @@
 
 use std::num::NonZeroU32;
 
-use mechanics::boundary::Hold;
+use mechanics::boundary::Constraint;
 use mechanics::mesh::{CellShape, Vector, VolumeMesh, sample::block};
 use mechanics::model::fem::finite_strain::Elements;
 use mechanics::model::problem::Equilibrium;
@@ -14,13 +14,18 @@ use mechanics::progress::Unobserved;
 use super::finite_strain::{RING, hard_block, neo_hookean, rest_by};
 use crate::prediction::growth::growing;
 use crate::prediction::muscles::{in_region, pulling};
-use crate::scenes::{case_of, hold, material, set, solve};
+use crate::scenes::{case_of, constraint, material, set, solve};
 
 fn in_steps(count: u32) -> Advance {
     Advance::InSteps(NonZeroU32::new(count).unwrap())
 }
 
-fn rest(advance: Advance, elements: Elements, mesh: &VolumeMesh, held: &[Hold]) -> Equilibrium {
+fn rest(
+    advance: Advance,
+    elements: Elements,
+    mesh: &VolumeMesh,
+    held: &[Constraint],
+) -> Equilibrium {
     rest_by((advance, elements), mesh, neo_hookean(0.46), held, &Unobserved).unwrap()
 }
 
@@ -40,8 +45,10 @@ fn each_load_step_is_rest_of_its_share_and_the_last_one_is_the_answer() {
         let steps: usize = newton.load_steps.iter().map(|step| step.rest.steps).sum();
         assert_eq!(steps, stepped.solver.iterations);
         for step in &newton.load_steps {
-            let there: Vec<Hold> =
-                held.iter().map(|own| Hold::at(own.node, own.values() * step.rest.share)).collect();
+            let there: Vec<Constraint> = held
+                .iter()
+                .map(|own| Constraint::at(own.node, own.values() * step.rest.share))
+                .collect();
             let alone = rest(Advance::AtOnce, elements, &mesh, &there);
             let alone_newton = alone.solver.newton.unwrap();
             assert!(alone_newton.load_steps.is_empty());
@@ -83,7 +90,7 @@ fn acted_on(share: f64, shape: CellShape, settings: &Settings) -> Prediction {
     let moved = [4.0, 0.0, -2.0].map(|movement| Some(share * movement));
     let force = Vector::new(0.0, 10.0, 0.0) * share;
     let plan = Plan {
-        prescribed: vec![hold("x_max", moved)],
+        prescribed: vec![constraint("x_max", moved)],
         loads: vec![Load::Force { nodes: set("x_min"), force }],
         growth: growing("tissue", grown),
         ..pulling("biceps", share * 3.0)

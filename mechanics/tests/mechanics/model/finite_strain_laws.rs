@@ -14,7 +14,7 @@ use mechanics::prediction::{
 use nalgebra::{Matrix3, Rotation3};
 
 use crate::material::hyperelastic::{FIBRES, Row, rows};
-use crate::scenes::{case_of, hold, largest_error, on_the_boundary, set, solve};
+use crate::scenes::{case_of, constraint, largest_error, on_the_boundary, set, solve};
 
 /// Of a block of tetrahedra.
 const SIDE: f64 = 9.0;
@@ -57,7 +57,7 @@ fn pulled(case: &Case, ends: &[(&str, usize)], stretch: f64) -> Prediction {
     let plane = |name: &str, axis: usize, by: f64| {
         let mut displacement = [None; 3];
         displacement[axis] = Some(by);
-        hold(name, displacement)
+        constraint(name, displacement)
     };
     let by = (stretch - 1.0) * SIDE;
     let mut prescribed: Vec<Prescribed> =
@@ -114,7 +114,7 @@ fn newton_ends_by_orders_of_magnitude_in_a_step_whatever_the_law() {
         let mut case = cube(tissue(row), row.fibres);
         case.fixed.push(set("z_min"));
         let plan = Plan {
-            prescribed: vec![hold("z_max", [Some(2.0), Some(0.5), Some(1.0)])],
+            prescribed: vec![constraint("z_max", [Some(2.0), Some(0.5), Some(1.0)])],
             ..Plan::default()
         };
         let moved = solve(&case, &plan, &tight());

@@ -1,6 +1,6 @@
 //! Taylor series of internal forces: against Newton's forces, under rotation, and of every element.
 
-use mechanics::boundary::Hold;
+use mechanics::boundary::Constraint;
 use mechanics::material::hyperelastic::{Law, NeoHookean};
 use mechanics::material::{Fibre, FibreLaw, LinearElastic, PlaneStress, Sheet};
 use mechanics::mesh::sample::block;
@@ -51,15 +51,18 @@ fn largest(forces: &[Vector]) -> f64 {
 
 /// K0 u, as reactions of nodes that are all held.
 fn linear_forces(tissue: Tissue, displacement: &[Vector]) -> Vec<Vector> {
-    let holds: Vec<Hold> = (0..).zip(displacement).map(|(node, &u)| Hold::at(node, u)).collect();
+    let constraints: Vec<Constraint> =
+        (0..).zip(displacement).map(|(node, &u)| Constraint::at(node, u)).collect();
     let forces = vec![Vector::zeros(); displacement.len()];
-    let problem = Problem { tissue, holds: &holds, forces: &forces, tolerance: TOLERANCE };
+    let problem =
+        Problem { tissue, constraints: &constraints, forces: &forces, tolerance: TOLERANCE };
     problem.solve(&Unobserved).unwrap().reactions
 }
 
 /// f(u) of neo-Hookean tetrahedra, as reactions of nodes that are all held.
 fn newton_forces(mesh: &VolumeMesh, law: &Law, displacement: &[Vector]) -> Vec<Vector> {
-    let holds: Vec<Hold> = (0..).zip(displacement).map(|(node, &u)| Hold::at(node, u)).collect();
+    let constraints: Vec<Constraint> =
+        (0..).zip(displacement).map(|(node, &u)| Constraint::at(node, u)).collect();
     let problem = FiniteStrain {
         mesh,
         nodes: &mesh.nodes,
@@ -70,7 +73,7 @@ fn newton_forces(mesh: &VolumeMesh, law: &Law, displacement: &[Vector]) -> Vec<V
         fibres: FibreField::default(),
         membrane: None,
         inner: std::sync::Arc::default(),
-        holds: &holds,
+        constraints: &constraints,
         tolerance: TOLERANCE,
         with_states: false,
         advance: Advance::default(),

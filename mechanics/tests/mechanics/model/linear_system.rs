@@ -7,7 +7,7 @@ use mechanics::model::problem::LoadCase;
 use mechanics::prediction::{ElementChoice, Plan, Scene, Settings, Sliding, SlidingNormal};
 use mechanics::progress::Unobserved;
 
-use crate::scenes::{case_of, exact, hold, material, set};
+use crate::scenes::{case_of, constraint, exact, material, set};
 
 /// A block on a sliding slope, its lid prescribed; some are small enough to be factorised.
 fn scenes() -> Vec<(&'static str, Scene)> {
@@ -16,7 +16,7 @@ fn scenes() -> Vec<(&'static str, Scene)> {
         let mut case = case_of(mesh, material(15.0, 0.46));
         let slope = SlidingNormal::Direction(Vector::new(0.3, 0.1, -1.0));
         case.sliding.push(Sliding { nodes: set("z_min"), normal: slope, segment: None });
-        let prescribed = vec![hold("z_max", [Some(1.0), Some(0.0), Some(-0.5)])];
+        let prescribed = vec![constraint("z_max", [Some(1.0), Some(0.0), Some(-0.5)])];
         let plan = Plan { prescribed, ..Plan::default() };
         Scene::new(&case, &plan, &Settings { element, ..exact() }).unwrap()
     };

@@ -14,7 +14,7 @@ use mechanics::prediction::{
 use mechanics::progress::Unobserved;
 use nalgebra::Matrix3;
 
-use crate::scenes::{StopsAfter, case_of, hold, material, on_the_boundary, set, solve};
+use crate::scenes::{StopsAfter, case_of, constraint, material, on_the_boundary, set, solve};
 
 const YOUNG: f64 = 15.0;
 
@@ -393,7 +393,8 @@ fn cells_and_elements_that_springs_do_not_know_are_refused_where_they_stand() {
 fn a_prescribed_component_is_met_exactly() {
     let mut case = slab(CellShape::Tet4, 0.25);
     case.segments.clear();
-    let plan = Plan { prescribed: vec![hold("bone", [None, None, Some(1.5)])], ..Plan::default() };
+    let plan =
+        Plan { prescribed: vec![constraint("bone", [None, None, Some(1.5)])], ..Plan::default() };
     let found = solve(&case, &plan, &springs(Search::Newton));
     for &node in case.volume.node_set("bone").unwrap() {
         assert!((found.displacement[node as usize].z - 1.5).abs() < 1e-14);

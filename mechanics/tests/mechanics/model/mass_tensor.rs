@@ -16,7 +16,7 @@ use mechanics::solver::stationary::{self, Iteration, Stationary, largest_eigenva
 use mechanics::solver::{SolverError, System, Tolerance, Unknowns, cholesky, ordering};
 use nalgebra::Matrix3;
 
-use crate::scenes::{StopsAfter, case_of, hold, material, set, solve};
+use crate::scenes::{StopsAfter, case_of, constraint, material, set, solve};
 use crate::solver::solvers::{forces, largest, largest_difference, system_of};
 
 const TIGHT: Tolerance = Tolerance { relative_residual: 1e-12, memory_mb: 1000.0 };
@@ -136,7 +136,7 @@ fn a_wanted_change_goes_on_where_the_residual_alone_would_end() {
 fn gauss_seidel_gives_the_same_bits_on_one_two_and_three_threads() {
     let mesh = block(Vector::new(60.0, 60.0, 20.0), [24, 24, 8], CellShape::Tet4);
     let system = system_of(&mesh, "z_min", &[material(15.0, 0.4)], &vec![0; mesh.cells.len()]);
-    assert!(system.layout.parts.len() > 1, "colours for threads are what is tested");
+    assert!(system.ordering.parts.len() > 1, "colours for threads are what is tested");
     let right = forces(&system, 0);
     let tolerance = Tolerance { relative_residual: 1e-4, ..TIGHT };
     for iteration in [Iteration::GaussSeidel, Iteration::DampedJacobi] {
@@ -213,8 +213,10 @@ fn patchwork() -> (Case, Plan) {
         case.materials.insert(region.to_string(), moduli);
     }
     case.fixed.push(set("x_min"));
-    let plan =
-        Plan { prescribed: vec![hold("x_max", [Some(1.0), None, Some(-2.0)])], ..Plan::default() };
+    let plan = Plan {
+        prescribed: vec![constraint("x_max", [Some(1.0), None, Some(-2.0)])],
+        ..Plan::default()
+    };
     (case, plan)
 }
 
@@ -245,8 +247,8 @@ fn the_tensors_are_the_blocks_of_the_stiffness_matrix() {
     let materials: Vec<_> = (0..20).map(|region| case.materials[&region.to_string()]).collect();
     let of_cell: Vec<u16> = mesh.cell_labels["patch"].iter().map(|&label| label as u16).collect();
     let tissue = Tissue::isotropic(mesh, &materials, &of_cell, |_| Dilatation::Pointwise);
-    let numbering = DofMap::new(mesh, &vec![false; mesh.nodes.len()]);
-    let mut assembled = tissue.assemble(&numbering, &Unobserved).unwrap().unwrap();
+    let dof_map = DofMap::new(mesh, &vec![false; mesh.nodes.len()]);
+    let mut assembled = tissue.assemble(&dof_map, &Unobserved).unwrap().unwrap();
     let mut sums = std::collections::BTreeMap::new();
     for cell in 0..mesh.cells.len() {
         let law = &materials[of_cell[cell] as usize];
@@ -260,7 +262,7 @@ fn the_tensors_are_the_blocks_of_the_stiffness_matrix() {
     let scale = sums.values().map(|block| block.amax()).fold(0.0, f64::max);
     let mut compared = 0;
     for ((j, k), sum) in &sums {
-        let (row, column) = (numbering.row(*j), numbering.row(*k));
+        let (row, column) = (dof_map.row(*j), dof_map.row(*k));
         if column <= row {
             let block = assembled.block_mut(row, column);
             let block = Matrix3::from_fn(|r, c| block[r][c]);

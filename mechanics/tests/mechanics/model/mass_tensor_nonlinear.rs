@@ -16,7 +16,7 @@ use mechanics::progress::Unobserved;
 use mechanics::solver::Tolerance;
 use nalgebra::{Matrix3, Rotation3};
 
-use crate::scenes::{StopsAfter, case_of, hold, largest_error, material, set, solve};
+use crate::scenes::{StopsAfter, case_of, constraint, largest_error, material, set, solve};
 
 fn kirchhoff(tissue: &LinearElastic) -> Law {
     let (lambda, mu) = (tissue.lambda(), tissue.shear_modulus());
@@ -49,7 +49,7 @@ fn the_polynomial_of_the_tensors_is_the_force_of_saint_venant_kirchhoff_tetrahed
         mesh: &mesh,
         materials: &[tissue],
         material_of_cell: &vec![0; mesh.cells.len()],
-        holds: &[],
+        constraints: &[],
         tolerance: Tolerance { relative_residual: 1e-8, memory_mb: 100.0 },
     };
     // Displacements as large as the cells, some of them turned inside out: the polynomial does not care.
@@ -77,8 +77,8 @@ fn bent(tissue: LinearElastic) -> (Case, Plan) {
     case.fixed.push(set("x_min"));
     let plan = Plan {
         prescribed: vec![
-            hold("x_max", [Some(2.0), Some(0.0), Some(6.0)]),
-            hold("y_min", [None, Some(0.0), None]),
+            constraint("x_max", [Some(2.0), Some(0.0), Some(6.0)]),
+            constraint("y_min", [None, Some(0.0), None]),
         ],
         loads: vec![Load::Gravity { acceleration: Vector::new(0.0, 0.0, -0.01) }],
         ..Plan::default()
@@ -158,7 +158,7 @@ fn a_movement_that_the_law_cannot_bear_ends_with_a_word_and_one_that_is_stopped_
     let mut case = case_of(mesh, material(15.0, 0.46));
     case.fixed.push(set("z_min"));
     let ways = [Some(0.0), Some(0.0), Some(-5.5)];
-    let plan = Plan { prescribed: vec![hold("z_max", ways)], ..Plan::default() };
+    let plan = Plan { prescribed: vec![constraint("z_max", ways)], ..Plan::default() };
     let scene = |tolerance| {
         let settings =
             Settings { relative_residual: tolerance, ..settings(Method::MassTensorNonlinear) };

@@ -14,7 +14,7 @@ use mechanics::progress::Unobserved;
 use mechanics::response::build;
 use nalgebra::Rotation3;
 
-use crate::scenes::{case_of, exact, hold, material, set, solve};
+use crate::scenes::{case_of, constraint, exact, material, set, solve};
 
 /// The skin of V.11.
 const SKIN: Sheet =
@@ -148,10 +148,10 @@ fn bar(shape: CellShape) -> (Case, Plan) {
     case.skin = Some(set("z_max"));
     // Planes of symmetry leave the bar free to narrow.
     let prescribed = vec![
-        hold("x_min", [Some(0.0), None, None]),
-        hold("y_min", [None, Some(0.0), None]),
-        hold("z_min", [None, None, Some(0.0)]),
-        hold("x_max", [Some(0.4), None, None]),
+        constraint("x_min", [Some(0.0), None, None]),
+        constraint("y_min", [None, Some(0.0), None]),
+        constraint("z_min", [None, None, Some(0.0)]),
+        constraint("x_max", [Some(0.4), None, None]),
     ];
     (case, Plan { prescribed, ..Plan::default() })
 }
@@ -168,8 +168,9 @@ fn tissue_and_skin_of_one_poisson_ratio_share_a_stretch_by_their_stiffness() {
                 let exact = Vector::new(0.01 * x.x, -0.003 * x.y, -0.003 * x.z);
                 assert!((u - exact).norm() < 1e-10, "{shape:?} {element:?}: {u} at {x}");
             }
-            let holds = scene.conditions.holds.iter().zip(&answer.reactions);
-            let ends = holds.filter(|(hold, _)| case.volume.nodes[hold.node as usize].x > 39.0);
+            let constraints = scene.conditions.constraints.iter().zip(&answer.reactions);
+            let ends = constraints
+                .filter(|(constraint, _)| case.volume.nodes[constraint.node as usize].x > 39.0);
             ends.map(|(_, force)| force.x).sum::<f64>()
         };
         // 15 kPa times 60 mm² times 1 %, and 200 kPa times 15 mm² times 1 %.
@@ -279,9 +280,9 @@ fn a_taut_sheet_pulls_by_its_slope_and_dents_as_a_stretched_skin_does() {
         let zero = Some(0.0);
         let plan = Plan {
             prescribed: vec![
-                hold("x_min", [zero; 3]),
-                hold("x_max", [zero; 3]),
-                hold("z_min", [zero; 3]),
+                constraint("x_min", [zero; 3]),
+                constraint("x_max", [zero; 3]),
+                constraint("z_min", [zero; 3]),
             ],
             loads: vec![Load::Pressure { faces: set("z_max"), pressure }],
             ..Plan::default()

@@ -9,7 +9,7 @@ use mechanics::prediction::{Case, Plan, Prediction};
 use nalgebra::Matrix3;
 
 use super::spline_volume::with;
-use crate::scenes::{case_of, hold, material, set, solve};
+use crate::scenes::{case_of, constraint, material, set, solve};
 
 /// Tissue of 20 x 15 x 2 mm, as Ulusoy et al. 2010 fit it: 5 x 5 x 2 control points, linear through the thickness.
 fn thin() -> Case {
@@ -30,8 +30,9 @@ fn of_the_paper(bone: Bone) -> VolumeSpline {
     VolumeSpline { degrees: [3, 3, 1], control, bone, ..VolumeSpline::default() }
 }
 
-fn prescribed(holds: &[(&str, Vector)]) -> Plan {
-    let all = holds.iter().map(|(name, u)| hold(name, [Some(u.x), Some(u.y), Some(u.z)]));
+fn prescribed(constraints: &[(&str, Vector)]) -> Plan {
+    let all =
+        constraints.iter().map(|(name, u)| constraint(name, [Some(u.x), Some(u.y), Some(u.z)]));
     Plan { prescribed: all.collect(), ..Plan::default() }
 }
 

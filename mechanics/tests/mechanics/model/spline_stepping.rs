@@ -9,7 +9,7 @@ use mechanics::prediction::{ModelError, Scene, Settings, SolverError, predict};
 use mechanics::progress::Unobserved;
 use mechanics::solver::element_connectivity::ElementConnectivity;
 use mechanics::solver::half_matrix::{HalfMatrix, Pattern};
-use mechanics::solver::layout::Layout;
+use mechanics::solver::row_ordering::RowOrdering;
 use mechanics::solver::{System, Unknowns};
 
 use crate::model::spline_volume::{bent, largest_difference, spaced, with};
@@ -49,7 +49,7 @@ fn single(value: f64) -> System {
     let mut matrix = HalfMatrix::zeros(Arc::new(Pattern::new(&connectivity, &around, 1)));
     (0..3).for_each(|k| matrix.diagonal[0][k][k] = value);
     System {
-        layout: Arc::new(Layout::new(&connectivity, &around, &[false], 3, 0)),
+        ordering: Arc::new(RowOrdering::new(&connectivity, &around, &[false], 3, 0)),
         matrix,
         partly_constrained: Vec::new(),
         positions: vec![Vector::zeros()],

@@ -21,7 +21,7 @@ use mechanics::solver::half_matrix::HalfMatrix;
 use nalgebra::{Matrix3, Rotation3};
 
 use crate::prediction::elements::{at_skin_points, slab};
-use crate::scenes::{apart, case_of, half_head_case, hold, material, set, solve};
+use crate::scenes::{apart, case_of, constraint, half_head_case, material, set, solve};
 
 pub fn with(spline: VolumeSpline) -> Settings {
     let method = Method::VolumeSpline(spline);
@@ -54,18 +54,18 @@ fn galerkin(
     let points = tissue_points(mesh).unwrap();
     let lattice = Lattice::fit(mesh, &points, [3; 3], ControlPoints::Spaced(spacing));
     let free = vec![false; lattice.points.len()];
-    let numbering = DofMap::of(&lattice.connectivity, &lattice.points, &free);
-    let assembly = Assembly::new(&lattice, &numbering, &tissue, &points);
+    let dof_map = DofMap::of(&lattice.connectivity, &lattice.points, &free);
+    let assembly = Assembly::new(&lattice, &dof_map, &tissue, &points);
     let stiffness = assembly.galerkin(&Unobserved).unwrap();
-    check(&lattice, &numbering, &stiffness);
+    check(&lattice, &dof_map, &stiffness);
 }
 
 /// K d for displacements of control points.
-fn forces(numbering: &DofMap, k: &HalfMatrix<f64, 3>, d: &[Vector]) -> Vec<Vector> {
-    let by_row: Vec<_> = numbering.by_row(d).iter().map(|d| [[d.x], [d.y], [d.z]]).collect();
+fn forces(dof_map: &DofMap, k: &HalfMatrix<f64, 3>, d: &[Vector]) -> Vec<Vector> {
+    let by_row: Vec<_> = dof_map.by_row(d).iter().map(|d| [[d.x], [d.y], [d.z]]).collect();
     let mut product = by_row.clone();
-    k.multiply(&numbering.layout, &by_row, &mut product);
-    let place = numbering.layout.place.iter();
+    k.multiply(&dof_map.ordering, &by_row, &mut product);
+    let place = dof_map.ordering.place.iter();
     place.map(|&row| Vector::from(product[row as usize].map(|[value]| value))).collect()
 }
 
@@ -91,10 +91,10 @@ fn an_affine_map_of_the_control_points_is_that_map_of_the_volume() {
 #[test]
 fn a_block_of_one_cubic_patch_passes_the_patch_test() {
     let mesh = sample::block(Vector::new(10.0, 10.0, 10.0), [2, 2, 2], CellShape::Hex8);
-    galerkin(&mesh, 10.0, |lattice, numbering, k| {
+    galerkin(&mesh, 10.0, |lattice, dof_map, k| {
         assert_eq!(lattice.points.len(), 64);
         let field: Vec<Vector> = lattice.points.iter().map(|x| affine() * x).collect();
-        let forces = forces(numbering, k, &field);
+        let forces = forces(dof_map, k, &field);
         let scale = forces.iter().map(|f| f.norm()).fold(0.0, f64::max);
         let inner = |index: &[u32; 3]| index.iter().all(|k| *k == 1 || *k == 2);
         for (force, index) in forces.iter().zip(&lattice.indices) {
@@ -116,10 +116,10 @@ fn a_block_of_one_cubic_patch_passes_the_patch_test() {
 #[test]
 fn a_small_rotation_takes_no_energy_with_galerkin_stiffness_and_some_with_links() {
     let mesh = half_head(1).mesh;
-    galerkin(&mesh, 12.0, |lattice, numbering, k| {
+    galerkin(&mesh, 12.0, |lattice, dof_map, k| {
         let energy = |gradient: Matrix3<f64>| {
             let field: Vec<Vector> = lattice.points.iter().map(|x| gradient * x).collect();
-            let forces = forces(numbering, k, &field);
+            let forces = forces(dof_map, k, &field);
             forces.iter().zip(&field).map(|(f, d)| f.dot(d)).sum::<f64>()
         };
         let spin = Matrix3::new(0.0, -0.3, 0.2, 0.3, 0.0, -0.1, -0.2, 0.1, 0.0);
@@ -142,7 +142,7 @@ pub fn bent() -> (Case, Plan) {
     let mesh = sample::block(Vector::new(40.0, 20.0, 12.0), [8, 4, 3], CellShape::Hex8);
     let mut case = case_of(mesh, material(15.0, 0.3));
     case.fixed.push(set("x_min"));
-    let prescribed = vec![hold("x_max", [Some(0.5), None, Some(3.0)])];
+    let prescribed = vec![constraint("x_max", [Some(0.5), None, Some(3.0)])];
     (case, Plan { prescribed, ..Plan::default() })
 }
 
@@ -153,7 +153,7 @@ fn close_control_points_come_to_the_answer_of_finite_elements() {
     let mesh = sample::block(Vector::new(40.0, 20.0, 10.0), [16, 8, 4], CellShape::Hex8);
     let mut case = case_of(mesh, material(15.0, 0.3));
     case.fixed.push(set("x_min"));
-    let prescribed = vec![hold("x_max", [Some(0.5), Some(0.0), Some(3.0)])];
+    let prescribed = vec![constraint("x_max", [Some(0.5), Some(0.0), Some(3.0)])];
     let plan = Plan { prescribed, ..Plan::default() };
     let finite = solve(&case, &plan, &Settings::default());
     let error = |spacing: f64| {
@@ -238,9 +238,11 @@ fn sliding_nodes_are_held_across_and_nothing_pulls_them_along() {
     let across = normal.normalize();
     let scene = Scene::new(&case, &plan, &settings).unwrap();
     let mut along: f64 = 0.0;
-    for hold in scene.conditions.holds.iter().filter(|hold| hold.count() == 1) {
-        let u = answer.displacement[hold.node as usize];
-        assert!(u.dot(&across).abs() < 1e-2, "node {}: {u}", hold.node);
+    for constraint in
+        scene.conditions.constraints.iter().filter(|constraint| constraint.count() == 1)
+    {
+        let u = answer.displacement[constraint.node as usize];
+        assert!(u.dot(&across).abs() < 1e-2, "node {}: {u}", constraint.node);
         along = along.max(u.norm());
     }
     assert!(along > 0.5, "they slide: {along}");

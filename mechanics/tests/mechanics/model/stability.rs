@@ -8,7 +8,7 @@ use mechanics::mesh::{CellShape, Vector, VolumeMesh};
 use mechanics::model::fem::finite_strain::Elements;
 use mechanics::progress::{Phase, Progress, Unobserved};
 
-use super::finite_strain::{RING, hard_block, holds, neo_hookean, rest_of};
+use super::finite_strain::{RING, constraints, hard_block, neo_hookean, rest_of};
 
 /// A bar of 100 x 10 x 10 mm in tetrahedra that lie alike on both sides of its middle planes.
 fn symmetric_bar() -> VolumeMesh {
@@ -44,7 +44,7 @@ fn a_bar_that_is_pressed_and_does_not_buckle_is_told_not_to_be_stable() {
     let mesh = symmetric_bar();
     for elements in [Elements::PLAIN, Elements::STABLE] {
         let told = |by_mm: f64| {
-            let ends = holds(&mesh, |x| match x.x {
+            let ends = constraints(&mesh, |x| match x.x {
                 x if x < 1e-9 => Some(Vector::zeros()),
                 x if x > 99.9 => Some(Vector::x() * by_mm),
                 _ => None,

@@ -11,7 +11,7 @@ use mechanics::prediction::{
 use mechanics::progress::Unobserved;
 
 use crate::prediction::elements::slab;
-use crate::scenes::{SHAPES, case_of, hold, material, set, solve};
+use crate::scenes::{SHAPES, case_of, constraint, material, set, solve};
 
 fn with(blend_radius: f64) -> Settings {
     let method = Method::ThicknessWarp(ThicknessWarp { blend_radius });
@@ -177,7 +177,7 @@ fn tissue_without_a_face_on_bone_is_refused() {
     let mut mesh = sample::block(Vector::new(30.0, 20.0, 12.0), [6, 4, 3], CellShape::Hex8);
     mesh.node_sets.insert("pins".to_owned(), vec![0, 6, 34]);
     let case = Case { allow_unfixed: true, ..case_of(mesh, material(15.0, 0.46)) };
-    let prescribed = vec![hold("pins", [Some(1.0); 3])];
+    let prescribed = vec![constraint("pins", [Some(1.0); 3])];
     let scene = Scene::new(&case, &Plan { prescribed, ..Plan::default() }, &with(0.0)).unwrap();
     assert!(matches!(predict(&scene, &Unobserved), Err(ModelError::NoBone)));
 }

@@ -13,7 +13,7 @@ use mechanics::prediction::{
 use mechanics::progress::Unobserved;
 use mechanics::study::scenes::slab;
 
-use crate::scenes::{case_of, hold, material, set};
+use crate::scenes::{case_of, constraint, material, set};
 
 fn scene() -> (Case, Plan) {
     let slab = slab();
@@ -98,8 +98,8 @@ fn refinement_goes_on_until_the_estimate_is_accepted() {
 fn a_part_of_the_skin_with_a_limit_of_its_own_is_refined_for() {
     // A slab held below whose bottom moves at both ends, and only the skin above one of them counts.
     let mut mesh = block(Vector::new(60.0, 20.0, 10.0), [18, 6, 3], CellShape::Tet4);
-    let where_ = |holds: &dyn Fn(&Vector) -> bool| -> Vec<u32> {
-        (0_u32..).zip(&mesh.nodes).filter(|(_, x)| holds(x)).map(|(node, _)| node).collect()
+    let where_ = |is_inside: &dyn Fn(&Vector) -> bool| -> Vec<u32> {
+        (0_u32..).zip(&mesh.nodes).filter(|(_, x)| is_inside(x)).map(|(node, _)| node).collect()
     };
     let ends = where_(&|x| x.z == 0.0 && (x.x - 30.0).abs() > 20.0);
     let rest = where_(&|x| x.z == 0.0 && (x.x - 30.0).abs() <= 20.0);
@@ -116,7 +116,7 @@ fn a_part_of_the_skin_with_a_limit_of_its_own_is_refined_for() {
         ..case_of(mesh, material(15.0, 0.45))
     };
     let plan = Plan {
-        prescribed: vec![hold("ends", [Some(0.0), Some(0.0), Some(4.0)])],
+        prescribed: vec![constraint("ends", [Some(0.0), Some(0.0), Some(4.0)])],
         ..Plan::default()
     };
     let cells = 4 * case.volume.cells.len();

@@ -9,7 +9,7 @@ use mechanics::prediction::{
     ElementChoice, Load, Plan, Prescribed, RegionNames, Settings, Sliding, SlidingNormal,
 };
 
-use crate::scenes::{SHAPES, case_of, exact, hold, material, set, solve};
+use crate::scenes::{SHAPES, case_of, constraint, exact, material, set, solve};
 
 /// The thick sphere of V.7 at cells of about 3 mm: mean radial displacement of the outer surface.
 fn outer_displacement(nu: f64, element: ElementChoice) -> f64 {
@@ -21,9 +21,9 @@ fn outer_displacement(nu: f64, element: ElementChoice) -> f64 {
     mesh.node_vectors.insert("radial".to_owned(), radial);
     let inner = Prescribed::FromArray { nodes: set("inner"), array: "radial".to_owned() };
     let symmetry = [
-        hold("x_min", [Some(0.0), None, None]),
-        hold("y_min", [None, Some(0.0), None]),
-        hold("z_min", [None, None, Some(0.0)]),
+        constraint("x_min", [Some(0.0), None, None]),
+        constraint("y_min", [None, Some(0.0), None]),
+        constraint("z_min", [None, None, Some(0.0)]),
     ];
     let plan = Plan { prescribed: [vec![inner], symmetry.to_vec()].concat(), ..Plan::default() };
     let case = case_of(mesh, material(15.0, nu));
@@ -52,8 +52,8 @@ fn young_s_modulus_alone_changes_no_displacement() {
         let mesh = block(Vector::new(20.0, 10.0, 6.0), [5, 4, 3], CellShape::Hex8);
         let plan = Plan {
             prescribed: vec![
-                hold("x_min", [Some(0.0); 3]),
-                hold("x_max", [Some(1.0), None, Some(2.0)]),
+                constraint("x_min", [Some(0.0); 3]),
+                constraint("x_max", [Some(1.0), None, Some(2.0)]),
             ],
             ..Plan::default()
         };
@@ -83,8 +83,8 @@ fn two_layers_in_series_share_the_displacement_by_compliance() {
         case.materials.insert("stiff".to_owned(), material(300.0, 0.0));
         let plan = Plan {
             prescribed: vec![
-                hold("z_min", [Some(0.0); 3]),
-                hold("z_max", [Some(0.0), Some(0.0), Some(1.0)]),
+                constraint("z_min", [Some(0.0); 3]),
+                constraint("z_max", [Some(0.0), Some(0.0), Some(1.0)]),
             ],
             ..Plan::default()
         };
@@ -145,7 +145,7 @@ fn a_bar_under_its_own_weight_shortens_by_half_of_what_its_weight_on_top_would_d
     let density = 1.04;
     let case = case_of(mesh, LinearElastic::new(15.0, 0.0, density).unwrap());
     let plan = Plan {
-        prescribed: vec![hold("z_min", [Some(0.0); 3])],
+        prescribed: vec![constraint("z_min", [Some(0.0); 3])],
         loads: vec![Load::Gravity { acceleration: Vector::new(0.0, 0.0, -9.81e-3) }],
         ..Plan::default()
     };

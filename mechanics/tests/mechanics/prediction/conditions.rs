@@ -12,7 +12,7 @@ use mechanics::prediction::{
 };
 use mechanics::progress::Unobserved;
 
-use crate::scenes::{case_of, exact, hold, largest_error, material, set, solve};
+use crate::scenes::{case_of, constraint, exact, largest_error, material, set, solve};
 
 /// A slab whose bottom is the bone: segment `jaw` at x_min, fixed at x_max.
 fn jaw_and_skull(shape: CellShape) -> Case {
@@ -209,7 +209,8 @@ fn two_segments_that_move_one_node_apart_are_refused() {
 #[test]
 fn a_prescribed_value_against_a_joined_one_is_refused() {
     let case = jaw_and_skull(CellShape::Hex8);
-    let plan = Plan { prescribed: vec![hold("x_min", [None, Some(1.0), None])], ..Plan::default() };
+    let plan =
+        Plan { prescribed: vec![constraint("x_min", [None, Some(1.0), None])], ..Plan::default() };
     assert_eq!(refusal(&case, &plan), ("/plan".to_owned(), "plan-conflict"));
 }
 

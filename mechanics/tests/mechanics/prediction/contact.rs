@@ -10,7 +10,7 @@ use mechanics::prediction::{
 };
 
 use super::numerical_error::{Effectivity, Question};
-use crate::scenes::{case_of, hold, material, set, solve};
+use crate::scenes::{case_of, constraint, material, set, solve};
 
 /// Cells and elements that press.
 pub(super) const PRESSING: [(CellShape, ElementChoice); 4] = [
@@ -67,7 +67,7 @@ pub(super) fn bar(shape: CellShape) -> Case {
 }
 
 pub(super) fn pushed(by: f64) -> Plan {
-    let push = hold("bar/x_min", [Some(by), Some(0.0), Some(0.0)]);
+    let push = constraint("bar/x_min", [Some(by), Some(0.0), Some(0.0)]);
     Plan { prescribed: vec![push], ..Plan::default() }
 }
 
@@ -136,8 +136,8 @@ pub(super) fn blocks() -> (Case, Plan) {
     let case = Case { allow_unfixed: true, ..case_of(mesh, material(15.0, 0.0)) };
     let plan = Plan {
         prescribed: vec![
-            hold("lower/z_min", [Some(0.0); 3]),
-            hold("upper/z_max", [Some(0.0), Some(0.0), Some(-1.2)]),
+            constraint("lower/z_min", [Some(0.0); 3]),
+            constraint("upper/z_max", [Some(0.0), Some(0.0), Some(-1.2)]),
         ],
         ..Plan::default()
     };

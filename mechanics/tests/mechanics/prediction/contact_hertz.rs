@@ -12,7 +12,7 @@ use mechanics::prediction::{
 
 use super::contact::{together, unilateral};
 use super::contact_of_simple_bones::cylinder;
-use crate::scenes::{case_of, hold, material, set, solve};
+use crate::scenes::{case_of, constraint, material, set, solve};
 
 /// Places from 0, evenly up to `fine_to` and then each cell longer than the last.
 fn graded(fine_to: f64, fine: f64, growth: f64, end: f64) -> Vec<f64> {
@@ -112,8 +112,8 @@ fn in_quarters([x_plane, y_plane]: [&str; 2]) -> Plan {
     Plan {
         prescribed: vec![
             Prescribed::FromArray { nodes: set("far"), array: "outer".to_owned() },
-            hold(x_plane, [Some(0.0), None, None]),
-            hold(y_plane, [None, Some(0.0), None]),
+            constraint(x_plane, [Some(0.0), None, None]),
+            constraint(y_plane, [None, Some(0.0), None]),
         ],
         ..Plan::default()
     }
@@ -309,10 +309,10 @@ fn a_cylinder_presses_on_a_slab_as_hertz_says() {
     let case = Case { allow_unfixed: true, materials, ..under(stamp, mesh) };
     let plan = Plan {
         prescribed: vec![
-            hold("z_min", [None, None, Some(0.6)]),
-            hold("x_min", [Some(0.0), None, None]),
-            hold("y_min", [None, Some(0.0), None]),
-            hold("y_max", [None, Some(0.0), None]),
+            constraint("z_min", [None, None, Some(0.6)]),
+            constraint("x_min", [Some(0.0), None, None]),
+            constraint("y_min", [None, Some(0.0), None]),
+            constraint("y_max", [None, Some(0.0), None]),
         ],
         ..Plan::default()
     };

@@ -10,7 +10,7 @@ use mechanics::prediction::{
 };
 
 use super::contact::{PRESSING, at, together, unilateral};
-use crate::scenes::{case_of, hold, material, set, solve};
+use crate::scenes::{case_of, constraint, material, set, solve};
 
 const LENGTHS: [f64; 3] = [20.0, 16.0, 12.0];
 const GAP: f64 = 0.5;
@@ -60,9 +60,9 @@ pub(crate) fn closed(raised: f64, lowered: f64) -> Plan {
     Plan {
         segments: vec![PlannedSegment { name: "plate".to_owned(), movement }],
         prescribed: vec![
-            hold("slab/z_min", [None, None, Some(raised)]),
-            hold("slab/x_min", [Some(0.0), None, None]),
-            hold("slab/y_min", [None, Some(0.0), None]),
+            constraint("slab/z_min", [None, None, Some(raised)]),
+            constraint("slab/x_min", [Some(0.0), None, None]),
+            constraint("slab/y_min", [None, Some(0.0), None]),
         ],
         ..Plan::default()
     }

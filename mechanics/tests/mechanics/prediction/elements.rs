@@ -10,7 +10,7 @@ use mechanics::prediction::{
     Sliding, SlidingNormal,
 };
 
-use crate::scenes::{case_of, exact, hold, material, set, solve};
+use crate::scenes::{case_of, constraint, exact, material, set, solve};
 
 fn with(element: ElementChoice) -> Settings {
     Settings { element, ..Settings::default() }
@@ -27,7 +27,7 @@ fn cook(n: usize, [young_modulus, nu, force]: [f64; 3], element: ElementChoice) 
     let flat = Prescribed::Uniform { nodes: set("z_min"), displacement: [None, None, Some(0.0)] };
     let lid = Prescribed::Uniform { nodes: set("z_max"), displacement: [None, None, Some(0.0)] };
     let plan = Plan {
-        prescribed: vec![hold("x_min", [Some(0.0); 3]), flat, lid],
+        prescribed: vec![constraint("x_min", [Some(0.0); 3]), flat, lid],
         loads: vec![Load::Traction {
             faces: set("x_max"),
             traction: Vector::new(0.0, force / 16.0, 0.0),
@@ -96,9 +96,9 @@ fn outer_displacement_of(shape: CellShape, nu: f64, by: f64, settings: &Settings
         .insert("radial".to_owned(), mesh.nodes.iter().map(|x| x.normalize() * by).collect());
     let inner = Prescribed::FromArray { nodes: set("inner"), array: "radial".to_owned() };
     let symmetry = [
-        hold("x_min", [Some(0.0), None, None]),
-        hold("y_min", [None, Some(0.0), None]),
-        hold("z_min", [None, None, Some(0.0)]),
+        constraint("x_min", [Some(0.0), None, None]),
+        constraint("y_min", [None, Some(0.0), None]),
+        constraint("z_min", [None, None, Some(0.0)]),
     ];
     let plan = Plan { prescribed: [vec![inner], symmetry.to_vec()].concat(), ..Plan::default() };
     let case = case_of(mesh, material(15.0, nu));
@@ -161,9 +161,9 @@ pub fn slab(h: f64, nu: f64) -> (Case, Plan) {
     mesh.node_sets.insert("far".to_owned(), far);
     let plan = Plan {
         prescribed: vec![
-            hold("patch", [Some(4.0), Some(0.0), Some(8.0)]),
-            hold("far", [Some(0.0); 3]),
-            hold("y_min", [None, Some(0.0), None]),
+            constraint("patch", [Some(4.0), Some(0.0), Some(8.0)]),
+            constraint("far", [Some(0.0); 3]),
+            constraint("y_min", [None, Some(0.0), None]),
         ],
         ..Plan::default()
     };
@@ -219,7 +219,7 @@ fn elements_err_on_the_slab_as_published() {
 fn large_movements_of_the_slab_differ_from_linear_ones_as_published() {
     for (share, expected) in [(0.25, 0.048), (0.5, 0.186), (1.0, 0.697), (1.5, 1.464)] {
         let (case, mut plan) = slab(3.0, 0.46);
-        plan.prescribed[0] = hold("patch", [Some(4.0 * share), Some(0.0), Some(8.0 * share)]);
+        plan.prescribed[0] = constraint("patch", [Some(4.0 * share), Some(0.0), Some(8.0 * share)]);
         let element = ElementChoice::Stabilised;
         let nonlinear = Settings { method: Method::FemNonlinear, ..with(element) };
         let [one, other] = [nonlinear, with(element)]
@@ -276,8 +276,10 @@ fn layers(shape: CellShape) -> (Case, Plan) {
     case.regions = Some(RegionNames { array: "layer".to_owned(), names });
     case.materials.insert("stiff".to_owned(), material(790.0, 0.43));
     case.fixed.push(set("x_min"));
-    let plan =
-        Plan { prescribed: vec![hold("x_max", [Some(1.0), None, Some(2.0)])], ..Plan::default() };
+    let plan = Plan {
+        prescribed: vec![constraint("x_max", [Some(1.0), None, Some(2.0)])],
+        ..Plan::default()
+    };
     (case, plan)
 }
 

@@ -187,8 +187,8 @@ fn the_mass_tensor_with_fibres_is_the_plain_finite_element_and_balances_its_own_
 
     let mut rest = mass_tensor_forces(&scene, stated, &tensor.displacement);
     let scale = tensor.reactions.iter().map(Vector::norm).fold(0.0, f64::max);
-    for (hold, reaction) in scene.conditions.holds.iter().zip(&tensor.reactions) {
-        rest[hold.node as usize] -= reaction;
+    for (constraint, reaction) in scene.conditions.constraints.iter().zip(&tensor.reactions) {
+        rest[constraint.node as usize] -= reaction;
     }
     let left = rest.iter().map(Vector::norm).fold(0.0, f64::max);
     assert!(left < 1e-10 * scale, "{left:e} of {scale}");

@@ -14,7 +14,7 @@ use mechanics::study::methods;
 
 use super::elements::{at_skin_points, slab};
 use crate::material::anisotropy::{ELEMENTS, MUSCLE, fibred, tight};
-use crate::scenes::{case_of, exact, hold, largest_error, material, set, solve};
+use crate::scenes::{case_of, constraint, exact, largest_error, material, set, solve};
 
 pub const SIZE: Vector = Vector::new(6.0, 4.0, 2.0);
 
@@ -119,11 +119,11 @@ pub fn reaction_of(answer: &Prediction, place: usize) -> Vector {
 pub(super) fn between_walls(top: Option<Prescribed>) -> Vec<Prescribed> {
     let zero = Some(0.0);
     let mut prescribed = vec![
-        hold("x_min", [zero, None, None]),
-        hold("x_max", [zero, None, None]),
-        hold("y_min", [None, zero, None]),
-        hold("y_max", [None, zero, None]),
-        hold("z_min", [None, None, zero]),
+        constraint("x_min", [zero, None, None]),
+        constraint("x_max", [zero, None, None]),
+        constraint("y_min", [None, zero, None]),
+        constraint("y_max", [None, zero, None]),
+        constraint("z_min", [None, None, zero]),
     ];
     prescribed.extend(top);
     prescribed
@@ -149,7 +149,7 @@ fn a_layer_held_at_its_sides_thins_and_a_confined_one_is_pressed_by_the_closed_f
             assert!((across - pull).abs() < 1e-6, "{shape:?} {element:?} {change}: {across}");
         }
 
-        let above = hold("z_max", [None, None, Some(0.0)]);
+        let above = constraint("z_max", [None, None, Some(0.0)]);
         let growth = growing("tissue", -0.1);
         let plan = Plan { prescribed: between_walls(Some(above)), growth, ..Plan::default() };
         let answer = solve(&case, &plan, &settings);
@@ -164,9 +164,9 @@ fn the_slab_loses_what_other_codes_say() {
     for (loss, expected) in [(0.02, 0.192), (0.05, 0.485), (0.10, 0.987)] {
         let (case, _) = slab(3.0, 0.46);
         let prescribed = vec![
-            hold("patch", [Some(0.0); 3]),
-            hold("far", [Some(0.0); 3]),
-            hold("y_min", [None, Some(0.0), None]),
+            constraint("patch", [Some(0.0); 3]),
+            constraint("far", [Some(0.0); 3]),
+            constraint("y_min", [None, Some(0.0), None]),
         ];
         let plan = Plan { prescribed, growth: growing("tissue", -loss), ..Plan::default() };
         let answer = solve(&case, &plan, &Settings::default());

@@ -14,7 +14,7 @@ use mechanics::prediction::{
 use nalgebra::Matrix3;
 
 use crate::material::anisotropy::{MUSCLE, fibred};
-use crate::scenes::{case_of, exact, hold, material, set, solve};
+use crate::scenes::{case_of, constraint, exact, material, set, solve};
 
 const SIZE: [f64; 3] = [24.0, 12.0, 12.0];
 
@@ -66,9 +66,9 @@ fn bar(share: f64, mixing: Mixing) -> Case {
 fn pulled() -> Plan {
     let zero = Some(0.0);
     let prescribed = vec![
-        hold("x_min", [zero, None, None]),
-        hold("y_min", [None, zero, None]),
-        hold("z_min", [None, None, zero]),
+        constraint("x_min", [zero, None, None]),
+        constraint("y_min", [None, zero, None]),
+        constraint("z_min", [None, None, zero]),
     ];
     let loads = vec![Load::Traction { faces: set("x_max"), traction: Vector::x() }];
     Plan { prescribed, loads, ..Plan::default() }

@@ -10,7 +10,7 @@ use nalgebra::{Matrix3, Rotation3};
 use super::growth::{SIZE, distorted, free, growing, largest_reaction, reaction_of};
 use super::muscles::{arched, in_region, pulling};
 use crate::material::hyperelastic::rows;
-use crate::scenes::{case_of, hold, largest_error, material, on_the_boundary, set, solve};
+use crate::scenes::{case_of, constraint, largest_error, material, on_the_boundary, set, solve};
 
 const EVERY: [(CellShape, ElementChoice); 6] = [
     (CellShape::Tet4, ElementChoice::Plain),
@@ -105,7 +105,7 @@ fn confined_tissue_presses_by_its_law() {
         let flat = |name: &str| {
             let mut held = [None; 3];
             held[axis(name)] = Some(0.0);
-            hold(name, held)
+            constraint(name, held)
         };
         let prescribed = sides.map(flat).to_vec();
         let plan = Plan { prescribed, growth: growing("tissue", change), ..Plan::default() };
@@ -186,7 +186,7 @@ fn a_muscle_that_cannot_shorten_pulls_with_stress_times_area_at_finite_strain() 
         case.muscles = vec![in_region("biceps", "tissue", Vector::x())];
         let zero = [Some(0.0); 3];
         let prescribed = ["x_min", "x_max", "y_min", "y_max", "z_min", "z_max"];
-        let prescribed = prescribed.map(|side| hold(side, zero)).to_vec();
+        let prescribed = prescribed.map(|side| constraint(side, zero)).to_vec();
         let plan = Plan { prescribed, ..pulling("biceps", 10.0) };
         let answer = solve(&case, &plan, &tight(element));
         let largest = answer.displacement.iter().map(|u| u.norm()).fold(0.0, f64::max);

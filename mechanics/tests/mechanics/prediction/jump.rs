@@ -60,11 +60,11 @@ impl Field {
         let load = |displacement: &dyn Fn(Vector) -> Vector| LoadCase {
             held: scene
                 .conditions
-                .holds
+                .constraints
                 .iter()
-                .map(|hold| match scene.conditions.classes[hold.node as usize] {
+                .map(|constraint| match scene.conditions.classes[constraint.node as usize] {
                     NodeClass::Joined(_) => {
-                        displacement(scene.mesh.nodes[hold.node as usize] - PIVOT)
+                        displacement(scene.mesh.nodes[constraint.node as usize] - PIVOT)
                     }
                     _ => Vector::zeros(),
                 })

@@ -1,6 +1,6 @@
 //! The skin as a membrane on tissue at finite strain.
 
-use mechanics::boundary::Hold;
+use mechanics::boundary::Constraint;
 use mechanics::material::hyperelastic::{Law, NeoHookean};
 use mechanics::material::{PlaneStress, Sheet};
 use mechanics::mesh::sample::block;
@@ -28,8 +28,8 @@ fn forces(mesh: &VolumeMesh, sheet: PlaneStress, moved: impl Fn(&Vector) -> Vect
     let triangles = faces.flat_map(|face| face.triangles()).collect();
     let membrane = Membrane { sheet, triangles, lines: Vec::new() };
     let laws = [Law::NeoHookean(NeoHookean { lambda: 50.0, mu: 5.0 })];
-    let holds: Vec<Hold> =
-        (0..).zip(&mesh.nodes).map(|(node, x)| Hold::at(node, moved(x) - x)).collect();
+    let constraints: Vec<Constraint> =
+        (0..).zip(&mesh.nodes).map(|(node, x)| Constraint::at(node, moved(x) - x)).collect();
     let one = vec![0; mesh.cells.len()];
     let reactions = |membrane: Option<&Membrane>| {
         let problem = FiniteStrain {
@@ -42,12 +42,12 @@ fn forces(mesh: &VolumeMesh, sheet: PlaneStress, moved: impl Fn(&Vector) -> Vect
             fibres: FibreField::default(),
             membrane,
             inner: std::sync::Arc::default(),
-            holds: &holds,
+            constraints: &constraints,
             tolerance: Tolerance { relative_residual: 1e-10, memory_mb: 1000.0 },
             with_states: false,
             advance: Advance::default(),
         };
-        let held = holds.iter().map(|hold| *hold.values()).collect();
+        let held = constraints.iter().map(|constraint| *constraint.values()).collect();
         let forces = vec![Vector::zeros(); mesh.nodes.len()];
         let case = LoadCase { held, forces, ..LoadCase::default() };
         problem.solve(&case, &Unobserved).unwrap().reactions

@@ -117,8 +117,8 @@ fn a_cube_pressed_by_the_wall_of_a_jaw_resists_with_its_confined_modulus() {
             let scene = Scene::new(&case, &plan, &settings).unwrap();
             let answer = scene.solve(&Unobserved).unwrap();
             let lid = &case.volume.node_sets["z_max"];
-            let holds = scene.conditions.holds.iter().zip(&answer.reactions);
-            let on_lid = holds.filter(|(hold, _)| lid.contains(&hold.node));
+            let constraints = scene.conditions.constraints.iter().zip(&answer.reactions);
+            let on_lid = constraints.filter(|(constraint, _)| lid.contains(&constraint.node));
             let found = -on_lid.map(|(_, force)| force.z).sum::<f64>() / 100.0;
             assert!((found - pressure).abs() < 1e-6, "{:?} nu {nu}: {found}", settings.method);
         }

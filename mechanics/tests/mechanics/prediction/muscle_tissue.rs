@@ -16,7 +16,7 @@ use mechanics::prediction::{
 };
 use mechanics::response::{ResponseError, inner_loads};
 
-use crate::scenes::{case_of, exact, hold, material, set, solve};
+use crate::scenes::{case_of, constraint, exact, material, set, solve};
 
 /// A box between two corners.
 fn boxed(low: [f64; 3], high: [f64; 3]) -> TriangleSurface {
@@ -47,7 +47,7 @@ fn held(muscles: Vec<Muscle>) -> Case {
 }
 
 fn pushed() -> Plan {
-    let prescribed = vec![hold("x_max", [Some(1.0), None, Some(0.5)])];
+    let prescribed = vec![constraint("x_max", [Some(1.0), None, Some(0.5)])];
     Plan { prescribed, ..Plan::default() }
 }
 
@@ -115,11 +115,11 @@ fn a_cell_that_is_muscle_in_part_is_the_mixture_of_the_rule_and_pulls_by_its_sha
         assert_eq!((tissue.rule, tissue.cells, tissue.mixed), (rule, 32, 16));
         let at = |place: [f64; 3]| {
             let place = Vector::from(place);
-            let holds = |cell: &usize| {
+            let constraints = |cell: &usize| {
                 let corners: Vec<Vector> = made.mesh.corners(*cell).collect();
                 (corners.iter().sum::<Vector>() / 8.0 - place).norm() < 1e-9
             };
-            (0..made.mesh.cells.len()).find(holds).unwrap()
+            (0..made.mesh.cells.len()).find(constraints).unwrap()
         };
         let (whole, mixed) = (at([10.5, 4.5, 4.5]), at([10.5, 4.5, 7.5]));
         let of = |cell: usize| made.materials[usize::from(made.material_of_cell[cell])];
@@ -157,9 +157,9 @@ fn a_muscle_that_pulls_becomes_stiffer_along_its_fibres_by_the_stress_of_its_act
     let case = Case { fixed: Vec::new(), ..held(vec![own]) };
     let zero = Some(0.0);
     let prescribed = vec![
-        hold("x_min", [zero, None, None]),
-        hold("y_min", [None, zero, None]),
-        hold("z_min", [None, None, zero]),
+        constraint("x_min", [zero, None, None]),
+        constraint("y_min", [None, zero, None]),
+        constraint("z_min", [None, None, zero]),
     ];
     let pulling = |stress: f64| {
         let activations = vec![Activation { muscle: "m".to_owned(), stress }];

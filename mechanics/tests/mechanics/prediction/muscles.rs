@@ -12,7 +12,7 @@ use mechanics::progress::Unobserved;
 use mechanics::study::methods;
 
 use crate::material::anisotropy::{ELEMENTS, MUSCLE, fibred, tight};
-use crate::scenes::{case_of, exact, hold, largest_error, material, set, solve};
+use crate::scenes::{case_of, constraint, exact, largest_error, material, set, solve};
 
 pub fn in_region(name: &str, region: &str, along: Vector) -> Muscle {
     let fibres = Some(FibreDirection::Uniform(along));
@@ -71,9 +71,9 @@ fn a_free_block_shortens_along_its_fibres_by_the_closed_form_in_every_element() 
                     nodes: NodeSelection::NodeSet("origin".to_owned()),
                     displacement: [zero; 3],
                 },
-                hold("x_min", [zero, None, None]),
-                hold("y_min", [None, zero, None]),
-                hold("z_min", [None, None, zero]),
+                constraint("x_min", [zero, None, None]),
+                constraint("y_min", [None, zero, None]),
+                constraint("z_min", [None, None, zero]),
             ];
             let plan = Plan { prescribed, ..pulling("biceps", 10.0) };
             let answer = solve(&case, &plan, &Settings { element, ..tight() });
@@ -172,8 +172,8 @@ fn activations_growth_and_loads_add_up() {
         let answer = |plan: &Plan| solve(&case, plan, &exact()).displacement;
         let growth =
             vec![mechanics::prediction::Growth { region: "*".to_owned(), volume_change: 0.05 }];
-        let lifted = vec![hold("y_max", [None, Some(0.3), None])];
-        let held = vec![hold("y_max", [None, Some(0.0), None])];
+        let lifted = vec![constraint("y_max", [None, Some(0.3), None])];
+        let held = vec![constraint("y_max", [None, Some(0.0), None])];
         let activations = vec![pull("arc", 20.0), pull("oblique", 7.0)];
         let together = answer(&Plan {
             prescribed: lifted.clone(),

@@ -215,8 +215,10 @@ fn the_error_is_zero_where_nodes_are_held_and_not_elsewhere() {
     let held = Scene::new(&scene.case, &scene.plans[0].1, &Settings::default()).unwrap();
     let found = predict(&held, &Unobserved).unwrap();
     let missing = found.numerical_error.unwrap().missing;
-    for hold in held.conditions.holds.iter().filter(|hold| hold.count() == 3) {
-        assert_eq!(missing[hold.node as usize], Vector::zeros());
+    for constraint in
+        held.conditions.constraints.iter().filter(|constraint| constraint.count() == 3)
+    {
+        assert_eq!(missing[constraint.node as usize], Vector::zeros());
     }
     for &node in held.skin.nodes() {
         assert!(missing[node as usize].norm() > 0.0);

@@ -1,6 +1,6 @@
 //! docs/verification.md#v1, docs/verification.md#v2: affine fields and rigid movements.
 
-use mechanics::boundary::Hold;
+use mechanics::boundary::Constraint;
 use mechanics::mesh::sample::block;
 use mechanics::mesh::{CellShape, Vector, VolumeMesh};
 use mechanics::model::dofs::DofMap;
@@ -73,7 +73,7 @@ fn an_affine_field_has_the_same_principal_strains_in_every_cell() {
 /// A matrix whose rows are not in the order of the nodes.
 struct Assembled {
     matrix: HalfMatrix<f64, 3>,
-    numbering: DofMap,
+    dof_map: DofMap,
 }
 
 impl Assembled {
@@ -81,9 +81,9 @@ impl Assembled {
         let materials = [material(15.0, 0.49)];
         let material_of_cell = vec![0; mesh.cells.len()];
         let tissue = Tissue::isotropic(mesh, &materials, &material_of_cell, dilatation);
-        let numbering = DofMap::new(mesh, &vec![false; mesh.nodes.len()]);
-        let matrix = tissue.assemble(&numbering, &Unobserved).unwrap().unwrap();
-        Assembled { matrix, numbering }
+        let dof_map = DofMap::new(mesh, &vec![false; mesh.nodes.len()]);
+        let matrix = tissue.assemble(&dof_map, &Unobserved).unwrap().unwrap();
+        Assembled { matrix, dof_map }
     }
 
     fn dense(&self) -> DMatrix<f64> {
@@ -113,11 +113,11 @@ fn a_small_rigid_movement_stores_no_energy() {
         let mesh = distorted_block(shape);
         let assembled = Assembled::new(&mesh, |_| Dilatation::Mean);
         let mut rigid = vec![[[0.0]; 3]; mesh.nodes.len()];
-        for (x, &row) in mesh.nodes.iter().zip(&assembled.numbering.layout.place) {
+        for (x, &row) in mesh.nodes.iter().zip(&assembled.dof_map.ordering.place) {
             rigid[row as usize] = <[f64; 3]>::from(axis.cross(x) + shift).map(|value| [value]);
         }
         let mut forces = vec![[[0.0]; 3]; rigid.len()];
-        assembled.matrix.multiply(&assembled.numbering.layout, &rigid, &mut forces);
+        assembled.matrix.multiply(&assembled.dof_map.ordering, &rigid, &mut forces);
         let (rigid, forces) = (rigid.as_flattened(), forces.as_flattened());
         let energy: f64 = rigid.iter().zip(forces).map(|([u], [f])| u * f).sum::<f64>() / 2.0;
         // The shift is 0.3 mm: rounding leaves about 1e-16 of E V |u|^2 / h^2 there.
@@ -157,8 +157,8 @@ fn the_assembled_matrix_is_the_sum_of_its_cells() {
             let tensor = material(15.0, 0.49).tensor(&Vector::zeros());
             let blocks = cell_stiffness(shape, &corners, &tensor, Dilatation::Mean).unwrap();
             for (k, block) in blocks.iter().enumerate() {
-                let row = assembled.numbering.row(nodes[k / nodes.len()]);
-                let column = assembled.numbering.row(nodes[k % nodes.len()]);
+                let row = assembled.dof_map.row(nodes[k / nodes.len()]);
+                let column = assembled.dof_map.row(nodes[k % nodes.len()]);
                 for i in 0..3 {
                     for j in 0..3 {
                         sum[(3 * row + i, 3 * column + j)] += block[i][j];
@@ -177,6 +177,11 @@ fn a_node_held_nowhere_has_no_hold() {
     let plan = on_the_boundary(&mut mesh, affine);
     let case = case_of(mesh, material(15.0, 0.3));
     let scene = mechanics::prediction::Scene::new(&case, &plan, &exact()).unwrap();
-    let held: Vec<u32> = scene.conditions.holds.iter().map(|hold: &Hold| hold.node).collect();
+    let held: Vec<u32> = scene
+        .conditions
+        .constraints
+        .iter()
+        .map(|constraint: &Constraint| constraint.node)
+        .collect();
     assert_eq!(held, case.volume.node_sets["boundary"]);
 }

@@ -12,14 +12,14 @@ use mechanics::prediction::{
 };
 use mechanics::progress::Unobserved;
 
-use crate::scenes::{case_of, exact, hold, largest_error, material, on_the_boundary, set};
+use crate::scenes::{case_of, constraint, exact, largest_error, material, on_the_boundary, set};
 
 /// A block on a moving jaw, a wall that the jaw carries, a fixed side, gravity, traction and a force.
 fn everything() -> (Case, Plan) {
     let mut mesh = block(Vector::new(6.0, 4.0, 2.0), [3, 2, 2], CellShape::Tet4);
     let nodes = 0..mesh.nodes.len() as u32;
-    let where_ = |holds: &dyn Fn(&Vector) -> bool| -> Vec<u32> {
-        nodes.clone().filter(|&n| holds(&mesh.nodes[n as usize])).collect()
+    let where_ = |is_inside: &dyn Fn(&Vector) -> bool| -> Vec<u32> {
+        nodes.clone().filter(|&n| is_inside(&mesh.nodes[n as usize])).collect()
     };
     let jaw = where_(&|x| x.z == 0.0 && x.x <= 2.0);
     let wall = where_(&|x| x.z == 0.0 && x.x >= 4.0);
@@ -54,7 +54,7 @@ fn everything() -> (Case, Plan) {
     let movement = RigidMovement::about_pivot(turn, Vector::zeros(), Vector::new(0.2, 0.1, 0.3));
     let plan = Plan {
         segments: vec![PlannedSegment { name: "jaw".to_owned(), movement }],
-        prescribed: vec![hold("pressed", [None, Some(0.25), None])],
+        prescribed: vec![constraint("pressed", [None, Some(0.25), None])],
         loads: vec![
             Load::Gravity { acceleration: Vector::new(0.0, 0.0, -9.81e-3) },
             Load::Traction { faces: set("z_max"), traction: Vector::new(0.5, 0.0, 0.25) },
@@ -87,7 +87,7 @@ fn the_same_mesh_gives_the_same_scene() {
     assert_eq!(same.skin.surface, scene.skin.surface);
     assert_eq!(same.skin.regions, scene.skin.regions);
     assert_eq!(same.parts, scene.parts);
-    for (own, other) in same.conditions.holds.iter().zip(&scene.conditions.holds) {
+    for (own, other) in same.conditions.constraints.iter().zip(&scene.conditions.constraints) {
         // Rounding only.
         assert!((own.axes() * own.values() - other.axes() * other.values()).norm() < 1e-14);
     }
@@ -104,14 +104,15 @@ fn new_nodes_are_held_where_what_holds_them_goes() {
     let (_, finer) = refined(&scene, 2);
     let movement = plan.segments[0].movement;
     let mut met = [0; 4];
-    for hold in &finer.conditions.holds {
-        let (x, held) = (finer.mesh.nodes[hold.node as usize], hold.axes() * hold.values());
-        if (hold.node as usize) < scene.mesh.nodes.len() {
+    for constraint in &finer.conditions.constraints {
+        let (x, held) =
+            (finer.mesh.nodes[constraint.node as usize], constraint.axes() * constraint.values());
+        if (constraint.node as usize) < scene.mesh.nodes.len() {
             continue;
         }
         let carried = movement.displacement(&x);
         // Rounding only, in every case.
-        match finer.conditions.classes[hold.node as usize] {
+        match finer.conditions.classes[constraint.node as usize] {
             NodeClass::Joined(_) => {
                 assert!(x.z == 0.0 && x.x <= 2.0 && (held - carried).norm() < 1e-14);
                 met[0] += 1;
@@ -121,7 +122,7 @@ fn new_nodes_are_held_where_what_holds_them_goes() {
                 met[1] += 1;
             }
             NodeClass::Sliding => {
-                assert!(x.z == 0.0 && x.x >= 4.0 && hold.count() == 1);
+                assert!(x.z == 0.0 && x.x >= 4.0 && constraint.count() == 1);
                 assert!((held.z - carried.z).abs() < 1e-14 && held.xy().norm() < 1e-14);
                 met[2] += 1;
             }

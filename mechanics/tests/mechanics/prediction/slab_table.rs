@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 
 use mechanics::boundary::conditions::combine;
-use mechanics::boundary::{Conditions, HeldNodes, Hold, NodeClass, WallNode};
+use mechanics::boundary::{Conditions, Constraint, HeldNodes, NodeClass, WallNode};
 use mechanics::mesh::refinement::refine;
 use mechanics::mesh::sample::block;
 use mechanics::mesh::{CellShape, Vector, VolumeMesh};
@@ -51,8 +51,8 @@ fn quadratic_slab(h: f64, nu: f64) -> SkinPoints {
     let mut mesh = block(Vector::new(60.0, 30.0, 12.0), cells, CellShape::Tet4);
     mesh.nodes.iter_mut().for_each(|x| x.x -= 30.0);
     let positions = EdgeNodes::new(&mesh).positions(&mesh);
-    let nodes_where = |holds: &dyn Fn(&Vector) -> bool| -> Vec<u32> {
-        (0..).zip(&positions).filter(|(_, x)| holds(x)).map(|(node, _)| node).collect()
+    let nodes_where = |is_inside: &dyn Fn(&Vector) -> bool| -> Vec<u32> {
+        (0..).zip(&positions).filter(|(_, x)| is_inside(x)).map(|(node, _)| node).collect()
     };
     let base = |x: &Vector| x.z < 1e-9;
     let movement =
@@ -67,20 +67,20 @@ fn quadratic_slab(h: f64, nu: f64) -> SkinPoints {
             .collect(),
         ..HeldNodes::default()
     };
-    let Conditions { classes, mut holds, .. } = combine(&positions, &held).unwrap();
+    let Conditions { classes, mut constraints, .. } = combine(&positions, &held).unwrap();
     // Middles of edges whose ends are held by different things are free by their place.
     let middles = mesh.nodes.len()..positions.len();
     let free = middles.filter(|&node| classes[node] == NodeClass::Free && base(&positions[node]));
-    holds.extend(free.map(|node| Hold::free(node as u32)));
+    constraints.extend(free.map(|node| Constraint::free(node as u32)));
     let (materials, of_cell) = ([material(15.0, nu)], vec![0; mesh.cells.len()]);
     let tissue = Tissue::isotropic(&mesh, &materials, &of_cell, |_| Dilatation::Pointwise);
     let case = LoadCase {
-        held: holds.iter().map(|hold| *hold.values()).collect(),
+        held: constraints.iter().map(|constraint| *constraint.values()).collect(),
         forces: vec![Vector::zeros(); mesh.nodes.len()],
         ..LoadCase::default()
     };
     let tolerance = Tolerance { relative_residual: 1e-8, memory_mb: 4000.0 };
-    let problem = Problem { tissue, holds: &holds, forces: &case.forces, tolerance };
+    let problem = Problem { tissue, constraints: &constraints, forces: &case.forces, tolerance };
     let solved = quadratic::solve_cases(&problem, std::slice::from_ref(&case), &Unobserved);
     skin_points(&mesh, &solved.unwrap()[0].displacement)
 }

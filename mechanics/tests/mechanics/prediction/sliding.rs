@@ -70,9 +70,10 @@ impl Pressed {
 
     /// What the lid exerts, in mN.
     fn lid(&self) -> Vector {
-        let holds = self.scene.conditions.holds.iter().zip(&self.answer.reactions);
+        let constraints = self.scene.conditions.constraints.iter().zip(&self.answer.reactions);
         let classes = &self.scene.conditions.classes;
-        let on_lid = holds.filter(|(hold, _)| classes[hold.node as usize] == NodeClass::Prescribed);
+        let on_lid = constraints
+            .filter(|(constraint, _)| classes[constraint.node as usize] == NodeClass::Prescribed);
         on_lid.map(|(_, force)| force).sum()
     }
 
@@ -128,17 +129,19 @@ impl Pressed {
     fn check_walls(&self, model: &(CellShape, ElementChoice, Method)) {
         let scale = self.lid().norm();
         let (mut force, mut moment) = (Vector::zeros(), Vector::zeros());
-        for (hold, reaction) in self.scene.conditions.holds.iter().zip(&self.answer.reactions) {
-            let place = self.scene.mesh.nodes[hold.node as usize];
+        for (constraint, reaction) in
+            self.scene.conditions.constraints.iter().zip(&self.answer.reactions)
+        {
+            let place = self.scene.mesh.nodes[constraint.node as usize];
             force += reaction;
             moment += place.cross(reaction);
-            if self.scene.conditions.classes[hold.node as usize] != NodeClass::Sliding {
+            if self.scene.conditions.classes[constraint.node as usize] != NodeClass::Sliding {
                 continue;
             }
-            let u = self.answer.displacement[hold.node as usize];
+            let u = self.answer.displacement[constraint.node as usize];
             for axis in 0..3 {
-                let direction = hold.axes().column(axis);
-                let wrong = match axis < hold.count() {
+                let direction = constraint.axes().column(axis);
+                let wrong = match axis < constraint.count() {
                     true => u.dot(&direction).abs() / 0.5,
                     false => reaction.dot(&direction).abs() / scale,
                 };
@@ -159,7 +162,7 @@ fn without_contact_sliding_nodes_go_free() {
     let selection: NodeSelection = set("x_max");
     case.sliding =
         vec![Sliding { nodes: selection, normal: SlidingNormal::Surface, segment: None }];
-    let lid = crate::scenes::hold("z_max", [Some(0.0), Some(0.0), Some(-0.5)]);
+    let lid = crate::scenes::constraint("z_max", [Some(0.0), Some(0.0), Some(-0.5)]);
     let plan = Plan { prescribed: vec![lid], ..Plan::default() };
     let bulge = |contact: ContactKind| {
         let scene = Scene::new(&case, &plan, &Settings { contact, ..exact() }).unwrap();

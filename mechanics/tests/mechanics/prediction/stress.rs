@@ -21,7 +21,7 @@ use super::contact::{PRESSING, bar, pushed, unilateral};
 use super::growth::between_walls;
 use crate::material::anisotropy::{ELEMENTS, MUSCLE, fibred, gradients, tight};
 use crate::material::hyperelastic::rows;
-use crate::scenes::{case_of, exact, hold, material, on_the_boundary, set, solve};
+use crate::scenes::{case_of, constraint, exact, material, on_the_boundary, set, solve};
 
 const SIZE: Vector = Vector::new(6.0, 4.0, 2.0);
 const SIDES: [&str; 6] = ["x_min", "x_max", "y_min", "y_max", "z_min", "z_max"];
@@ -132,7 +132,7 @@ fn tissue_with_fibres_has_the_stress_of_its_tensor() {
 
 /// Holds the upper side of a block at a height in mm over where it lies at rest.
 fn top_at(height: f64) -> Prescribed {
-    hold("z_max", [None, None, Some(height)])
+    constraint("z_max", [None, None, Some(height)])
 }
 
 #[test]
@@ -158,10 +158,9 @@ fn growth_that_is_not_allowed_is_stress_and_growth_that_is_none() {
         let strain = Matrix3::from_diagonal(&Vector::new(0.0, 0.0, -0.018_146_2));
         assert_uniform(&answer, &case.volume, &CellState { stress, strain }, 1e-6, &what);
         // Nothing hinders the third: planes of symmetry.
-        let free = ["x_min", "y_min", "z_min"]
-            .into_iter()
-            .enumerate()
-            .map(|(axis, name)| hold(name, std::array::from_fn(|k| (k == axis).then_some(0.0))));
+        let free = ["x_min", "y_min", "z_min"].into_iter().enumerate().map(|(axis, name)| {
+            constraint(name, std::array::from_fn(|k| (k == axis).then_some(0.0)))
+        });
         let plan = Plan { prescribed: free.collect(), growth: growth(-0.1), ..Plan::default() };
         let answer = solve(&case, &plan, &asked(element));
         let strain = Matrix3::from_diagonal_element(linear_strain(-0.1));
@@ -227,7 +226,7 @@ fn lifted(by_mm: f64, shape: CellShape, tissue: LinearElastic) -> (Case, Plan) {
     mesh.node_sets.insert("jaw".to_owned(), jaw);
     mesh.node_sets.insert("rest".to_owned(), rest);
     let case = Case { fixed: vec![set("rest")], ..case_of(mesh, tissue) };
-    let up = hold("jaw", [Some(0.3 * by_mm), Some(0.0), Some(by_mm)]);
+    let up = constraint("jaw", [Some(0.3 * by_mm), Some(0.0), Some(by_mm)]);
     (case, Plan { prescribed: vec![up], ..Plan::default() })
 }
 

@@ -31,10 +31,10 @@ pub fn system_of(
     let tissue = Tissue::isotropic(mesh, materials, material_of_cell, |_| Dilatation::Mean);
     let mut held = vec![false; mesh.nodes.len()];
     mesh.node_set(set).unwrap().iter().for_each(|&node| held[node as usize] = true);
-    let numbering = DofMap::new(mesh, &held);
-    let matrix = tissue.assemble(&numbering, &Unobserved).unwrap().unwrap();
-    let positions = numbering.by_row(&mesh.nodes);
-    System { layout: numbering.layout, matrix, partly_constrained: Vec::new(), positions }
+    let dof_map = DofMap::new(mesh, &held);
+    let matrix = tissue.assemble(&dof_map, &Unobserved).unwrap().unwrap();
+    let positions = dof_map.by_row(&mesh.nodes);
+    System { ordering: dof_map.ordering, matrix, partly_constrained: Vec::new(), positions }
 }
 
 fn clamped_block() -> System {
@@ -50,7 +50,7 @@ fn sphere(cells_along: usize, cells_radial: usize) -> System {
 /// A force on every free unknown; each seed gives another.
 pub fn forces(system: &System, seed: usize) -> Unknowns {
     let force = |i: usize| ((i * (7919 + 2 * seed)) % 101) as f64 - 50.0;
-    (0..system.layout.free).map(|row| std::array::from_fn(|c| force(3 * row + c))).collect()
+    (0..system.ordering.free).map(|row| std::array::from_fn(|c| force(3 * row + c))).collect()
 }
 
 pub fn largest_difference(a: &Unknowns, b: &Unknowns) -> f64 {
@@ -84,7 +84,7 @@ fn right_hand_sides_solved_together_are_those_solved_alone() {
     let tolerance = Tolerance { relative_residual: 1e-10, ..EXACT };
     for count in [2, 5, 11] {
         let mut right: Vec<Unknowns> = (0..count).map(|seed| forces(&system, seed)).collect();
-        right[1] = vec![[0.0; 3]; system.layout.free];
+        right[1] = vec![[0.0; 3]; system.ordering.free];
         let together = conjugate_gradient::solve(&system, &right, &tolerance, &Unobserved).unwrap();
         assert_eq!(together.len(), count);
         for (right, solution) in right.into_iter().zip(&together) {
@@ -101,7 +101,7 @@ fn right_hand_sides_solved_together_are_those_solved_alone() {
 #[test]
 fn one_thread_and_three_give_the_same_bits() {
     let system = sphere(24, 6);
-    assert!(system.layout.parts.len() > 1, "parts for threads are what is tested");
+    assert!(system.ordering.parts.len() > 1, "parts for threads are what is tested");
     let tolerance = Tolerance { relative_residual: 1e-8, ..EXACT };
     let right = [forces(&system, 0)];
     let with_threads = |count| {

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::boundary::Hold;
+use crate::boundary::Constraint;
 use crate::boundary::contact::ContactRow;
 use crate::model::dofs::{DofMap, partly_constrained};
 use crate::solver::PartlyHeld;
@@ -11,15 +11,15 @@ use crate::solver::preconditioned::Equation;
 /// Free unknowns by node.
 #[derive(Clone)]
 pub(in crate::model::fem) struct FreeUnknowns<'a> {
-    numbering: &'a DofMap,
+    dof_map: &'a DofMap,
     partly_constrained: BTreeMap<usize, PartlyHeld>,
 }
 
 impl<'a> FreeUnknowns<'a> {
-    pub fn new(holds: &[Hold], numbering: &'a DofMap) -> Self {
-        let partly = partly_constrained(holds, numbering);
+    pub fn new(constraints: &[Constraint], dof_map: &'a DofMap) -> Self {
+        let partly = partly_constrained(constraints, dof_map);
         let partly_constrained = partly.into_iter().map(|partly| (partly.row, partly)).collect();
-        FreeUnknowns { numbering, partly_constrained }
+        FreeUnknowns { dof_map, partly_constrained }
     }
 
     /// Coefficients of a contact constraint on free unknowns, along the axes of their nodes; none where both sides are
@@ -27,8 +27,8 @@ impl<'a> FreeUnknowns<'a> {
     pub fn equation(&self, row: &ContactRow) -> Equation {
         let mut equation = Equation::new();
         for (node, along) in &row.terms {
-            let place = self.numbering.row(*node);
-            if place >= self.numbering.layout.free {
+            let place = self.dof_map.row(*node);
+            if place >= self.dof_map.ordering.free {
                 continue;
             }
             let partly = self.partly_constrained.get(&place);

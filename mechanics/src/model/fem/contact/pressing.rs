@@ -159,7 +159,7 @@ impl<'a, 'b> Rounds<'a, 'b> {
         let system = problem.system;
         Ok(Rounds {
             problem,
-            unknowns: FreeUnknowns::new(system.holds, &system.numbering),
+            unknowns: FreeUnknowns::new(system.constraints, &system.dof_map),
             equations: Equations::new(system.preconditioned(progress)?, Vec::new()),
             kept_rows: KeptRows::default(),
             share: 0.0,
@@ -276,12 +276,12 @@ impl<'a, 'b> Rounds<'a, 'b> {
 
     fn solved(&self, forces: &[Vector]) -> Solved {
         let ContactProblem { system, free, .. } = self.problem;
-        let (_, p) = self.added.x.split_at(3 * system.stiffness.layout.free);
+        let (_, p) = self.added.x.split_at(3 * system.stiffness.ordering.free);
         let constrained = system.constrained();
-        let held = vec![Vector::zeros(); system.holds.len()];
+        let held = vec![Vector::zeros(); system.constraints.len()];
         let known =
             constrained.known(&LoadCase { held, forces: forces.to_vec(), ..LoadCase::default() });
-        let internal = system.internal_at_holds(&self.added_by_row(), p);
+        let internal = system.internal_at_constraints(&self.added_by_row(), p);
         let reactions = constrained.reactions(&internal, &known.force);
         let Solved { equilibrium: free, pressures } = free;
         let sum = |(one, other): (&Vector, &Vector)| one + other;

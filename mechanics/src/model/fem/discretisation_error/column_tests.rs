@@ -7,7 +7,7 @@ use super::edges::Edges;
 use super::held_edges::HeldEdges;
 use super::points::EnrichedCell;
 use super::{DistributedLoads, EdgeEquation, MAX_EDGES};
-use crate::boundary::Hold;
+use crate::boundary::Constraint;
 use crate::element::MAX_NODES;
 use crate::material::LinearElastic;
 use crate::mesh::sample::block;
@@ -39,9 +39,10 @@ fn edge_functions_that_are_solved_exactly_have_the_energy_of_the_error() {
         let tissue =
             Tissue::isotropic(&mesh, &material, &material_of_cell, |_| Dilatation::Pointwise);
         let bottom = mesh.node_sets["z_min"].iter();
-        let holds: Vec<Hold> = bottom.map(|&node| Hold::at(node, Vector::zeros())).collect();
-        let numbering = number(&nodes_of_cells(&mesh), &mesh.nodes, &holds);
-        let edges = Edges::new(&mesh, &numbering);
+        let constraints: Vec<Constraint> =
+            bottom.map(|&node| Constraint::at(node, Vector::zeros())).collect();
+        let dof_map = number(&nodes_of_cells(&mesh), &mesh.nodes, &constraints);
+        let edges = Edges::new(&mesh, &dof_map);
 
         // The residual and the whole matrix of the edge functions.
         let mut equations = EdgeEquations::zeros(edges.count());
@@ -64,7 +65,7 @@ fn edge_functions_that_are_solved_exactly_have_the_energy_of_the_error() {
         let loads = DistributedLoads { acceleration, ..DistributedLoads::default() };
         loads.add_to(&tissue, &edges, &|_| false, &mut equations.residual).unwrap();
         let faces = mesh.boundary_faces();
-        let held = HeldEdges::new(&faces, &holds, mesh.nodes.len(), &edges);
+        let held = HeldEdges::new(&faces, &constraints, mesh.nodes.len(), &edges);
         let steps = equations.steps(&held);
 
         // Held edges, and pairs of nodes that no edge joins, stay out.

@@ -14,7 +14,7 @@ const CHUNK: usize = 512;
 /// An edge couples its two ends in the pattern: its place among the blocks below the diagonal is its number.
 pub(super) struct Edges<'a> {
     mesh: &'a VolumeMesh,
-    numbering: &'a DofMap,
+    dof_map: &'a DofMap,
     /// Of each cell, in the order of the layout.
     of_cells: Vec<CellEdges>,
 }
@@ -27,27 +27,27 @@ pub(super) struct CellEdges {
 }
 
 impl<'a> Edges<'a> {
-    pub fn new(mesh: &'a VolumeMesh, numbering: &'a DofMap) -> Self {
-        let mut edges = Edges { mesh, numbering, of_cells: Vec::new() };
-        let order = numbering.layout.element_order.par_iter();
+    pub fn new(mesh: &'a VolumeMesh, dof_map: &'a DofMap) -> Self {
+        let mut edges = Edges { mesh, dof_map, of_cells: Vec::new() };
+        let order = dof_map.ordering.element_order.par_iter();
         edges.of_cells = order.map(|&cell| edges.of_cell(cell as usize)).collect();
         edges
     }
 
     /// Above every number of an edge; pairs of nodes that no edge joins have numbers too.
     pub fn count(&self) -> usize {
-        self.numbering.pattern.len()
+        self.dof_map.pattern.len()
     }
 
     /// The number of the edge between two nodes of a cell.
     pub fn between(&self, a: u32, b: u32) -> Option<usize> {
-        self.of_rows(self.numbering.row(a), self.numbering.row(b))
+        self.of_rows(self.dof_map.row(a), self.dof_map.row(b))
     }
 
     fn of_rows(&self, a: usize, b: usize) -> Option<usize> {
         let (row, column) = (a.max(b), a.min(b));
-        let at = self.numbering.pattern.columns(row).binary_search(&(column as u32)).ok()?;
-        Some(self.numbering.pattern.range(row).start + at)
+        let at = self.dof_map.pattern.columns(row).binary_search(&(column as u32)).ok()?;
+        Some(self.dof_map.pattern.range(row).start + at)
     }
 
     pub fn of_cell(&self, cell: usize) -> CellEdges {
@@ -69,7 +69,7 @@ impl<'a> Edges<'a> {
         compute: impl Fn(usize, &CellEdges, &mut T) -> Result<(), InvertedCell> + Sync,
         mut add: impl FnMut(usize, &CellEdges, &T),
     ) -> Result<(), InvertedCell> {
-        let order = &self.numbering.layout.element_order;
+        let order = &self.dof_map.ordering.element_order;
         let mut room = vec![blank; CHUNK.min(order.len())];
         for (cells, of_cells) in order.chunks(CHUNK).zip(self.of_cells.chunks(CHUNK)) {
             let places = room.par_iter_mut().zip(cells).zip(of_cells);

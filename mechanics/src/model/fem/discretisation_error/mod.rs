@@ -31,7 +31,7 @@ mod two_level;
 use super::assembly::Tissue;
 use super::contact::InContact;
 use super::linear_system::{Correction, LinearSystem, Residual, Solved};
-use crate::boundary::Hold;
+use crate::boundary::Constraint;
 use crate::boundary::contact::with_pressing;
 use crate::material::LinearElastic;
 use crate::mesh::Vector;
@@ -88,7 +88,7 @@ impl Estimate<'_> {
         progress: &dyn Progress,
     ) -> Result<DiscretisationError, ModelError> {
         progress.phase(Phase::Estimate);
-        self.missing(solved, self.system.holds, &mut |residual, tolerance| {
+        self.missing(solved, self.system.constraints, &mut |residual, tolerance| {
             Ok(self.system.solve_for(&[residual], tolerance, progress)?.remove(0))
         })
     }
@@ -102,8 +102,8 @@ impl Estimate<'_> {
         progress.phase(Phase::Estimate);
         let InContact { solved, contact, pressing } = found;
         let rows = contact.pressed.iter().map(|pressed| &pressed.row);
-        let holds = with_pressing(self.system.holds, rows);
-        self.missing(solved, &holds, &mut |residual, tolerance| {
+        let constraints = with_pressing(self.system.constraints, rows);
+        self.missing(solved, &constraints, &mut |residual, tolerance| {
             pressing.correction(&residual, tolerance, progress)
         })
     }
@@ -112,12 +112,12 @@ impl Estimate<'_> {
     fn missing(
         &self,
         solved: &Solved,
-        holds: &[Hold],
+        constraints: &[Constraint],
         solve: &mut dyn FnMut(Residual, f64) -> Result<Correction, ModelError>,
     ) -> Result<DiscretisationError, ModelError> {
         let has_pressures = self.system.pressures.is_some();
         let cells = self.cells(self.answered(solved));
-        let two_level = TwoLevel { holds, ..self.two_level(&cells) };
+        let two_level = TwoLevel { constraints, ..self.two_level(&cells) };
         let (residual, squared_energy_norm) = two_level.at_corners()?;
         let tolerance = tolerance(self.tissue.materials, has_pressures);
         let Correction { displacement, iterations, .. } = solve(residual, tolerance)?;
@@ -140,9 +140,9 @@ impl Estimate<'_> {
         let pressures = self.system.pressures.as_ref();
         TwoLevel {
             tissue: &self.tissue,
-            numbering: &self.system.numbering,
+            dof_map: &self.system.dof_map,
             boundary: self.boundary,
-            holds: self.system.holds,
+            constraints: self.system.constraints,
             loads: self.loads,
             displacement: cells.displacement,
             cells,

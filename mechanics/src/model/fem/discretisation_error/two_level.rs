@@ -7,7 +7,7 @@ use super::edges::Edges;
 use super::held_edges::HeldEdges;
 use super::loads::DistributedLoads;
 use super::sheet::{Sheet, SheetState};
-use crate::boundary::Hold;
+use crate::boundary::Constraint;
 use crate::element::MAX_NODES;
 use crate::mesh::Vector;
 use crate::mesh::volume::BoundaryFace;
@@ -44,9 +44,9 @@ pub(in crate::model::fem) trait EnrichedCells: Sync {
 /// An answer, and its cells with functions on their edges.
 pub(in crate::model::fem) struct TwoLevel<'a, C> {
     pub tissue: &'a Tissue<'a>,
-    pub numbering: &'a DofMap,
+    pub dof_map: &'a DofMap,
     pub boundary: &'a [BoundaryFace],
-    pub holds: &'a [Hold],
+    pub constraints: &'a [Constraint],
     pub loads: &'a DistributedLoads,
     /// Of the nodes, in mm.
     pub displacement: &'a [Vector],
@@ -56,7 +56,7 @@ pub(in crate::model::fem) struct TwoLevel<'a, C> {
 
 impl<C: EnrichedCells> TwoLevel<'_, C> {
     pub(super) fn edges(&self) -> Edges<'_> {
-        Edges::new(self.tissue.mesh, self.numbering)
+        Edges::new(self.tissue.mesh, self.dof_map)
     }
 
     /// The equations of the edges beside the answer; nothing acts on them but the answer.
@@ -84,7 +84,7 @@ impl<C: EnrichedCells> TwoLevel<'_, C> {
         let has_pressure = |cell: usize| self.cells.pressure_numbers(cell).is_some();
         self.loads.add_to(self.tissue, edges, &has_pressure, &mut equations.residual)?;
         let nodes = self.tissue.mesh.nodes.len();
-        Ok(equations.steps(&HeldEdges::new(self.boundary, self.holds, nodes, edges)))
+        Ok(equations.steps(&HeldEdges::new(self.boundary, self.constraints, nodes, edges)))
     }
 
     /// The membrane, if there is one.

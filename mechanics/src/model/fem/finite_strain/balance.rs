@@ -52,9 +52,9 @@ impl Balance {
         let pairs = deformed.forces.iter().zip(acting);
         let mut left: Vec<Vector> = pairs.map(|(internal, acting)| internal - acting).collect();
         let mut exerted: f64 = acting.iter().map(Vector::norm_squared).sum();
-        for hold in constrained.holds {
-            let force = &mut left[constrained.numbering.row(hold.node)];
-            let own = hold.part_along(force);
+        for constraint in constrained.constraints {
+            let force = &mut left[constrained.dof_map.row(constraint.node)];
+            let own = constraint.part_along(force);
             *force -= own;
             exerted += own.norm_squared();
         }

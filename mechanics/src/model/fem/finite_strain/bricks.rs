@@ -102,19 +102,19 @@ pub(super) struct DeformedBricks<'a> {
 impl<'a> Bricks<'a> {
     pub fn new(
         problem: &FiniteStrain<'a>,
-        numbering: &DofMap,
+        dof_map: &DofMap,
         kept: &CellBulkModulus,
     ) -> Result<Self, InvertedCell> {
         let FiniteStrain { mesh, laws, law_of_cell, elements, fibres, .. } = *problem;
         let inner = Arc::clone(&problem.inner);
-        let order = &numbering.layout.element_order;
+        let order = &dof_map.ordering.element_order;
         let is_brick = |&element: &usize| {
             elements.quadratic || mesh.cells.shape(order[element] as usize) != CellShape::Tet4
         };
         let own_elements: Vec<usize> = (0..order.len()).filter(is_brick).collect();
         let brick = |&element: &usize| {
             let cell = order[element] as usize;
-            let rows = numbering.connectivity.row(element).to_vec();
+            let rows = dof_map.connectivity.row(element).to_vec();
             let law = law_of_cell[cell];
             let mut brick = Brick::new(mesh, cell, rows, law)?;
             if elements.mean_dilatation {
@@ -289,12 +289,12 @@ impl DeformedBricks<'_> {
     pub fn add_tangent(
         &self,
         matrix: &mut HalfMatrix<f64, 3>,
-        numbering: &DofMap,
+        dof_map: &DofMap,
         progress: &dyn Progress,
     ) -> Result<(), SolverError> {
         let of_cell = |cell: usize| Ok(self.tangent_of(self.bricks.of_cell[cell] as usize));
         // The cells are known to be sound.
-        match numbering.add_cells(matrix, &self.bricks.own_elements, progress, of_cell) {
+        match dof_map.add_cells(matrix, &self.bricks.own_elements, progress, of_cell) {
             Ok(true) => Ok(()),
             Ok(false) | Err(InvertedCell { .. }) => Err(SolverError::Stopped),
         }

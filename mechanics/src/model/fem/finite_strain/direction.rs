@@ -140,7 +140,7 @@ impl Directions {
             let matrix = Preconditioned::new(&system, coupling, multigrid);
             let left = left_forces(&matrix, &forces, &found);
             if let Some(change) = change_by_contact(touching, matrix, remaining, &by_node, &left)? {
-                let (_, p) = change.step.split_at(3 * system.layout.free);
+                let (_, p) = change.step.split_at(3 * system.ordering.free);
                 let added = constrained.displacement(&system.by_row(&change.step));
                 by_node.iter_mut().zip(&added).for_each(|(d, added)| *d += added);
                 found.pressures.iter_mut().zip(p).for_each(|(d, [added])| *d += added);
@@ -152,7 +152,7 @@ impl Directions {
         hierarchy.serve(&found);
         self.hierarchy = Some(hierarchy);
         Ok(Direction {
-            positions: constrained.numbering.by_row(&by_node),
+            positions: constrained.dof_map.by_row(&by_node),
             pressures: found.pressures,
             load,
             multipliers,
@@ -180,7 +180,7 @@ impl Directions {
         };
         let forces = nodes.iter().map(|_| Vector::new(next(), next(), next())).collect();
         let case = LoadCase {
-            held: vec![Vector::zeros(); constrained.holds.len()],
+            held: vec![Vector::zeros(); constrained.constraints.len()],
             forces,
             ..LoadCase::default()
         };

@@ -48,11 +48,11 @@ impl FinerProblem<'_> {
         progress: &dyn Progress,
     ) -> Result<MeshError, ModelError> {
         progress.phase(Phase::Estimate);
-        let Constrained { holds, numbering } = *constrained;
+        let Constrained { constraints, dof_map } = *constrained;
         let Rest { positions, pressures: values, directions, touching, .. } = rest;
         let mesh = self.tissue.mesh;
         let by_node = |row: &u32| positions[*row as usize];
-        let nodes: Vec<Vector> = numbering.layout.place.iter().map(by_node).collect();
+        let nodes: Vec<Vector> = dof_map.ordering.place.iter().map(by_node).collect();
         let displacement: Vec<Vector> =
             nodes.iter().zip(&mesh.nodes).map(|(x, rest)| x - rest).collect();
 
@@ -60,12 +60,12 @@ impl FinerProblem<'_> {
         let pressures = directions.pressures.as_ref();
         let deformed = tissue.at(positions, values, pressures);
         let pressed = NodalPressures { pressures, values };
-        let holds_and_contact = touching.as_ref().map(|touching| touching.held(holds));
+        let constraints_and_contact = touching.as_ref().map(|touching| touching.held(constraints));
         let two_level = TwoLevel {
             tissue: &self.tissue,
-            numbering,
+            dof_map,
             boundary: self.boundary,
-            holds: holds_and_contact.as_deref().unwrap_or(holds),
+            constraints: constraints_and_contact.as_deref().unwrap_or(constraints),
             loads: self.loads,
             displacement: &displacement,
             cells: &Enriched::new(&self.tissue, self.laws, tissue, &deformed, &pressed),
@@ -77,7 +77,7 @@ impl FinerProblem<'_> {
         let has_pressures = pressures.is_some();
         let unbalanced = residual.forces.iter().map(Vector::norm_squared).sum::<f64>().sqrt();
         let case = LoadCase {
-            held: vec![Vector::zeros(); holds.len()],
+            held: vec![Vector::zeros(); constraints.len()],
             forces: residual.forces,
             ..LoadCase::default()
         };
@@ -103,7 +103,7 @@ impl FinerProblem<'_> {
         }
         let factor = factor(has_pressures);
         let missing =
-            numbering.layout.place.iter().map(|&row| found.positions[row as usize] * factor);
+            dof_map.ordering.place.iter().map(|&row| found.positions[row as usize] * factor);
         let missing = missing.collect();
         let iterations = found.iterations;
         Ok(Ok(DiscretisationError { missing, squared_energy_norm, iterations }))

@@ -33,7 +33,7 @@ use std::collections::BTreeMap;
 
 use nalgebra::Matrix3;
 
-use crate::boundary::Hold;
+use crate::boundary::Constraint;
 use crate::boundary::contact::FacingSurfaces;
 use crate::mesh::Vector;
 use crate::model::cell_state::CellStates;
@@ -116,8 +116,9 @@ impl<'a> FiniteStrain<'a> {
         case: &LoadCase,
         progress: &dyn Progress,
     ) -> Result<Equilibrium, ModelError> {
-        let with = WithEdges::new(self.mesh, self.holds);
-        let problem = FiniteStrain { holds: &with.holds, nodes: &with.positions, ..self.clone() };
+        let with = WithEdges::new(self.mesh, self.constraints);
+        let problem =
+            FiniteStrain { constraints: &with.constraints, nodes: &with.positions, ..self.clone() };
         let (mut equilibrium, _) =
             problem.solve_on(&with.cells, &with.case(case), None, progress)?;
         with.gather_reactions(&mut equilibrium);
@@ -133,8 +134,8 @@ impl<'a> FiniteStrain<'a> {
         progress: &dyn Progress,
     ) -> Result<(Equilibrium, Option<MeshError>), ModelError> {
         self.check_held_cells(case)?;
-        let numbering = number(cells, self.nodes, self.holds);
-        let constrained = Constrained { holds: self.holds, numbering: &numbering };
+        let dof_map = number(cells, self.nodes, self.constraints);
+        let constrained = Constrained { constraints: self.constraints, dof_map: &dof_map };
         let question = self.whole(&constrained, case, progress);
         let (tissue, mut rest) = self.rest(question, None)?;
         let error = self.mesh_error(finer, &tissue, &mut rest, &question)?;
@@ -152,12 +153,12 @@ impl<'a> FiniteStrain<'a> {
         if deformations(self.mesh, displacement).iter().any(|cell| cell.det_f <= 0.0) {
             return Ok(Err(NoMeshError::Inverted));
         }
-        let numbering = number(&nodes_of_cells(self.mesh), self.nodes, self.holds);
-        let constrained = Constrained { holds: self.holds, numbering: &numbering };
+        let dof_map = number(&nodes_of_cells(self.mesh), self.nodes, self.constraints);
+        let constrained = Constrained { constraints: self.constraints, dof_map: &dof_map };
         let question = self.whole(&constrained, case, progress);
         let pairs = self.nodes.iter().zip(displacement);
         let moved: Vec<Vector> = pairs.map(|(rest, u)| rest + u).collect();
-        let start = Start::at(numbering.by_row(&moved), 1.0, None);
+        let start = Start::at(dof_map.by_row(&moved), 1.0, None);
         let (tissue, mut rest) = self.rest_from(question, start)?;
         finer.of(&tissue, &mut rest, &constrained, progress)
     }
@@ -186,10 +187,10 @@ impl<'a> FiniteStrain<'a> {
         if !touches(surfaces, &free.displacement, steps, progress)? {
             return Ok(None);
         }
-        let numbering = number(&nodes_of_cells(self.mesh), &self.mesh.nodes, self.holds);
-        let constrained = Constrained { holds: self.holds, numbering: &numbering };
+        let dof_map = number(&nodes_of_cells(self.mesh), &self.mesh.nodes, self.constraints);
+        let constrained = Constrained { constraints: self.constraints, dof_map: &dof_map };
         let question = self.whole(&constrained, case, progress);
-        let touching = Touching::new(surfaces, self.holds, &numbering, 1.0 / steps as f64);
+        let touching = Touching::new(surfaces, self.constraints, &dof_map, 1.0 / steps as f64);
         let (tissue, mut rest) = self.rest(question, Some(touching))?;
         let mesh_error = self.mesh_error(finer, &tissue, &mut rest, &question)?;
         let Some(touching) = rest.touching.take() else { return Ok(None) };
@@ -210,9 +211,9 @@ impl<'a> FiniteStrain<'a> {
         rest: Rest,
         acting: &[Vector],
     ) -> Result<Equilibrium, ModelError> {
-        let numbering = question.constrained.numbering;
+        let dof_map = question.constrained.dof_map;
         let Rest { positions, pressures, forces, report, directions, .. } = rest;
-        let places = numbering.layout.place.iter().zip(self.nodes);
+        let places = dof_map.ordering.place.iter().zip(self.nodes);
         let displacement: Vec<Vector> =
             places.map(|(&row, rest)| positions[row as usize] - rest).collect();
         let is_strained =
@@ -262,7 +263,7 @@ impl<'a> FiniteStrain<'a> {
         question: Question<'a>,
         touching: Option<Touching<'a>>,
     ) -> Result<(Tissue<'a>, Rest<'a>), ModelError> {
-        let rest = question.constrained.numbering.by_row(self.nodes);
+        let rest = question.constrained.dof_map.by_row(self.nodes);
         let start = Start::at(rest, 0.0, touching);
         match self.advance {
             Advance::AtOnce | Advance::AtOnceOrInParts => self.rest_at_share(question, start),
@@ -322,7 +323,7 @@ impl<'a> FiniteStrain<'a> {
         start: Start<'a>,
         until: NewtonExits,
     ) -> Result<(Tissue<'a>, Ending<'a>), ModelError> {
-        let tissue = Tissue::new(self, question.constrained.numbering, kept)?;
+        let tissue = Tissue::new(self, question.constrained.dof_map, kept)?;
         let pressures = tissue.pressures(self, kept, self.axes_by_row(question));
         let memory_mb = self.tolerance.memory_mb - tissue.megabytes();
         question.progress.phase(Phase::Solve);
@@ -334,17 +335,21 @@ impl<'a> FiniteStrain<'a> {
 
     /// The axes of rows that have their own.
     fn axes_by_row(&self, question: Question) -> BTreeMap<u32, Matrix3<f64>> {
-        let turned = self.holds.iter().filter(|hold| !hold.is_aligned());
-        let row = |node: u32| question.constrained.numbering.row(node) as u32;
-        turned.map(|hold| (row(hold.node), *hold.axes())).collect()
+        let turned = self.constraints.iter().filter(|constraint| !constraint.is_aligned());
+        let row = |node: u32| question.constrained.dof_map.row(node) as u32;
+        turned.map(|constraint| (row(constraint.node), *constraint.axes())).collect()
     }
 
     /// No movement of bones may turn a cell inside out, in one of its quadrature points, all of whose nodes they hold.
     fn check_held_cells(&self, case: &LoadCase) -> Result<(), ModelError> {
         let mut held: Vec<Option<Vector>> = vec![None; self.nodes.len()];
-        for (hold, value) in self.holds.iter().zip(&case.held).filter(|(hold, _)| hold.count() == 3)
+        for (constraint, value) in self
+            .constraints
+            .iter()
+            .zip(&case.held)
+            .filter(|(constraint, _)| constraint.count() == 3)
         {
-            held[hold.node as usize] = Some(hold.axes() * value);
+            held[constraint.node as usize] = Some(constraint.axes() * value);
         }
         for (cell, (shape, nodes)) in self.mesh.cells.iter().enumerate() {
             let moved: Option<Vec<Vector>> =
@@ -367,11 +372,11 @@ impl<'a> FiniteStrain<'a> {
 
 /// What each hold exerts on tissue with internal forces by row, under forces by node, in mN.
 fn reactions(constrained: &Constrained, internal: &[Vector], acting: &[Vector]) -> Vec<Vector> {
-    let reaction = |hold: &Hold| {
-        let internal = internal[constrained.numbering.row(hold.node)];
-        hold.part_along(&(internal - acting[hold.node as usize]))
+    let reaction = |constraint: &Constraint| {
+        let internal = internal[constrained.dof_map.row(constraint.node)];
+        constraint.part_along(&(internal - acting[constraint.node as usize]))
     };
-    constrained.holds.iter().map(reaction).collect()
+    constrained.constraints.iter().map(reaction).collect()
 }
 
 /// Whether a gap closes along a displacement, in so many steps.

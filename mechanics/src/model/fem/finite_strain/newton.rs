@@ -222,18 +222,18 @@ impl<'a, 'b> Newton<'a, 'b> {
     fn remaining(&self, deformed: &Deformed, ahead: f64) -> LoadCase {
         let Question { constrained, case, .. } = self.question;
         let share = self.made + ahead;
-        let row = |node: u32| constrained.numbering.row(node);
-        let held = constrained.holds.iter().zip(&case.held).map(|(hold, target)| {
-            let moved = self.x[row(hold.node)] - self.tissue.rest[row(hold.node)];
-            let own = hold.axes().transpose() * moved;
-            Vector::from_fn(|k, _| match k < hold.count() {
+        let row = |node: u32| constrained.dof_map.row(node);
+        let held = constrained.constraints.iter().zip(&case.held).map(|(constraint, target)| {
+            let moved = self.x[row(constraint.node)] - self.tissue.rest[row(constraint.node)];
+            let own = constraint.axes().transpose() * moved;
+            Vector::from_fn(|k, _| match k < constraint.count() {
                 true if share < 1.0 => (target[k] - own[k]) * ahead / (1.0 - self.made),
                 true => target[k] - own[k],
                 false => 0.0,
             })
         });
         let mut forces = self.acting_on_nodes(share.min(1.0));
-        for (force, &row) in forces.iter_mut().zip(&constrained.numbering.layout.place) {
+        for (force, &row) in forces.iter_mut().zip(&constrained.dof_map.ordering.place) {
             *force -= deformed.forces[row as usize];
         }
         LoadCase { held: held.collect(), forces, ..LoadCase::default() }
@@ -266,7 +266,7 @@ impl<'a, 'b> Newton<'a, 'b> {
 
     /// What acts so far, by row.
     fn acting(&self) -> Vec<Vector> {
-        self.question.constrained.numbering.by_row(&self.acting_on_nodes(self.made))
+        self.question.constrained.dof_map.by_row(&self.acting_on_nodes(self.made))
     }
 
     /// A share of the loads, and what presses, in mN.
@@ -291,13 +291,13 @@ impl<'a, 'b> Newton<'a, 'b> {
     /// Of the nodes.
     fn displacement(&self) -> Vec<Vector> {
         let rest = &self.tissue.rest;
-        let places = self.question.constrained.numbering.layout.place.iter();
+        let places = self.question.constrained.dof_map.ordering.place.iter();
         places.map(|&row| self.x[row as usize] - rest[row as usize]).collect()
     }
 
     /// Of the nodes.
     fn positions(&self) -> Vec<Vector> {
-        let places = self.question.constrained.numbering.layout.place.iter();
+        let places = self.question.constrained.dof_map.ordering.place.iter();
         places.map(|&row| self.x[row as usize]).collect()
     }
 

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::elements::Elements;
 use super::fibres::FibreField;
-use crate::boundary::Hold;
+use crate::boundary::Constraint;
 use crate::material::hyperelastic::Law;
 use crate::mesh::{Vector, VolumeMesh};
 use crate::model::fem::inner_stress::InnerStress;
@@ -29,7 +29,7 @@ pub struct FiniteStrain<'a> {
     pub membrane: Option<&'a Membrane>,
     /// Growth and active stress of cells (`super::inner`).
     pub inner: Arc<InnerStress>,
-    pub holds: &'a [Hold],
+    pub constraints: &'a [Constraint],
     pub tolerance: Tolerance,
     /// Whether stress and strain of the cells are wanted.
     pub with_states: bool,

@@ -20,10 +20,10 @@ pub(super) struct Sheet {
 }
 
 impl Sheet {
-    pub fn new(problem: &FiniteStrain, numbering: &DofMap) -> Self {
+    pub fn new(problem: &FiniteStrain, dof_map: &DofMap) -> Self {
         let triangles = problem.membrane.iter().flat_map(|skin| skin.in_space(problem.mesh));
         let parts = triangles.map(|(triangle, nodes)| {
-            let rows = nodes.map(|node| numbering.row(node) as u32);
+            let rows = nodes.map(|node| dof_map.row(node) as u32);
             Part { triangle, rows }
         });
         Sheet { parts: parts.collect() }

@@ -53,12 +53,12 @@ pub(super) struct DeformedSimplices<'a> {
 impl<'a> Simplices<'a> {
     pub fn new(
         problem: &FiniteStrain<'a>,
-        numbering: &DofMap,
+        dof_map: &DofMap,
         kept: &CellBulkModulus,
     ) -> Result<Self, InvertedCell> {
         let FiniteStrain { mesh, laws, law_of_cell, elements, fibres, .. } = *problem;
         let inner = Arc::clone(&problem.inner);
-        let order = &numbering.layout.element_order;
+        let order = &dof_map.ordering.element_order;
         let is_simplex = |&element: &usize| {
             !elements.quadratic && mesh.cells.shape(order[element] as usize) == CellShape::Tet4
         };
@@ -69,7 +69,7 @@ impl<'a> Simplices<'a> {
             let grown = inner.grown(cell);
             let (volume, gradients) =
                 (volume * grown.volume, gradients.map(|g| grown.gradient(&g)));
-            let members = numbering.connectivity.row(element);
+            let members = dof_map.connectivity.row(element);
             let (rows, law) = (std::array::from_fn(|k| members[k]), law_of_cell[cell]);
             let carried = match elements.stabilised {
                 true => kept.of(&laws[usize::from(law)], cell).carried.max(0.0),
@@ -166,32 +166,32 @@ impl Simplex {
 
 impl DeformedSimplices<'_> {
     /// Internal forces in mN, one for each row.
-    pub fn forces(&self, numbering: &DofMap) -> Vec<Vector> {
+    pub fn forces(&self, dof_map: &DofMap) -> Vec<Vector> {
         let cells = &self.simplices.cells;
         let pairs = cells.par_iter().zip(&self.points);
         let stresses: Vec<Matrix3<f64>> =
             pairs.map(|(cell, point)| point.stress() * cell.volume).collect();
         let force = |row: usize| -> Vector {
-            let around = numbering.around.row(row).iter();
+            let around = dof_map.around.row(row).iter();
             let own = around.filter_map(|&element| self.simplices.of_element(element));
             own.map(|cell| stresses[cell] * cells[cell].gradients[cells[cell].corner_of(row)]).sum()
         };
-        (0..numbering.pattern.rows()).into_par_iter().with_min_len(CHUNK).map(force).collect()
+        (0..dof_map.pattern.rows()).into_par_iter().with_min_len(CHUNK).map(force).collect()
     }
 
     /// The derivatives of the internal forces by the positions, in kPa mm.
     pub fn tangent(
         &self,
-        numbering: &DofMap,
+        dof_map: &DofMap,
         progress: &dyn Progress,
     ) -> Result<HalfMatrix<f64, 3>, SolverError> {
-        let mut matrix = HalfMatrix::zeros(numbering.pattern.clone());
+        let mut matrix = HalfMatrix::zeros(dof_map.pattern.clone());
         matrix.row_chunks(CHUNK).into_par_iter().try_for_each_init(
-            || vec![0_u32; numbering.pattern.rows()],
+            || vec![0_u32; dof_map.pattern.rows()],
             |at, chunk| match progress.is_cancelled() {
                 true => Err(SolverError::Stopped),
                 false => {
-                    self.add_rows(numbering, chunk, at);
+                    self.add_rows(dof_map, chunk, at);
                     Ok(())
                 }
             },
@@ -201,15 +201,15 @@ impl DeformedSimplices<'_> {
 
     /// Row by row: no two threads write to the same block, and cells are added in their order. `at` is scratch: where
     /// the block of each column of the row lies.
-    fn add_rows(&self, numbering: &DofMap, chunk: RowChunk<f64, 3>, at: &mut [u32]) {
-        let begin = numbering.pattern.range(chunk.first).start;
+    fn add_rows(&self, dof_map: &DofMap, chunk: RowChunk<f64, 3>, at: &mut [u32]) {
+        let begin = dof_map.pattern.range(chunk.first).start;
         for (local, diagonal) in chunk.diagonal.iter_mut().enumerate() {
             let row = chunk.first + local;
-            let offset = numbering.pattern.range(row).start - begin;
-            for (k, &column) in numbering.pattern.columns(row).iter().enumerate() {
+            let offset = dof_map.pattern.range(row).start - begin;
+            for (k, &column) in dof_map.pattern.columns(row).iter().enumerate() {
                 at[column as usize] = (offset + k) as u32;
             }
-            for &element in numbering.around.row(row) {
+            for &element in dof_map.around.row(row) {
                 let Some(cell) = self.simplices.of_element(element) else { continue };
                 let (cell, point) = (&self.simplices.cells[cell], &self.points[cell]);
                 let own = point.corner(&cell.gradients[cell.corner_of(row)]);

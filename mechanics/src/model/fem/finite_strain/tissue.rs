@@ -28,7 +28,7 @@ const SOFT: f64 = 12.0;
 
 /// The elements of a mesh.
 pub(super) struct Tissue<'a> {
-    pub numbering: &'a DofMap,
+    pub dof_map: &'a DofMap,
     simplices: Simplices<'a>,
     bricks: Bricks<'a>,
     sheet: Sheet,
@@ -58,14 +58,14 @@ pub(super) struct Deformed<'a> {
 impl<'a> Tissue<'a> {
     pub fn new(
         problem: &FiniteStrain<'a>,
-        numbering: &'a DofMap,
+        dof_map: &'a DofMap,
         kept: &CellBulkModulus,
     ) -> Result<Self, InvertedCell> {
         let FiniteStrain { nodes, laws, .. } = *problem;
-        let simplices = Simplices::new(problem, numbering, kept)?;
-        let bricks = Bricks::new(problem, numbering, kept)?;
-        let sheet = Sheet::new(problem, numbering);
-        let rest = numbering.by_row(nodes);
+        let simplices = Simplices::new(problem, dof_map, kept)?;
+        let bricks = Bricks::new(problem, dof_map, kept)?;
+        let sheet = Sheet::new(problem, dof_map);
+        let rest = dof_map.by_row(nodes);
         let carries_all =
             bricks.is_empty() && simplices.cells.iter().all(|cell| cell.carried > 0.0);
         let stiffest = laws.iter().map(Law::at_rest).map(|(lambda, mu)| lambda / mu);
@@ -78,7 +78,7 @@ impl<'a> Tissue<'a> {
         let bulk_in_cells = shares.iter().copied().fold(0.0, f64::max);
         let cells_with_bulk = shares.iter().filter(|&&share| share > 0.0).count();
         Ok(Tissue {
-            numbering,
+            dof_map,
             simplices,
             bricks,
             sheet,
@@ -154,7 +154,7 @@ impl<'a> Tissue<'a> {
             pressures.means(p).for_each(|(cell, mean)| means[cell as usize] = mean);
         }
         let (simplices, bricks) = (self.simplices.at(x, &means), self.bricks.at(x));
-        let mut forces = simplices.forces(self.numbering);
+        let mut forces = simplices.forces(self.dof_map);
         bricks.add_forces(&mut forces);
         let sheet = self.sheet.at(x);
         sheet.add_forces(&mut forces);
@@ -189,9 +189,9 @@ impl<'a> Tissue<'a> {
 impl Deformed<'_> {
     /// The derivatives of the internal forces by the positions, in kPa mm.
     pub fn tangent(&self, progress: &dyn Progress) -> Result<HalfMatrix<f64, 3>, SolverError> {
-        let numbering = self.tissue.numbering;
-        let mut matrix = self.simplices.tangent(numbering, progress)?;
-        self.bricks.add_tangent(&mut matrix, numbering, progress)?;
+        let dof_map = self.tissue.dof_map;
+        let mut matrix = self.simplices.tangent(dof_map, progress)?;
+        self.bricks.add_tangent(&mut matrix, dof_map, progress)?;
         self.sheet.add_tangent(&mut matrix);
         Ok(matrix)
     }
@@ -209,7 +209,7 @@ impl Deformed<'_> {
     /// For each cell of the mesh whether det F of one of its points is below a limit.
     pub fn pressed(&self, limit: f64) -> Vec<bool> {
         let least = self.simplices.least_volumes().chain(self.bricks.least_volumes());
-        let mut pressed = vec![false; self.tissue.numbering.layout.element_order.len()];
+        let mut pressed = vec![false; self.tissue.dof_map.ordering.element_order.len()];
         least.for_each(|(cell, volume)| pressed[cell] = volume < limit);
         pressed
     }

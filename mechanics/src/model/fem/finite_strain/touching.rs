@@ -7,7 +7,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::boundary::Hold;
+use crate::boundary::Constraint;
 use crate::boundary::contact::{CLOSED_MM, FacingSurfaces, with_pressing};
 use crate::mesh::Vector;
 use crate::model::dofs::DofMap;
@@ -76,13 +76,13 @@ pub(super) struct TrialState<'a> {
 impl<'a> Touching<'a> {
     pub fn new(
         surfaces: &'a FacingSurfaces<'a>,
-        holds: &[Hold],
-        numbering: &'a DofMap,
+        constraints: &[Constraint],
+        dof_map: &'a DofMap,
         most_ahead: f64,
     ) -> Self {
         Touching {
             surfaces,
-            unknowns: FreeUnknowns::new(holds, numbering),
+            unknowns: FreeUnknowns::new(constraints, dof_map),
             kept_rows: KeptRows::default(),
             multipliers: Vec::new(),
             most_ahead,
@@ -133,8 +133,8 @@ impl<'a> Touching<'a> {
     }
 
     /// Holds of tissue, with those of the points that press.
-    pub fn held(&self, holds: &[Hold]) -> Vec<Hold> {
-        with_pressing(holds, self.pressing().map(|(row, _)| &self.kept_rows.rows[row]))
+    pub fn held(&self, constraints: &[Constraint]) -> Vec<Constraint> {
+        with_pressing(constraints, self.pressing().map(|(row, _)| &self.kept_rows.rows[row]))
     }
 
     /// What presses after a step, and what that changes of it; nothing where nothing presses before and after.

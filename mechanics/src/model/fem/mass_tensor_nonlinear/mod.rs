@@ -5,7 +5,7 @@ mod rest;
 mod tensors;
 mod tissue;
 
-use crate::boundary::Hold;
+use crate::boundary::Constraint;
 use crate::material::LinearElastic;
 use crate::mesh::{Vector, VolumeMesh};
 use crate::model::dofs::{Constrained, nodes_of_cells, number};
@@ -22,7 +22,7 @@ pub struct MassTensors<'a> {
     pub materials: &'a [LinearElastic],
     /// For each cell its entry in `materials`.
     pub material_of_cell: &'a [u16],
-    pub holds: &'a [Hold],
+    pub constraints: &'a [Constraint],
     pub tolerance: Tolerance,
 }
 
@@ -35,8 +35,8 @@ impl MassTensors<'_> {
     ) -> Result<Equilibrium, ModelError> {
         progress.phase(Phase::Assemble);
         let tetrahedra = Tetrahedra::new(self.mesh, self.materials, self.material_of_cell)?;
-        let numbering = number(&nodes_of_cells(self.mesh), &self.mesh.nodes, self.holds);
-        let constrained = Constrained { holds: self.holds, numbering: &numbering };
+        let dof_map = number(&nodes_of_cells(self.mesh), &self.mesh.nodes, self.constraints);
+        let constrained = Constrained { constraints: self.constraints, dof_map: &dof_map };
         progress.phase(Phase::Solve);
         let search = Search { tetrahedra: &tetrahedra, constrained: &constrained, case, progress };
         let equilibrium = search.solve(self.tolerance)?;

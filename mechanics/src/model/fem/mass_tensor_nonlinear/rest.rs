@@ -3,7 +3,7 @@
 //! A part begins with the step that its tangent asks for, K d_f = -f_f - K_fb d_b, and goes on with steps in which the energy
 //! falls (Nocedal, Wright 2006, section 3.1). A part that comes to no rest is halved, one that does is doubled.
 
-use crate::boundary::Hold;
+use crate::boundary::Constraint;
 use crate::mesh::Vector;
 use crate::model::dofs::Constrained;
 use crate::model::fem::strain::deformations;
@@ -122,7 +122,7 @@ impl Search<'_> {
         is_first: bool,
         tally: &mut Tally,
     ) -> Result<bool, ModelError> {
-        let matrix = self.tetrahedra.tangent(&at.u, self.constrained.numbering, self.progress)?;
+        let matrix = self.tetrahedra.tangent(&at.u, self.constrained.dof_map, self.progress)?;
         let system = self.constrained.system(matrix, &self.tetrahedra.mesh.nodes);
         goal.check_memory(&system, self.tetrahedra)?;
         let known = self.constrained.known(&self.remaining(at, goal.share));
@@ -170,10 +170,12 @@ impl Search<'_> {
 
     /// Residual at a share of movement and load.
     fn remaining(&self, at: &State, share: f64) -> LoadCase {
-        let holds = self.constrained.holds.iter().zip(&self.case.held);
-        let held = holds.map(|(hold, target)| {
-            let own = hold.axes().transpose() * at.u[hold.node as usize];
-            Vector::from_fn(|k, _| if k < hold.count() { target[k] * share - own[k] } else { 0.0 })
+        let constraints = self.constrained.constraints.iter().zip(&self.case.held);
+        let held = constraints.map(|(constraint, target)| {
+            let own = constraint.axes().transpose() * at.u[constraint.node as usize];
+            Vector::from_fn(
+                |k, _| if k < constraint.count() { target[k] * share - own[k] } else { 0.0 },
+            )
         });
         let pairs = self.case.forces.iter().zip(&at.forces);
         let forces = pairs.map(|(acting, internal)| acting * share - internal);
@@ -192,9 +194,9 @@ impl Search<'_> {
             pairs.map(|(internal, acting)| internal - acting * share).collect();
         let mut exerted: f64 =
             self.case.forces.iter().map(|force| (force * share).norm_squared()).sum();
-        for hold in self.constrained.holds {
-            let own = hold.part_along(&left[hold.node as usize]);
-            left[hold.node as usize] -= own;
+        for constraint in self.constrained.constraints {
+            let own = constraint.part_along(&left[constraint.node as usize]);
+            left[constraint.node as usize] -= own;
             exerted += own.norm_squared();
         }
         let unbalanced = left.iter().map(Vector::norm_squared).sum::<f64>().sqrt();
@@ -211,11 +213,11 @@ impl Search<'_> {
     }
 
     fn equilibrium(&self, at: State, tolerance: Tolerance, tally: Tally) -> Equilibrium {
-        let reaction = |hold: &Hold| {
-            let node = hold.node as usize;
-            hold.part_along(&(at.forces[node] - self.case.forces[node]))
+        let reaction = |constraint: &Constraint| {
+            let node = constraint.node as usize;
+            constraint.part_along(&(at.forces[node] - self.case.forces[node]))
         };
-        let reactions = self.constrained.holds.iter().map(reaction).collect();
+        let reactions = self.constrained.constraints.iter().map(reaction).collect();
         let Tally { history, inner, parts, halved, indefinite } = tally;
         let report = SolveReport {
             method: "newton",

@@ -78,13 +78,13 @@ impl<'a> Tetrahedra<'a> {
     pub fn tangent(
         &self,
         u: &[Vector],
-        numbering: &DofMap,
+        dof_map: &DofMap,
         progress: &dyn Progress,
     ) -> Result<HalfMatrix<f64, 3>, SolverError> {
-        let mut matrix = HalfMatrix::zeros(numbering.pattern.clone());
+        let mut matrix = HalfMatrix::zeros(dof_map.pattern.clone());
         let all: Vec<usize> = (0..self.tensors.len()).collect();
         let blocks = |cell: usize| Ok(self.tensors[cell].tangent(&self.differences(cell, u)));
-        match numbering.add_cells(&mut matrix, &all, progress, blocks) {
+        match dof_map.add_cells(&mut matrix, &all, progress, blocks) {
             Ok(true) => Ok(matrix),
             // No cell is inverted here: all were checked when their tensors were made.
             Ok(false) | Err(InvertedCell { .. }) => Err(SolverError::Stopped),

@@ -4,7 +4,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use nalgebra::Matrix3;
 
-use crate::boundary::Hold;
+use crate::boundary::Constraint;
 use crate::material::hyperelastic::point::{FibreAtPoint, Point};
 use crate::material::hyperelastic::{Hyperelastic, Law, SaintVenantKirchhoff};
 use crate::mesh::Vector;
@@ -86,12 +86,12 @@ fn mistake(scene: &Scene, prediction: &Prediction) -> Option<String> {
     if least.is_nan() || (least <= 0.0 && (!is_told || kind == MethodKind::FemNonlinear)) {
         return Some(format!("the least det F is {least}"));
     }
-    let knows_holds = match scene.settings.method.properties().unknowns {
+    let knows_constraints = match scene.settings.method.properties().unknowns {
         Unknowns::Elements | Unknowns::Springs => true,
         // A spline misses what it is held at, and says so; a warp has no equations.
         Unknowns::ControlPoints | Unknowns::None => false,
     };
-    let missed = if knows_holds { missed(scene, &prediction.displacement) } else { 0.0 };
+    let missed = if knows_constraints { missed(scene, &prediction.displacement) } else { 0.0 };
     if missed > HELD {
         return Some(format!("a held node is {missed} mm from where it is held"));
     }
@@ -101,12 +101,12 @@ fn mistake(scene: &Scene, prediction: &Prediction) -> Option<String> {
 
 /// The farthest that a held node is from where it is held, in mm or relative to its movement.
 fn missed(scene: &Scene, u: &[Vector]) -> f64 {
-    let missed = |hold: &Hold| {
-        let own = hold.axes().transpose() * u[hold.node as usize];
-        let along = (0..hold.count()).map(|k| (own[k] - hold.values()[k]).abs());
-        along.fold(0.0, f64::max) / hold.values().norm().max(1.0)
+    let missed = |constraint: &Constraint| {
+        let own = constraint.axes().transpose() * u[constraint.node as usize];
+        let along = (0..constraint.count()).map(|k| (own[k] - constraint.values()[k]).abs());
+        along.fold(0.0, f64::max) / constraint.values().norm().max(1.0)
     };
-    scene.conditions.holds.iter().map(missed).fold(0.0, f64::max)
+    scene.conditions.constraints.iter().map(missed).fold(0.0, f64::max)
 }
 
 /// |f_free| / |f_held| of plain tetrahedra at finite strain, from F of each cell alone; none of anything else.
@@ -128,11 +128,11 @@ fn out_of_balance(scene: &Scene, prediction: &Prediction) -> Option<f64> {
     let (mut left, rounding) = internal_forces(scene, &tissues, &prediction.displacement)?;
     left.iter_mut().zip(&scene.forces).for_each(|(left, acting)| *left -= acting);
     let mut exerted: f64 = scene.forces.iter().map(Vector::norm_squared).sum();
-    for hold in &scene.conditions.holds {
-        let force = &mut left[hold.node as usize];
-        let own = hold.axes().transpose() * *force;
-        let held = Vector::from_fn(|k, _| if k < hold.count() { own[k] } else { 0.0 });
-        *force -= hold.axes() * held;
+    for constraint in &scene.conditions.constraints {
+        let force = &mut left[constraint.node as usize];
+        let own = constraint.axes().transpose() * *force;
+        let held = Vector::from_fn(|k, _| if k < constraint.count() { own[k] } else { 0.0 });
+        *force -= constraint.axes() * held;
         exerted += held.norm_squared();
     }
     let left = left.iter().map(Vector::norm_squared).sum::<f64>().sqrt();

@@ -19,7 +19,7 @@ const FOUR_PARTS_FROM: usize = 400_000;
 
 /// A numbering of rows by place.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Layout {
+pub struct RowOrdering {
     /// The place of each row.
     pub place: Vec<u32>,
     /// Elements in the order in which rows meet them.
@@ -30,7 +30,7 @@ pub struct Layout {
     pub free: usize,
 }
 
-impl Layout {
+impl RowOrdering {
     /// Orders the rows that the elements couple, each of that many unknowns, from the row `start` on.
     /// `held` tells the rows without any free unknown.
     pub fn new(
@@ -67,7 +67,7 @@ impl Layout {
             place[row as usize] = next as u32;
             next += 1;
         }
-        Layout { place, element_order, parts, free }
+        RowOrdering { place, element_order, parts, free }
     }
 
     /// Places that couple with several parts.

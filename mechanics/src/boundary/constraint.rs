@@ -10,22 +10,22 @@ const INDEPENDENT: f64 = 1e-6;
 /// A node held at values u . e_k = v_k along the first `count` axes of an orthonormal frame,
 /// and free along the others.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Hold {
+pub struct Constraint {
     pub node: u32,
     axes: Matrix3<f64>,
     values: Vector,
     count: usize,
 }
 
-impl Hold {
+impl Constraint {
     /// A node that nothing holds; among holds it says that the middle of an edge is free between held ends.
     pub fn free(node: u32) -> Self {
-        Hold { node, axes: Matrix3::identity(), values: Vector::zeros(), count: 0 }
+        Constraint { node, axes: Matrix3::identity(), values: Vector::zeros(), count: 0 }
     }
 
     /// A node held in all directions at a displacement in mm.
     pub fn at(node: u32, displacement: Vector) -> Self {
-        Hold { node, axes: Matrix3::identity(), values: displacement, count: 3 }
+        Constraint { node, axes: Matrix3::identity(), values: displacement, count: 3 }
     }
 
     /// The part of a vector along the directions in which the node is held.
@@ -120,45 +120,45 @@ mod tests {
 
     #[test]
     fn oblique_directions_hold_the_node_where_both_planes_meet() {
-        let mut hold = Hold::free(0);
+        let mut constraint = Constraint::free(0);
         let oblique = Vector::new(1.0, 1.0, 0.0).normalize();
-        hold.add(&Vector::x(), 2.0);
-        hold.add(&oblique, 0.0);
-        let displacement = hold.axes() * hold.values();
+        constraint.add(&Vector::x(), 2.0);
+        constraint.add(&oblique, 0.0);
+        let displacement = constraint.axes() * constraint.values();
         assert!((displacement.x - 2.0).abs() < 1e-15);
         assert!(displacement.dot(&oblique).abs() < 1e-15);
-        assert_eq!(hold.count(), 2);
+        assert_eq!(constraint.count(), 2);
     }
 
     #[test]
     fn a_direction_that_is_held_already_changes_nothing() {
-        let mut hold = Hold::free(0);
-        hold.add(&Vector::z(), 1.0);
-        let before = hold.clone();
-        hold.add(&-Vector::z(), 5.0);
-        assert_eq!(hold, before);
+        let mut constraint = Constraint::free(0);
+        constraint.add(&Vector::z(), 1.0);
+        let before = constraint.clone();
+        constraint.add(&-Vector::z(), 5.0);
+        assert_eq!(constraint, before);
     }
 
     #[test]
     fn the_frame_is_orthonormal_for_any_normal() {
         for normal in [Vector::new(0.3, -0.5, 0.8), Vector::new(1e-9, 1.0, 0.0), -Vector::x()] {
-            let mut hold = Hold::free(0);
-            hold.add(&normal.normalize(), 0.0);
-            let axes = hold.axes();
+            let mut constraint = Constraint::free(0);
+            constraint.add(&normal.normalize(), 0.0);
+            let axes = constraint.axes();
             assert!((axes.transpose() * axes - Matrix3::identity()).amax() < 1e-15);
         }
     }
 
     #[test]
     fn a_node_held_in_three_oblique_directions_lies_at_their_common_point() {
-        let mut hold = Hold::free(0);
+        let mut constraint = Constraint::free(0);
         let target = Vector::new(1.0, -2.0, 3.0);
         let directions =
             [Vector::new(1.0, 1.0, 0.0), Vector::new(0.0, 1.0, 1.0), Vector::new(1.0, 0.0, 2.0)];
         for direction in directions.map(|d| d.normalize()) {
-            hold.add(&direction, direction.dot(&target));
+            constraint.add(&direction, direction.dot(&target));
         }
-        assert!(hold.is_aligned());
-        assert!((hold.values() - target).norm() < 1e-14);
+        assert!(constraint.is_aligned());
+        assert!((constraint.values() - target).norm() < 1e-14);
     }
 }
