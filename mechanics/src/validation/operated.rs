@@ -164,12 +164,7 @@ mod tests {
             let of = |point: &Vector| point + Vector::new(0.0, 0.0, 4.0 * share * point.x / 70.0);
             at_rest.iter().map(of).collect()
         };
-        OperatedSkin {
-            predicted: moved(0.75),
-            actual: moved(1.0),
-            at_rest,
-            bone_movement: 4.0,
-        }
+        OperatedSkin { predicted: moved(0.75), actual: moved(1.0), at_rest, bone_movement: 4.0 }
     }
 
     fn codes(change: impl Fn(&mut OperatedSkin)) -> Vec<&'static str> {

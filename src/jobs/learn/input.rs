@@ -5,9 +5,9 @@ use serde_json::json;
 
 use crate::jobs::failure::JobError;
 use crate::jobs::predict::PredictInput;
-use crate::schema::{ErrorCode, LearnDocument, Pointer, Problem};
 use crate::schema::cohort::stored::CohortVersionDocument;
 use crate::schema::wire::canonical::{hash, to_value};
+use crate::schema::{ErrorCode, LearnDocument, Pointer, Problem};
 use mechanics::prediction::MethodKind;
 
 /// Cases to learn from.

@@ -111,8 +111,7 @@ impl PredictInput {
         }
         let Prepared { plan, scene, .. } = prepared;
         let mut warnings = self.mechanics(plan, scene).unlike(&learned);
-        let skins: Vec<Vec<Vector>> =
-            model.cases.iter().map(|own| vectors(&own.at_rest)).collect();
+        let skins: Vec<Vec<Vector>> = model.cases.iter().map(|own| vectors(&own.at_rest)).collect();
         let skins: Vec<&[Vector]> = skins.iter().map(Vec::as_slice).collect();
         warnings.extend(unlike_skins(&scene.skin.surface.points, &skins));
         warnings
@@ -195,8 +194,7 @@ fn above_movement(changed: f64, predicted: &[f64]) -> Option<Warning> {
         "the correction adds {changed:.3} mm to the skin in the mean, and mechanics moves it by {moved:.3} mm: what was learned from larger movements says little of this one"
     );
     let warning = Warning::new("correction-above-movement", detail);
-    (changed > moved)
-        .then(|| warning.with("changed_mm", changed).with("moved_mm", moved))
+    (changed > moved).then(|| warning.with("changed_mm", changed).with("moved_mm", moved))
 }
 
 fn mean(values: &[f64]) -> f64 {
