@@ -9,7 +9,7 @@ use super::stored_cohort::Members;
 use crate::jobs::{JobInput, LearnInput, LearnedCase};
 use crate::schema::cohort::stored::{CohortUse, CohortVersionDocument};
 use crate::schema::learn::model::MODEL_FILE;
-use crate::schema::{ErrorCode, Faults, LearnDocument, Problem};
+use crate::schema::{ErrorCode, Faults, LearnDocument, Pointer, Problem};
 use crate::store::{NewJob, Outdated};
 
 /// Learning from predictions that have ended. It belongs to their cases, and goes with each: erasing a case erases every model
@@ -53,6 +53,7 @@ async fn of_cases(
             let detail = "its case is there twice: a patient who is learned from and predicted proves nothing";
             return Err(fault(&format!("{at}/prediction"), ErrorCode::DuplicateName, detail));
         }
+        learned.check_settings(&Pointer::from_text(&format!("{at}/prediction")))?;
         require_mesh(service, &format!("{at}/actual"), &case.actual).await?;
         mesh_ids.push(case.actual.clone());
         mesh_ids.extend(learned.prediction.mesh_ids());

@@ -168,6 +168,15 @@ pub fn predict(scene: &Scene, progress: &dyn Progress) -> Result<Prediction, Mod
     Ok(described(scene, answer, progress))
 }
 
+/// Where the nodes of a scene go, in mm, as [`predict`] has it: with what the mesh leaves out where the settings add that.
+pub fn displacement(scene: &Scene, progress: &dyn Progress) -> Result<Vec<Vector>, ModelError> {
+    let found = match scene.settings.corrected {
+        true => answer::solve(scene, progress)?.corrected(true).equilibrium,
+        false => equilibrium(scene, progress)?.0,
+    };
+    Ok(found.displacement)
+}
+
 /// What an answer says of the tissue and to a reader.
 fn described(scene: &Scene, answer: Answer, progress: &dyn Progress) -> Prediction {
     let Answer { mut equilibrium, numerical_error, nonlinearity, contact } = answer;

@@ -10,6 +10,7 @@ mod error;
 pub mod histogram;
 mod inverse_distance;
 mod landmark_errors;
+pub mod operated;
 pub mod penetration;
 mod region;
 pub mod statistics;

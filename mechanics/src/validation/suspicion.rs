@@ -8,10 +8,10 @@ use super::region::MovedSurface;
 use crate::mesh::{SurfaceSearch, TriangleSurface, Vector, Warning, area_sampling};
 
 /// In mm: predictions of the field are 0.6 to 1.2 mm off in the mean.
-const SKIN_MEDIAN: f64 = 2.0;
+pub(super) const SKIN_MEDIAN: f64 = 2.0;
 
 /// In mm: what moves less shows no operation.
-const MOVED: f64 = 1.0;
+pub(super) const MOVED: f64 = 1.0;
 
 /// Before the operation the scan has to lie so much nearer to the skin at rest than to the prediction.
 const MUCH_NEARER: f64 = 0.25;
@@ -94,13 +94,18 @@ pub(super) fn before_operation(
     let (Some(after), Some(before)) = (rms(&moving, &search), rms(&at_rest, &search)) else {
         return Ok(None);
     };
-    Ok((before < MUCH_NEARER * after).then(|| {
+    Ok(told_before_operation(before, after))
+}
+
+/// The warning where what moves is so far from the skin at rest and from the prediction, in mm, that it has not moved yet.
+pub(super) fn told_before_operation(before: f64, after: f64) -> Option<Warning> {
+    (before < MUCH_NEARER * after).then(|| {
         let detail = format!(
             "where the plan moves the skin by more than {MOVED} mm the actual surface is {before:.2} mm from the skin before it and {after:.2} mm from the prediction: is it the scan before the operation?"
         );
         let warning = Warning::new("before-operation-suspect", detail);
         warning.with("rms_at_rest_mm", before).with("rms_predicted_mm", after)
-    }))
+    })
 }
 
 /// Root of the mean squared distance of a surface to what is opposite; nothing where that is too little.

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use super::corresponding::{corresponds, measured, predicted_alike};
 use super::input::LearnInput;
 use super::thetas::at_thetas;
 use crate::jobs::clock::Observed;
@@ -10,19 +11,18 @@ use crate::jobs::fetch::fetch;
 use crate::jobs::made::{refused_cohort, refused_virtual};
 use crate::jobs::output::JobContext;
 use crate::jobs::predict::Prepared;
-use crate::jobs::source::StoredShape;
+use crate::schema::Pointer;
 use crate::schema::learn::correspondence::CorrespondenceDocument;
+use crate::schema::learn::mechanics::MechanicsDocument;
 use crate::schema::predict::result::InputDocument;
-use crate::schema::{ErrorCode, Matrix4x4, Pointer, Problem};
-use mechanics::learning::classes::{ThetaOfClass, held_out, thetas};
-use mechanics::learning::measures::carried_by;
+use mechanics::learning::classes::{AtThetas, ThetaOfClass, held_out, thetas};
 use mechanics::learning::validation::Column;
 use mechanics::learning::virtual_cohort::{Making, virtual_cohort};
 use mechanics::learning::{Cohort, LearningCase, measures};
-use mechanics::mesh::{Frame, TriangleSurface, Vector};
-use mechanics::prediction::{Scene, Skin, equilibrium};
+use mechanics::mesh::{Frame, TriangleSurface, Vector, Warning};
+use mechanics::prediction::{Scene, Skin, displacement};
 use mechanics::progress::Progress;
-use mechanics::registration::RigidTransform;
+use mechanics::validation::operated::{OperatedSkin, suspicions, unlike_skins};
 
 /// What is learned from, and the columns of the table that are not learned.
 pub struct Gathered {
@@ -36,6 +36,10 @@ pub struct Gathered {
     pub face: TriangleSurface,
     /// Of the meshes of operated cases.
     pub correspondence: Option<CorrespondenceDocument>,
+    /// What each operated case was predicted by, and its skin at rest; none of virtual patients.
+    pub mechanics: Vec<MechanicsDocument>,
+    pub at_rest: Vec<Vec<Vector>>,
+    pub warnings: Vec<Warning>,
 }
 
 pub fn gather(
@@ -60,6 +64,9 @@ pub fn gather(
                 frame: Frame::Lps,
                 face: cohort.face,
                 correspondence: None,
+                mechanics: Vec::new(),
+                at_rest: Vec::new(),
+                warnings: Vec::new(),
             })
         }
         None => of_cases(input, place, clock),
@@ -72,29 +79,25 @@ fn of_cases(
     clock: &Observed,
 ) -> Result<Gathered, JobError> {
     let mut first: Option<Prepared> = None;
-    let mut cases = Vec::new();
-    let mut inputs = Vec::new();
-    let mut told = Vec::new();
-    for (index, member) in input.cases.iter().enumerate() {
+    let (mut members, mut inputs, mut told): (Vec<Member>, Vec<_>, Vec<_>) = Default::default();
+    for (index, learned_from) in input.cases.iter().enumerate() {
         let at = Pointer::root().key("spec").key("cases").index(index);
-        let prepared = member.prediction.prepare(place.sources, place.limits)?;
+        learned_from.check_settings(&at.key("prediction"))?;
+        let prepared = learned_from.prediction.prepare(place.sources, place.limits)?;
         prepared.admit(0, place.limits)?;
         corresponds(first.as_ref().unwrap_or(&prepared), &prepared, &at)?;
+        let stated = input.spec.cases.get(index);
+        let id = stated.map(|case| case.actual.as_str()).unwrap_or_default();
+        let actual = fetch(place.sources, id, &at.key("actual"))?;
         let name = input.spec.name(index);
-        let stated = input.spec.cases.get(index).map(|case| case.actual.as_str());
-        let actual = fetch(place.sources, stated.unwrap_or_default(), &at.key("actual"))?;
         inputs.push(actual.to_input(&format!("actual {name}")));
-        let mut after = places(&actual.shape, &prepared.scene, &at.key("actual"))?;
-        register(&mut after, input.spec.cases.get(index).and_then(|case| case.matrix4x4));
-        if let Some(frame) = actual.frame.filter(|frame| *frame != prepared.case.frame) {
-            let detail = format!(
-                "the mesh is in {frame:?}, and the case in {:?}: distances between them mean nothing",
-                prepared.case.frame
-            );
-            return Err(Problem::at(&at.key("actual"), ErrorCode::FrameConflict, detail).into());
-        }
+        let matrix = stated.and_then(|case| case.matrix4x4);
+        let after = measured(&actual, matrix, &prepared, &at.key("actual"))?;
+        let mechanics = learned_from.prediction.mechanics(&prepared.plan, &prepared.scene);
+        predicted_alike(members.first().map_or(&mechanics, |own| &own.mechanics), &mechanics, &at)?;
         let class = input.spec.class(index, prepared.plan.segments.len());
-        cases.push(learned([name, class], &prepared.scene, &after, clock)?);
+        let (case, skin) = learned([name, class], &prepared.scene, after, clock)?;
+        members.push(Member { case, skin, mechanics });
         if input.spec.theta {
             told.push(at_thetas(&prepared, &at.key("prediction"), clock)?);
         }
@@ -102,12 +105,35 @@ fn of_cases(
         clock.check()?;
         first.get_or_insert(prepared);
     }
+    let found = gathered(input, members, &told, first)?;
+    Ok(Gathered { inputs, ..found })
+}
+
+/// A case that is learned from, and what speaks against it.
+struct Member {
+    case: LearningCase,
+    skin: OperatedSkin,
+    mechanics: MechanicsDocument,
+}
+
+fn gathered(
+    input: &LearnInput,
+    members: Vec<Member>,
+    told: &[AtThetas],
+    first: Option<Prepared>,
+) -> Result<Gathered, JobError> {
     let correspondence = first.as_ref().map(|own| CorrespondenceDocument::new(&own.scene));
     let nothing = (TriangleSurface::default(), BTreeMap::new(), Frame::Unspecified);
     let (face, regions, frame) = first.map_or(nothing, |own| {
         let Skin { surface, regions } = own.scene.skin;
         (surface, regions, own.case.frame)
     });
+    let (mut cases, mut skins, mut mechanics) = (Vec::new(), Vec::new(), Vec::new());
+    for Member { case, skin, mechanics: own } in members {
+        cases.push(case);
+        skins.push(skin);
+        mechanics.push(own);
+    }
     let cohort = Cohort::new(cases, regions, &input.predicted_by());
     let cohort = cohort.map_err(|error| refused_cohort(&error))?;
     let column = |name: &str, of: &dyn Fn(&LearningCase) -> Vec<f64>| {
@@ -120,120 +146,60 @@ fn of_cases(
     ];
     let mut fitted = Vec::new();
     if input.spec.theta {
-        mechanical.push(held_out(&cohort, &told));
-        fitted = thetas(&cohort, &told);
+        mechanical.push(held_out(&cohort, told));
+        fitted = thetas(&cohort, told);
     }
-    Ok(Gathered { mechanical, cohort, thetas: fitted, inputs, frame, face, correspondence })
-}
-
-/// Cases have the same cells, frame, skin, bone and method.
-fn corresponds(first: &Prepared, other: &Prepared, at: &Pointer) -> Result<(), JobError> {
-    let [one, two] = [first, other].map(|own| &own.scene);
-    let conflict =
-        |code, detail: String| Err(Problem::at(&at.key("prediction"), code, detail).into());
-    let [a, b] = [one, two].map(|own| (own.mesh.nodes.len(), own.mesh.cells.len()));
-    if a != b || one.mesh.cells != two.mesh.cells {
-        let detail = format!(
-            "its mesh has {} nodes and {} cells, that of the first case {} and {}, and cells have to be the same: nodes do not correspond",
-            b.0, b.1, a.0, a.1
-        );
-        return conflict(ErrorCode::NotCorresponding, detail);
-    }
-    if one.skin.nodes() != two.skin.nodes() {
-        let [a, b] = [one, two].map(|own| own.skin.nodes().len());
-        let detail = format!(
-            "its skin has {b} nodes and that of the first case {a}, and they have to be the same"
-        );
-        return conflict(ErrorCode::NotCorresponding, detail);
-    }
-    if let Some(detail) = other_bone(one, two) {
-        return conflict(ErrorCode::NotCorresponding, detail);
-    }
-    if first.case.frame != other.case.frame {
-        let detail = format!(
-            "its frame is {:?} and that of the first case {:?}",
-            other.case.frame, first.case.frame
-        );
-        return conflict(ErrorCode::FrameConflict, detail);
-    }
-    let [a, b] = [one, two].map(|own| own.settings.method.kind().name());
-    match a == b {
-        true => Ok(()),
-        false => conflict(
-            ErrorCode::MethodMismatch,
-            format!(
-                "it was predicted by {b} and the first case by {a}: what they miss is not the same"
-            ),
-        ),
-    }
-}
-
-/// In what the segments of a case, in their order, differ from those of the first.
-fn other_bone(first: &Scene, other: &Scene) -> Option<String> {
-    let [a, b] = [first, other].map(|own| own.segments.len());
-    if a != b {
-        return Some(format!(
-            "its case has {b} segments and that of the first case {a}, and they have to be the same"
-        ));
-    }
-    let differing = (0..a).find_map(|number| {
-        let [one, two] =
-            [first, other].map(|own| (own.segments[number].name.as_str(), carried_by(own, number)));
-        (one != two).then_some((one, two))
-    });
-    let ((name, nodes), (own_name, own)) = differing?;
-    let common = own.iter().filter(|node| nodes.binary_search(node).is_ok()).count();
-    Some(format!(
-        "its segment {own_name:?} carries {} nodes, {common} of which are among the {} of segment {name:?} of the first case, and they have to be the same under the same name, in the same order: bone does not correspond",
-        own.len(),
-        nodes.len()
-    ))
-}
-
-/// Where the skin is in a mesh after the operation.
-fn places(shape: &StoredShape, scene: &Scene, at: &Pointer) -> Result<Vec<Vector>, JobError> {
-    let nodes = scene.skin.nodes();
-    let (points, expected): (&[Vector], usize) = match shape {
-        StoredShape::Volume(volume) => (&volume.nodes, scene.mesh.nodes.len()),
-        StoredShape::Surface(surface) => (&surface.points, nodes.len()),
-        StoredShape::Image(_) => (&[], nodes.len()),
-    };
-    if points.len() != expected {
-        let detail = format!(
-            "it has {} points, and {expected} would correspond to the mesh of the case",
-            points.len()
-        );
-        return Err(Problem::at(at, ErrorCode::NotCorresponding, detail).into());
-    }
-    Ok(match shape {
-        StoredShape::Volume(_) => nodes.iter().map(|&node| points[node as usize]).collect(),
-        StoredShape::Surface(_) | StoredShape::Image(_) => points.to_vec(),
+    let warnings = doubts(input, &cohort, &skins);
+    let at_rest = skins.into_iter().map(|own| own.at_rest).collect();
+    Ok(Gathered {
+        cohort,
+        mechanical,
+        thetas: fitted,
+        inputs: Vec::new(),
+        frame,
+        face,
+        correspondence,
+        mechanics,
+        at_rest,
+        warnings,
     })
 }
 
-/// Brings points into the frame of the case.
-fn register(points: &mut [Vector], matrix: Option<Matrix4x4>) {
-    let Some(Matrix4x4(matrix)) = matrix else { return };
-    let transform = RigidTransform::from_matrix4(&matrix);
-    points.iter_mut().for_each(|point| *point = transform.apply(point));
+/// What speaks against measured skins and meshes, each with the place of its case.
+fn doubts(input: &LearnInput, cohort: &Cohort, skins: &[OperatedSkin]) -> Vec<Warning> {
+    let list = if input.cohort.is_some() { "/spec/cohort/members" } else { "/spec/cases" };
+    let of = |place: usize| {
+        let rest = |other: usize| skins[other].at_rest.as_slice();
+        let others: Vec<&[Vector]> = cohort.others(place).into_iter().map(rest).collect();
+        let mut found = suspicions(place, skins);
+        found.extend(unlike_skins(rest(place), &others));
+        for warning in &mut found {
+            let name = &cohort.cases[place].name;
+            warning.detail = format!("{list}/{place} ({name}): {}", warning.detail);
+        }
+        found
+    };
+    (0..skins.len()).flat_map(of).collect()
 }
 
 fn learned(
     [name, class]: [String; 2],
     scene: &Scene,
-    after: &[Vector],
+    actual: Vec<Vector>,
     clock: &Observed,
-) -> Result<LearningCase, JobError> {
-    let (solved, _) = equilibrium(scene, clock).map_err(|error| clock.judge(error))?;
-    let displacement = &solved.displacement;
-    let before = scene.skin.nodes().iter().map(|&node| scene.mesh.nodes[node as usize]);
-    let moved = after.iter().zip(before).map(|(after, before)| after - before);
-    Ok(LearningCase {
+) -> Result<(LearningCase, OperatedSkin), JobError> {
+    let displacement = displacement(scene, clock).map_err(|error| clock.judge(error))?;
+    let at_rest = scene.skin.surface.points.clone();
+    let moved = actual.iter().zip(&at_rest).map(|(after, before)| after - before);
+    let case = LearningCase {
         name,
         class,
-        features: measures::features(scene, displacement),
-        bone: measures::bone(scene, displacement),
-        predicted: measures::skin(scene, displacement),
+        features: measures::features(scene, &displacement),
+        bone: measures::bone(scene, &displacement),
+        predicted: measures::skin(scene, &displacement),
         actual: moved.flat_map(|own| [own.x, own.y, own.z]).collect(),
-    })
+    };
+    let predicted = scene.skin.moved(&displacement).points;
+    let bone_movement = case.largest_bone_movement();
+    Ok((case, OperatedSkin { at_rest, predicted, actual, bone_movement }))
 }

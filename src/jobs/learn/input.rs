@@ -5,9 +5,9 @@ use serde_json::json;
 
 use crate::jobs::failure::JobError;
 use crate::jobs::predict::PredictInput;
-use crate::schema::LearnDocument;
 use crate::schema::cohort::stored::CohortVersionDocument;
 use crate::schema::wire::canonical::{hash, to_value};
+use crate::schema::{ErrorCode, LearnDocument, Pointer, Problem};
 use mechanics::prediction::MethodKind;
 
 /// Cases to learn from.
@@ -32,6 +32,23 @@ pub struct LearnedCase {
     pub case: Option<String>,
     pub spec_hash: Option<String>,
     pub prediction: PredictInput,
+}
+
+impl LearnedCase {
+    /// Refuses a prediction that chose its model or its mesh itself: another case is answered by another one, which misses
+    /// something else. `at` is its place.
+    pub fn check_settings(&self, at: &Pointer) -> Result<(), Problem> {
+        let spec = &self.prediction.spec;
+        let (what, instead) = match (&spec.refine, spec.accepted()) {
+            (Some(_), _) => ("its mesh was refined (`refine`)", "on the mesh of the case"),
+            (None, Some(_)) => ("the method `auto` chose its model", "by a named `method`"),
+            (None, None) => return Ok(()),
+        };
+        let detail = format!(
+            "{what}, and each case is then missed by something else: predict the case {instead} to learn from it"
+        );
+        Err(Problem::at(at, ErrorCode::MethodMismatch, detail))
+    }
 }
 
 impl LearnInput {

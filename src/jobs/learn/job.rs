@@ -13,6 +13,7 @@ use crate::jobs::failure::JobError;
 use crate::jobs::output::{JobContext, JobOutput};
 use crate::jobs::result::folder::ResultFolder;
 use crate::jobs::result::provenance::{Origin, encode_result};
+use crate::jobs::result::warnings::warning_documents;
 use crate::schema::Faults;
 use crate::schema::cohort::result::CohortPairDocument;
 use crate::schema::engine::EngineDocument;
@@ -28,6 +29,7 @@ use mechanics::learning::hill_climb::{Climb, hill_climb};
 use mechanics::learning::learner::{ComparedCases, Rule};
 use mechanics::learning::validation::{Column, Validated, validate};
 use mechanics::learning::{Cohort, Distance, LearnedModel, Method};
+use mechanics::mesh::Vector;
 use mechanics::progress::{Phase, Progress};
 
 /// The draw of the cases of a learning curve.
@@ -83,7 +85,7 @@ pub fn learn_job(
     let chart = learning_chart(&found, gathered.cohort.len());
     folder.add_file(TABLE_FILE, OutputName::SkinCsv.media_type(), table_csv(&found).as_bytes())?;
     folder.add_file("learning.svg", "image/svg+xml", chart.as_bytes())?;
-    let warnings = model.warning().iter().map(Into::into).collect();
+    let warnings = warning_documents(model.warning().iter().chain(&gathered.warnings));
     let provenance = origin.provenance(&clock);
     let result = ResultDocument {
         learning: Some(found),
@@ -161,6 +163,11 @@ fn mechanical(gathered: &Gathered) -> Option<&Column> {
     gathered.mechanical.iter().find(|column| column.name == gathered.cohort.mechanical)
 }
 
+/// Three for each point.
+fn numbers(points: &[Vector]) -> Vec<f64> {
+    points.iter().flat_map(|own| [own.x, own.y, own.z]).collect()
+}
+
 fn kept(input: &LearnInput, gathered: &Gathered, found: &LearningDocument) -> ModelDocument {
     let error = |name: &str| {
         let column = found.table.iter().find(|column| column.name == name);
@@ -175,6 +182,8 @@ fn kept(input: &LearnInput, gathered: &Gathered, found: &LearningDocument) -> Mo
             prediction: input.spec.cases.get(index).map(|case| case.prediction.clone()),
             spec_hash: member.and_then(|member| member.spec_hash.clone()),
             actual_sha256: actual,
+            mechanics: gathered.mechanics.get(index).cloned(),
+            at_rest: gathered.at_rest.get(index).map(|own| numbers(own)).unwrap_or_default(),
             features: own.features.blocks.clone(),
             bone: own.bone.clone(),
             predicted: own.predicted.clone(),

@@ -1,6 +1,7 @@
 //! Learning from operated cases: their predictions and what came of them, or virtual patients.
 
 mod chart;
+mod corresponding;
 mod gather;
 mod input;
 mod job;

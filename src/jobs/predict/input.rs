@@ -17,6 +17,7 @@ use crate::schema::case::document::{CaseMeshes, NamedMesh};
 use crate::schema::case::norm::check_norms;
 use crate::schema::compare::document::CompareToDocument;
 use crate::schema::hashes;
+use crate::schema::learn::mechanics::MechanicsDocument;
 use crate::schema::plan::document::PlanContext;
 use crate::schema::predict::document::OutputName;
 use crate::schema::predict::output::PictureName;
@@ -89,6 +90,9 @@ impl PredictInput {
         if let Some(refine) = &self.spec.refine {
             check_refinable(refine, &scene)?;
         }
+        if let Some(model) = &model {
+            self.check_model(&model.document, case, plan, &scene)?;
+        }
         let meshes_read = stored.values().chain(compared.iter().map(|meshes| &meshes.actual));
         let mut warnings: Vec<Warning> =
             meshes_read.flat_map(|mesh| mesh.warnings.iter().cloned()).collect();
@@ -124,6 +128,11 @@ impl PredictInput {
         }
         ids.extend(self.spec.compare_to.iter().flat_map(CompareToDocument::mesh_ids));
         ids
+    }
+
+    /// What decides the mechanics of it.
+    pub fn mechanics(&self, plan: &Plan, scene: &Scene) -> MechanicsDocument {
+        MechanicsDocument::new(&self.case, &self.spec, plan, scene)
     }
 
     /// The files to write but for `result.json`: those asked for, or skin and moved bones. A case

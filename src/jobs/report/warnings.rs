@@ -6,7 +6,7 @@ use crate::schema::WarningDocument;
 
 /// Codes that stand before all others, in this order: those that speak against what was asked or measured, those of an answer that
 /// is off by more than is told elsewhere, and those of one that is not possible.
-const GRAVE: [&str; 38] = [
+const GRAVE: [&str; 43] = [
     "nothing-moves",
     "nothing-performed",
     "units-suspect",
@@ -18,6 +18,8 @@ const GRAVE: [&str; 38] = [
     "mirrored?",
     "another-person-suspect",
     "before-operation-suspect",
+    "unregistered-suspect",
+    "skin-unlike-learned",
     "segment-misfit",
     "surfaces-apart",
     "surfaces-opposed",
@@ -42,6 +44,9 @@ const GRAVE: [&str; 38] = [
     "contact-chatter",
     "contact-points-move",
     "out-of-distribution",
+    "learned-otherwise",
+    "correction-above-movement",
+    "nothing-to-correct",
     "learning-does-not-help",
     "not-corrected",
     "cut-near-risk",

@@ -64,8 +64,8 @@ impl CohortUse {
 pub struct MemberDocument {
     /// The id of a job of kind `predict`, whose case, plan and method are taken.
     pub prediction: String,
-    /// The id of a mesh after the operation: a volume with the nodes of the case's, or a surface with the points of its skin, in
-    /// their order.
+    /// The id of a mesh after the operation: a volume with the cells of the case's, or a surface with the node ids or the
+    /// triangles of its skin, which tell what corresponds.
     pub actual: String,
     /// The registration of `actual` onto the case: row-major, x' = R x + t in mm. Absent: it lies in the frame of the case.
     #[serde(default, skip_serializing_if = "Option::is_none")]

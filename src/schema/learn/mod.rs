@@ -2,5 +2,6 @@
 
 pub mod correspondence;
 pub mod document;
+pub mod mechanics;
 pub mod model;
 pub mod result;

@@ -9,6 +9,7 @@ use crate::schema::case::document::FrameName;
 use crate::schema::cohort::stored::CohortVersionDocument;
 use crate::schema::engine::EngineDocument;
 use crate::schema::learn::correspondence::CorrespondenceDocument;
+use crate::schema::learn::mechanics::MechanicsDocument;
 use mechanics::learning::{Cohort, CohortError, Features, LearnedModel, LearningCase};
 use mechanics::mesh::Warning;
 
@@ -51,6 +52,12 @@ pub struct ModelCaseDocument {
     pub spec_hash: Option<String>,
     /// Of the mesh after the operation.
     pub actual_sha256: Option<String>,
+    /// What it was predicted by; virtual patients and models of earlier versions do not have it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub mechanics: Option<MechanicsDocument>,
+    /// The skin at rest in mm, as the displacements; models without `mechanics` do not have it.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub at_rest: Vec<f64>,
     pub features: Vec<Vec<f64>>,
     pub bone: Vec<f64>,
     pub predicted: Vec<f64>,

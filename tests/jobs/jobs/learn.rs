@@ -1,14 +1,14 @@
 //! Learning without a server: what mechanics misses alike is learned and added, and bad cohorts are named.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use facies::jobs::{
     JobContext, JobError, JobInput, JobOutput, LearnInput, LearnedCase, MeshSource, PredictInput,
     SourceError, StoredMesh, StoredShape, work,
 };
 use facies::schema::Limits;
-use mechanics::mesh::{CellShape, Vector, VolumeMesh, sample};
-use mechanics::prediction::equilibrium;
+use mechanics::mesh::{CellShape, TriangleSurface, Vector, VolumeMesh, sample};
+use mechanics::prediction::{equilibrium, predict};
 use mechanics::progress::Unobserved;
 use serde_json::{Value, json};
 
@@ -368,4 +368,200 @@ fn theta_is_of_one_law_only() {
     input.spec.theta = true;
     let fault = first_fault(done(JobInput::Learn(input), &sources).map(|_| ()));
     assert_eq!(fault, ("/spec/cases/0/prediction".to_owned(), "law-mismatch".to_owned()));
+}
+
+/// The places of a list in another order.
+fn shuffled(count: usize) -> Vec<usize> {
+    (0..count).map(|place| (place * 7 + 3) % count).collect()
+}
+
+/// The skin of the block as it was measured, its points in another order.
+fn measured_skin(sources: &Sources, number: usize, with_ids: bool) -> TriangleSurface {
+    let scene = prediction(1.0, linear()).prepare(sources, &Limits::default()).unwrap().scene;
+    let StoredShape::Volume(after) = &sources.meshes[&format!("after {number}")].shape else {
+        panic!("it is a volume")
+    };
+    let (skin, nodes) = (&scene.skin.surface, scene.skin.nodes());
+    let order = shuffled(nodes.len());
+    assert_eq!(order.iter().collect::<BTreeSet<_>>().len(), nodes.len());
+    let place = |point: u32| order.iter().position(|own| *own == point as usize).unwrap() as u32;
+    TriangleSurface {
+        points: order.iter().map(|&own| after.nodes[nodes[own] as usize]).collect(),
+        triangles: skin.triangles.iter().map(|corners| corners.map(place)).collect(),
+        node_ids: with_ids.then(|| order.iter().map(|&own| nodes[own]).collect()),
+    }
+}
+
+fn surface(surface: TriangleSurface) -> StoredMesh {
+    StoredMesh { frame: None, ..stored(StoredShape::Surface(surface.into()), None) }
+}
+
+#[test]
+fn measured_points_are_taken_by_node_ids_and_refused_where_nothing_tells_which_correspond() {
+    let learned = |change: &dyn Fn(&mut Sources)| {
+        let (mut sources, input) = operated();
+        change(&mut sources);
+        done(JobInput::Learn(input), &sources).map(|(output, _out)| output)
+    };
+    let by_ids = learned(&|sources| {
+        let own = measured_skin(sources, 1, true);
+        sources.meshes.insert("after 1".to_owned(), surface(own));
+    });
+    let table = by_ids.unwrap().result.learning.unwrap().table;
+    let mechanics = table.iter().find(|own| own.name == "fem_linear").unwrap();
+    assert!((mechanics.mean - 0.5).abs() < 1e-6, "{mechanics:?}");
+
+    let told = ("/spec/cases/0/actual".to_owned(), "not-corresponding".to_owned());
+    let without = learned(&|sources| {
+        let own = measured_skin(sources, 1, false);
+        sources.meshes.insert("after 1".to_owned(), surface(own));
+    });
+    assert_eq!(first_fault(without.map(|_| ())), told);
+    // A volume whose nodes are numbered otherwise has other cells.
+    let renumbered = learned(&|sources| {
+        let mut own = sample::block(Vector::new(30.0, 60.0, 60.0), [2, 4, 4], CellShape::Hex8);
+        own.nodes.iter_mut().for_each(|node| *node = Vector::new(node.z, node.y, node.x));
+        sources.meshes.insert("after 1".to_owned(), volume(own));
+    });
+    assert_eq!(first_fault(renumbered.map(|_| ())), told);
+}
+
+#[test]
+fn cases_are_predicted_as_their_jobs_were_asked_or_refused() {
+    let (mut sources, mut input) = operated();
+    for (number, case) in (1..).zip(&mut input.cases) {
+        let spec = json!({"method": "fem_linear", "corrected": true});
+        case.prediction.spec = serde_json::from_value(spec).unwrap();
+        let scene = case.prediction.prepare(&sources, &Limits::default()).unwrap().scene;
+        let asked = predict(&scene, &Unobserved).unwrap().displacement;
+        let (plain, _) = equilibrium(&scene, &Unobserved).unwrap();
+        let differs = asked.iter().zip(&plain.displacement).map(|(a, b)| (a - b).norm());
+        assert!(differs.fold(0.0, f64::max) > 1e-3, "nothing is corrected");
+        let mut after = block([4, 4, 2]);
+        after.nodes.iter_mut().zip(&asked).for_each(|(node, u)| *node += u);
+        after.nodes.iter_mut().for_each(|node| node.z += 0.5);
+        sources.meshes.insert(format!("after {number}"), volume(after));
+    }
+    let found = done(JobInput::Learn(input), &sources).unwrap().0.result.learning.unwrap();
+    let mechanics = found.table.iter().find(|own| own.name == "fem_linear").unwrap();
+    assert!((mechanics.mean - 0.5).abs() < 1e-6, "{mechanics:?}");
+
+    let told = ("/spec/cases/2/prediction".to_owned(), "method-mismatch".to_owned());
+    for spec in [
+        json!({"method": "auto"}),
+        json!({"method": "fem_linear", "refine": {"accept_mm": 0.1}}),
+        json!({"method": "fem_linear", "corrected": true}),
+        json!({"method": "fem_linear", "element": "plain"}),
+        json!({"method": "fem_linear", "contact": "none"}),
+        json!({"method": "fem_linear", "membrane": {}}),
+    ] {
+        let (sources, mut input) = operated();
+        input.cases[2].prediction.spec = serde_json::from_value(spec.clone()).unwrap();
+        let fault = first_fault(done(JobInput::Learn(input), &sources).map(|_| ()));
+        assert_eq!(fault, told, "{spec}");
+    }
+}
+
+/// The same with a correction, and the codes of its warnings that speak of that.
+fn asked_of_model(
+    sources: &Sources,
+    x: f64,
+    change: &dyn Fn(&mut PredictInput),
+) -> Result<(JobOutput, Vec<String>), JobError> {
+    let mut input = prediction(x, linear());
+    change(&mut input);
+    input.spec.correction = Some(serde_json::from_value(json!({"model": "any"})).unwrap());
+    let (output, _out) = done(JobInput::Predict(input), sources)?;
+    let of_learning = [
+        "learned-otherwise",
+        "skin-unlike-learned",
+        "nothing-to-correct",
+        "correction-above-movement",
+        "out-of-distribution",
+    ];
+    let codes = output.result.warnings.iter().map(|own| own.code.clone());
+    let codes = codes.filter(|code| of_learning.contains(&code.as_str())).collect();
+    Ok((output, codes))
+}
+
+#[test]
+fn a_correction_is_added_to_predictions_of_the_kind_that_it_was_learned_from() {
+    let (mut sources, input) = operated();
+    let (_, out) = done(JobInput::Learn(input), &sources).unwrap();
+    sources.model = std::fs::read(out.path().join("model.json")).unwrap();
+    let at = ("/spec/correction/model".to_owned(), "method-mismatch".to_owned());
+    for spec in [
+        json!({"method": "fem_linear", "corrected": true}),
+        json!({"method": "fem_linear", "refine": {"accept_mm": 0.1}}),
+        json!({"method": "fem_linear", "element": "plain"}),
+        json!({"method": "fem_linear", "contact": "none"}),
+        json!({"method": "fem_linear", "membrane": {}}),
+    ] {
+        let other = |own: &mut PredictInput| {
+            own.spec = serde_json::from_value(spec.clone()).unwrap();
+        };
+        let refused = asked_of_model(&sources, 2.5, &other);
+        assert_eq!(first_fault(refused.map(|_| ())), at, "{spec}");
+    }
+
+    let codes =
+        |x: f64, change: &dyn Fn(&mut PredictInput)| asked_of_model(&sources, x, change).unwrap().1;
+    assert!(codes(2.5, &|_| ()).is_empty());
+    let softer = |own: &mut PredictInput| {
+        let materials = json!({"*": {"young_modulus_kpa": 15, "poisson_ratio": 0.2}});
+        own.spec.materials = Some(serde_json::from_value(materials).unwrap());
+    };
+    assert!(codes(2.5, &softer).contains(&"learned-otherwise".to_owned()));
+    let grown = |own: &mut PredictInput| {
+        own.plan.growth =
+            serde_json::from_value(json!([{"region": "*", "volume_change": 0.001}])).unwrap();
+    };
+    assert!(codes(2.5, &grown).contains(&"learned-otherwise".to_owned()));
+    // Other nodes are held than in all that was learned from.
+    let mut model: Value = serde_json::from_slice(&sources.model).unwrap();
+    for case in model["cases"].as_array_mut().unwrap() {
+        case["mechanics"]["held"]["fixed"].as_array_mut().unwrap().pop();
+    }
+    let model = serde_json::to_vec(&model).unwrap();
+    let others = Sources { meshes: sources.meshes.clone(), model };
+    assert_eq!(asked_of_model(&others, 2.5, &|_| ()).unwrap().1, ["learned-otherwise"]);
+
+    // Less than is added, and nothing at all.
+    assert_eq!(codes(0.3, &|_| ()), ["correction-above-movement"]);
+    let (output, told) = asked_of_model(&sources, 0.0, &|_| ()).unwrap();
+    assert_eq!(told, ["nothing-to-correct"]);
+    let correction = output.result.correction.unwrap();
+    assert!(correction.refused.is_some() && correction.changed_mm.is_none());
+    assert!(output.files.iter().all(|file| file.name != "corrected.vtp"));
+
+    // The same cells, turned by a right angle.
+    let mut turned = block([4, 4, 2]);
+    turned.nodes.iter_mut().for_each(|node| *node = Vector::new(-node.y, node.x, node.z));
+    sources.meshes.insert("block".to_owned(), volume(turned));
+    let told = asked_of_model(&sources, 2.5, &|_| ()).unwrap().1;
+    assert!(told.contains(&"skin-unlike-learned".to_owned()), "{told:?}");
+}
+
+#[test]
+fn scans_of_before_the_operation_and_beside_the_case_are_suspected_with_their_place() {
+    let told = |sources: &Sources, input: LearnInput| -> Vec<(String, String)> {
+        let output = done(JobInput::Learn(input), sources).unwrap().0;
+        let suspects = output.result.warnings.into_iter();
+        let suspects = suspects.filter(|own| own.code != "learning-does-not-help");
+        let place = |detail: &str| detail.split(' ').next().unwrap_or_default().to_owned();
+        suspects.map(|own| (own.code, place(&own.detail))).collect()
+    };
+    let (sources, input) = operated();
+    assert_eq!(told(&sources, input), []);
+    let (mut sources, input) = operated();
+    sources.meshes.insert("after 3".to_owned(), volume(block([4, 4, 2])));
+    let mut beside = block([4, 4, 2]);
+    beside.nodes.iter_mut().for_each(|node| node.x += 60.0);
+    sources.meshes.insert("after 2".to_owned(), volume(beside));
+    let at = |code: &str, place: &str| (code.to_owned(), place.to_owned());
+    let expected = [
+        at("unregistered-suspect", "/spec/cases/1"),
+        at("before-operation-suspect", "/spec/cases/2"),
+    ];
+    assert_eq!(told(&sources, input), expected);
 }
