@@ -19,7 +19,7 @@ use crate::schema::case::preset::MaterialList;
 use crate::schema::key::Scope;
 use crate::schema::methods::{MethodList, available_methods};
 
-/// The description of the service, made once from all of its routes.
+/// The OpenAPI description of the service, built once from all routes.
 #[derive(Clone)]
 pub struct Description(pub Arc<serde_json::Value>);
 
@@ -30,7 +30,7 @@ pub fn router() -> Resources {
     router.open(routes!(versions)).json_only().open(routes!(entrance))
 }
 
-/// Where a client finds what.
+/// The entry point of the service.
 #[derive(Serialize, ToSchema)]
 struct Entrance {
     /// `facies`.
@@ -38,7 +38,7 @@ struct Entrance {
     version: &'static str,
     /// Not a medical device.
     notice: &'static str,
-    /// Addresses by what they hold, on this service.
+    /// Addresses of resources on this service, by name.
     links: BTreeMap<&'static str, &'static str>,
 }
 
@@ -62,8 +62,8 @@ fn first_answer() -> Response {
     json(StatusCode::OK, &Entrance { name: "facies", version, notice, links: LINKS.into() })
 }
 
-/// Where to begin: a page for people, the addresses of everything else for programs.
-#[utoipa::path(get, path = "/", operation_id = "show_entrance", tag = "about", responses((status = 200, description = "where to find what", content(
+/// Entry point: a page for people, the addresses of all resources for programs.
+#[utoipa::path(get, path = "/", operation_id = "show_entrance", tag = "about", responses((status = 200, description = "the entry point", content(
     (Entrance = "application/json"), (String = "text/html")))))]
 async fn entrance(headers: HeaderMap) -> ApiResult {
     if preferred(&headers, &["application/json", "text/html"])? == 0 {
@@ -72,13 +72,13 @@ async fn entrance(headers: HeaderMap) -> ApiResult {
     Ok(with_header(super::page::page(), header::VARY, "Accept"))
 }
 
-/// The version of the interface that there is, and the addresses in it.
-#[utoipa::path(get, path = "/v1", operation_id = "show_version", tag = "about", responses((status = 200, description = "where to find what", body = Entrance)))]
+/// The available version of the API, and its addresses.
+#[utoipa::path(get, path = "/v1", operation_id = "show_version", tag = "about", responses((status = 200, description = "the entry point", body = Entrance)))]
 async fn versions() -> Response {
     first_answer()
 }
 
-/// Every bound that is enforced.
+/// Every enforced bound.
 #[utoipa::path(get, path = "/v1/limits", operation_id = "show_limits", tag = "about", responses((status = 200, description = "the limits", body = Limits)))]
 async fn limits(service: Service) -> Response {
     json(StatusCode::OK, &*service.limits)
@@ -90,13 +90,13 @@ async fn methods() -> Response {
     json(StatusCode::OK, &available_methods())
 }
 
-/// The materials of the literature that a material may name, with source, state and what speaks against each.
+/// The materials of the literature that a material may name, with source, state and objections.
 #[utoipa::path(get, path = "/v1/materials", operation_id = "list_materials", tag = "about", responses((status = 200, description = "the materials", body = MaterialList)))]
 async fn materials() -> Response {
     json(StatusCode::OK, &MaterialList::all())
 }
 
-/// This description.
+/// This OpenAPI description.
 #[utoipa::path(get, path = "/openapi.json", operation_id = "describe_service", tag = "about", responses((status = 200, description = "OpenAPI 3.1", body = serde_json::Value)))]
 async fn description(Extension(description): Extension<Description>) -> Response {
     json(StatusCode::OK, &*description.0)

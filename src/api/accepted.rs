@@ -1,4 +1,4 @@
-//! Acceptance of a job: its input, checked with its meshes, becomes a row of the queue.
+//! Acceptance of a job: its input is checked with its meshes and queued.
 
 use std::collections::BTreeMap;
 
@@ -14,7 +14,7 @@ use crate::schema::study::expected::TruthCostDocument;
 use crate::schema::{ErrorCode, Faults, Limits, Pointer, PredictDocument, Problem};
 use crate::store::{JobRow, NewJob};
 
-/// Jobs that may wait at the same time.
+/// The most waiting jobs.
 pub(super) const LONGEST_QUEUE: i64 = 10_000;
 
 /// The refusal of one more.
@@ -22,7 +22,7 @@ pub(super) fn queue_full() -> ApiError {
     ApiError::new(ErrorCode::QueueFull, format!("{LONGEST_QUEUE} jobs are waiting"))
 }
 
-/// Checks a job with its meshes, off the async threads; gives it back with what `prepare` finds.
+/// Checks a job with its meshes, off the async threads; returns it with the findings of `prepare`.
 pub(super) async fn prepared<I: Send + 'static, T: Send + 'static>(
     service: &Service,
     input: I,
@@ -40,7 +40,7 @@ pub(super) async fn prepared<I: Send + 'static, T: Send + 'static>(
     Ok((input, found.map_err(|error| refusal(error).map_problem(in_spec))?))
 }
 
-/// A job that a document names, which has to have ended well.
+/// A job named by a document, which has to be successful.
 pub(super) async fn successful_job(service: &Service, at: &str, job: &str) -> ApiResult<JobRow> {
     let row = match id(job) {
         Some(id) => service.store.job(&id).await?,
@@ -54,7 +54,7 @@ pub(super) async fn successful_job(service: &Service, at: &str, job: &str) -> Ap
     Ok(row)
 }
 
-/// What is known of a job when it is accepted, beside its document.
+/// Data of an accepted job beside its document.
 pub(super) struct Accepted {
     pub case_id: Option<String>,
     pub shared_cases: Vec<String>,
@@ -64,7 +64,7 @@ pub(super) struct Accepted {
     pub study: Option<AcceptedStudy>,
 }
 
-/// What is known of a study beside that: the key of its rows, and what the truths that it solves will take.
+/// Further data of a study: the key of its rows, and the expected cost of its reference solutions.
 pub(super) struct AcceptedStudy {
     pub rows_key: String,
     pub truths: Vec<TruthCostDocument>,
@@ -94,7 +94,7 @@ impl Accepted {
     }
 }
 
-/// The hash of a mesh that has to be there.
+/// The hash of a mesh that has to exist.
 pub(super) async fn require_mesh(service: &Service, at: &str, mesh: &str) -> ApiResult<String> {
     let row = match id(mesh) {
         Some(id) => service.store.mesh(&id).await?,
@@ -113,12 +113,12 @@ pub(super) fn fault(at: &str, code: ErrorCode, detail: &str) -> ApiError {
     }
 }
 
-/// A body that is the spec knows nothing of `/spec`.
+/// A body that is the spec itself has no `/spec`.
 pub(super) fn in_spec(problem: Problem) -> Problem {
     problem.moved("/spec", "")
 }
 
-/// What a check found, as the answer to the request that asked for it.
+/// The findings of a check, as the response to its request.
 pub fn refusal(error: JobError) -> ApiError {
     match error {
         JobError::Refused(problem) => problem.into(),
@@ -135,7 +135,7 @@ pub fn refusal(error: JobError) -> ApiError {
     }
 }
 
-/// The meshes that a prediction is compared with have to be there.
+/// The meshes that a prediction is compared with have to exist.
 pub(super) async fn require_compared(
     service: &Service,
     spec: &PredictDocument,

@@ -1,4 +1,4 @@
-//! Scope and audit class of each request: each route says it where it is registered, and nothing is read from
+//! Scope and audit class of each request, declared where its route is registered; nothing is parsed from
 //! the text of a path.
 
 use std::collections::{BTreeMap, HashMap};
@@ -8,24 +8,24 @@ use axum::http::Method;
 use super::error::{ApiError, ApiResult};
 use crate::schema::key::Scope;
 
-/// Whether a request goes into the audit log. One that its key does not allow always does.
+/// Whether a request is audited. One that its key does not allow always is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Audit {
     Noted,
     Unnoted,
 }
 
-/// What a request takes.
+/// The access requirements of a request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Access {
-    /// No key: for probes, and for pages without data, for which a browser cannot send one. Not noted.
+    /// No key: for probes, and for pages without data, for which a browser cannot send one. Not audited.
     Open,
     /// A key with this scope.
     Key { scope: Scope, audit: Audit },
 }
 
 impl Access {
-    /// For routes that change nothing.
+    /// For read-only routes.
     pub const fn reads(scope: Scope) -> Access {
         Access::Key { scope, audit: Audit::Unnoted }
     }
@@ -35,15 +35,15 @@ impl Access {
     }
 }
 
-/// What was declared of each route, by the pattern of its path and by method.
+/// The access requirements of each route, by the pattern of its path and by method.
 #[derive(Clone, Debug, Default)]
 pub struct Declared(BTreeMap<String, HashMap<Method, Access>>);
 
-/// What was found for a request.
+/// The declared access of a request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RouteAccess {
     pub access: Access,
-    /// False where there is no handler, so that the answer is 404 or 405.
+    /// False if there is no handler, so that the response is 404 or 405.
     pub is_answered: bool,
 }
 
@@ -64,7 +64,7 @@ impl Declared {
         self.0.get(route)?.get(method).copied()
     }
 
-    /// What a request takes; `route` is the pattern that it matches, if any. A route of which nothing was declared is
+    /// The access requirements of a request; `route` is the pattern that it matches, if any. A route without declaration is
     /// closed to all.
     pub fn find(&self, route: Option<&str>, method: &Method) -> ApiResult<RouteAccess> {
         let Some(route) = route else {
@@ -82,7 +82,7 @@ impl Declared {
     }
 }
 
-/// What a request takes that no handler answers: nothing comes of it, and who tries to change something is noted.
+/// The access requirements of a request without a handler: it has no effect, and attempted changes are audited.
 fn for_unknown_route(method: &Method) -> Access {
     match *method {
         Method::GET | Method::HEAD | Method::OPTIONS => Access::reads(Scope::Read),

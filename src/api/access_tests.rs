@@ -15,7 +15,7 @@ use crate::config::Config;
 use crate::library::meshes::Library;
 use crate::store::Store;
 
-/// Every route: its scope, and whether it is noted in the audit log.
+/// Every route: its scope, and whether it is audited.
 const SERVICE: &str = "
     GET     /                                   open
     GET     /assets/{file}                      open
@@ -85,13 +85,13 @@ const ADMINISTRATION: &str = "
     POST    /tenants/{tenant}/keys/{id}/rotation admin noted
 ";
 
-/// The lines of a table, each with one space between its words.
+/// The lines of a table, with words separated by single spaces.
 fn lines(table: &str) -> BTreeSet<String> {
     let line = |line: &str| line.split_whitespace().collect::<Vec<_>>().join(" ");
     table.lines().map(line).filter(|line| !line.is_empty()).collect()
 }
 
-/// What was declared, as such lines.
+/// The declarations, as such lines.
 fn told(declared: &Declared) -> BTreeSet<String> {
     let routes = declared.0.iter();
     let all = routes.flat_map(|(route, methods)| {
@@ -151,7 +151,7 @@ fn a_request_that_no_handler_answers_looks_or_changes_by_its_method() {
     assert_eq!(find(None, Method::DELETE), (Access::changes(Scope::Write), false));
 }
 
-/// The answer of a service whose routes were not registered by way of `Resources`.
+/// The response of a service whose routes were not registered by `Resources`.
 async fn answer(declared: Declared, method: Method, path: &str) -> (StatusCode, String) {
     let folder = tempfile::tempdir().unwrap();
     let store = Store::open(folder.path()).await.unwrap();

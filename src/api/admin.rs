@@ -1,5 +1,5 @@
-//! Admin listener for operators: metrics, liveness, and what concerns more than one tenant. It has an address of its
-//! own, which clients do not reach.
+//! Admin listener for operators: metrics, liveness, and administration across tenants. It has a separate address,
+//! which clients do not reach.
 
 use std::net::SocketAddr;
 use std::sync::Arc;
@@ -47,13 +47,13 @@ struct AdminListener {
     /// Key for all routes except metrics.
     key: Option<Arc<Secret>>,
     is_loopback: bool,
-    /// Trusted hosts, where there is no key and everything is answered on loopback.
+    /// Trusted hosts, if there is no key and all requests on loopback are served.
     hosts: Option<Arc<Hosts>>,
     /// How long a client may stall.
     patience: Duration,
 }
 
-/// Listens on an address and answers until the process ends; the address with its port.
+/// Listens on an address and serves until the process ends; returns the address with its port.
 pub async fn listen(
     address: SocketAddr,
     config: &Config,
@@ -80,7 +80,7 @@ fn router(admin: AdminListener) -> Router {
     router.route_layer(from_fn_with_state(door, middleware)).with_state(admin)
 }
 
-/// Everything that is answered here.
+/// All routes of this listener.
 pub(super) fn admin_routes() -> AdminRoutes {
     AdminRoutes::default()
         .open("/metrics", counted)
@@ -98,7 +98,7 @@ pub(super) fn admin_routes() -> AdminRoutes {
         .changes(Method::POST, "/lost-jobs/{id}/requeue", requeue)
 }
 
-/// Routes of the listener and what each of them takes.
+/// Routes of the listener and their access requirements.
 #[derive(Default)]
 pub(super) struct AdminRoutes {
     router: Router<AdminListener>,
@@ -106,12 +106,12 @@ pub(super) struct AdminRoutes {
 }
 
 impl AdminRoutes {
-    /// Answers GET to all.
+    /// Open GET routes.
     fn open<T: 'static>(self, path: &str, handler: impl Handler<T, AdminListener>) -> AdminRoutes {
         self.with(Method::GET, path, Access::Open, handler)
     }
 
-    /// Answers GET and changes nothing.
+    /// Read-only GET routes.
     fn reads<T: 'static>(self, path: &str, handler: impl Handler<T, AdminListener>) -> AdminRoutes {
         self.with(Method::GET, path, Access::reads(Scope::Admin), handler)
     }
@@ -148,7 +148,7 @@ struct AdminGuardState {
     declared: Arc<Declared>,
 }
 
-/// Requires the key, or a local client where there is none; audits changes.
+/// Requires the key, or a local client if there is none; audits changes.
 async fn middleware(State(door): State<AdminGuardState>, request: Request, next: Next) -> Response {
     let id = uuid::Uuid::now_v7().to_string();
     if let Err(error) = door.admin.is_meant(&request) {
@@ -175,7 +175,7 @@ async fn middleware(State(door): State<AdminGuardState>, request: Request, next:
     named(response, &id)
 }
 
-/// Answer to a change by an operator, which is audited at once.
+/// Response to a change by an operator, which is audited at once.
 async fn noted(store: &Store, audited: AuditedAction, request: Request, next: Next) -> Response {
     let erases = request.method() == Method::DELETE;
     let intent = store.audit_intent(audited);
@@ -198,7 +198,7 @@ fn document<T: DeserializeOwned>(headers: &HeaderMap, body: &Bytes) -> ApiResult
     Ok(strict::parse(body, &Limits::default())?)
 }
 
-/// What was counted, with the queue as it is at this moment.
+/// The metrics, with the present queue.
 async fn counted(State(admin): State<AdminListener>) -> Response {
     match admin.store.queue().await {
         Ok(queue) => metrics::queue(queue.waiting, queue.running, queue.oldest_ms),
@@ -214,7 +214,7 @@ async fn counted(State(admin): State<AdminListener>) -> Response {
 }
 
 impl AdminListener {
-    /// Refuses a request that is not for a host by whose name this one is called.
+    /// Refuses a request for an untrusted host name.
     fn is_meant(&self, request: &Request) -> ApiResult<()> {
         check_named_once(request)?;
         self.hosts.as_ref().map_or(Ok(()), |hosts| hosts.check(request))
@@ -227,7 +227,7 @@ impl AdminListener {
         }
     }
 
-    /// The store scoped to a tenant, which need not be there yet.
+    /// The store scoped to a tenant, which need not exist yet.
     fn of(&self, tenant: &str) -> ApiResult<Store> {
         match is_tenant(tenant) {
             true => Ok(self.store.of_tenant(tenant)),
@@ -241,7 +241,7 @@ impl AdminListener {
 struct TenantDocument {
     #[serde(default, skip_deserializing)]
     name: String,
-    /// Days for which unchanged resources are kept; absent: until they are erased.
+    /// Retention of unchanged resources in days; absent: until they are erased.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     retention_days: Option<i64>,
 }
@@ -321,7 +321,7 @@ async fn list_audit(
     audit::page(&admin.store, "", &parameters).await
 }
 
-/// Whether the log is whole, and the hash of its last row.
+/// Whether the log is intact, and the hash of its last row.
 async fn check_audit(State(admin): State<AdminListener>) -> ApiResult {
     let found = match admin.store.check_audit().await? {
         Chain::Whole { rows, hash } => {
@@ -342,7 +342,7 @@ struct LostJob {
     error: serde_json::Value,
 }
 
-/// Jobs that failed through no fault of their own, oldest first.
+/// Jobs that failed by infrastructure, oldest first.
 async fn lost_jobs(
     State(admin): State<AdminListener>,
     Parameters(parameters): Parameters<PageParameters>,

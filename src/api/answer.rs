@@ -1,10 +1,10 @@
-//! Answers in JSON that no cache keeps.
+//! JSON responses without caching.
 
 use axum::http::{HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use serde::Serialize;
 
-/// An answer in JSON that no cache keeps.
+/// A JSON response without caching.
 pub(super) fn json(status: StatusCode, body: &impl Serialize) -> Response {
     let headers = [
         (header::CONTENT_TYPE, HeaderValue::from_static("application/json")),
@@ -16,7 +16,7 @@ pub(super) fn json(status: StatusCode, body: &impl Serialize) -> Response {
     }
 }
 
-/// The same answer with one more header.
+/// The same response with one more header.
 pub(super) fn with_header(
     mut response: Response,
     name: header::HeaderName,

@@ -24,19 +24,19 @@ pub struct AuditView {
     /// When it began; RFC 3339, UTC.
     pub at: String,
     pub tenant: String,
-    /// The id of the key; `setting` for the key of the settings, `-` without a key, `admin` on the admin listener,
-    /// `command` on the command line, `retention` for what grew too old.
+    /// The id of the key; `setting` for the key in the settings, `-` without a key, `admin` on the admin listener,
+    /// `command` on the command line, `retention` for expired resources.
     pub actor: String,
     /// Method and route.
     pub action: String,
-    /// The id of what it was done to; empty where there is none.
+    /// The id of the changed resource; empty without one.
     pub object: String,
-    /// The HTTP status; `done` or `failed` where there was no request; `unknown` where the process died before the
+    /// The HTTP status; `done` or `failed` without a request; `unknown` if the process ended before the
     /// outcome was stored.
     pub outcome: String,
     /// The id of the request.
     pub request: String,
-    /// SHA-256 of this row and of the hash of the row before it, of whichever tenant.
+    /// SHA-256 of this row and of the hash of the previous row, of any tenant.
     pub hash: String,
 }
 
@@ -74,7 +74,7 @@ impl AuditView {
     }
 }
 
-/// A page of rows, of a tenant or, where it is empty, of all.
+/// A page of rows, of a tenant or, if that is empty, of all.
 pub async fn page(store: &Store, tenant: &str, parameters: &AuditParameters) -> ApiResult {
     let limit = checked_limit(parameters.limit)?;
     let after = i64::try_from(parameters.after.unwrap_or(0))
@@ -84,7 +84,7 @@ pub async fn page(store: &Store, tenant: &str, parameters: &AuditParameters) -> 
     Ok(json(StatusCode::OK, &AuditList { items }))
 }
 
-/// What was asked for that changes something, oldest first; the next page begins after the last number of this one.
+/// Audited actions, oldest first; the next page begins after the last number of this one.
 #[utoipa::path(get, path = "/v1/audit", operation_id = "list_audit", tag = "keys", params(AuditParameters), responses((status = 200, description = "a page of it", body = AuditList)))]
 async fn list(service: Service, Parameters(parameters): Parameters<AuditParameters>) -> ApiResult {
     page(&service.store, service.store.tenant(), &parameters).await

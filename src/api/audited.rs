@@ -11,7 +11,7 @@ use super::caller::Caller;
 use super::error::ApiError;
 use crate::store::{AuditIntent, AuditedAction, Store};
 
-/// What a caller's request is about to do; none where no route is asked.
+/// The audit intent of a caller's request; none without a route.
 pub fn audited_action_of(caller: &Caller, request: &Request, id: &str) -> Option<AuditedAction> {
     let route = request.extensions().get::<MatchedPath>()?.as_str();
     Some(AuditedAction {
@@ -38,7 +38,7 @@ pub fn audited_admin_action(request: &Request, id: &str) -> Option<AuditedAction
 }
 
 /// Runs a request that may change something. It is audited before its first change, and then runs to its end, even if
-/// its client disconnects; until then it ends with its client. Its status is audited as well, but not where its body
+/// its client disconnects; until then it ends with its client. Its status is audited as well, but not if its body
 /// never came.
 pub async fn carry_out(
     intent: AuditIntent,
@@ -61,7 +61,7 @@ pub async fn carry_out(
     task.await.unwrap_or_else(|error| ApiError::internal(error).into_response())
 }
 
-/// The same for what erases something, which needs room on a disk that is full and leaves some.
+/// The same for erasures, which need to work on a full disk and free space on it.
 pub async fn erased(store: Store, run: impl Future<Output = Response>) -> Response {
     store.release_reserve().await;
     let response = run.await;
@@ -69,12 +69,12 @@ pub async fn erased(store: Store, run: impl Future<Output = Response>) -> Respon
     response
 }
 
-/// Whether the answer to a request without changes is audited: not server errors, nor bodies that came too late.
+/// Whether the response to a request without changes is audited: not server errors, nor bodies that came too late.
 fn is_told(status: StatusCode) -> bool {
     !status.is_server_error() && status != StatusCode::REQUEST_TIMEOUT
 }
 
-/// A waiting client; dropped when it has its answer, or disconnects.
+/// A waiting client; dropped when it has its response, or disconnects.
 struct Client {
     intent: AuditIntent,
     task: AbortHandle,
@@ -88,7 +88,7 @@ impl Drop for Client {
     }
 }
 
-/// The id of what a request made, also of a job that ended while its client waited and is answered in its place.
+/// The id of the created resource, also of a job that ended while its client waited and is returned instead.
 fn made(response: &Response) -> Option<&str> {
     let place = match response.status() {
         StatusCode::CREATED => header::LOCATION,
@@ -98,7 +98,7 @@ fn made(response: &Response) -> Option<&str> {
     response.headers().get(place)?.to_str().ok()?.rsplit('/').next()
 }
 
-/// The parts of a path that stand for an id in its route, behind their patterns.
+/// The ids in a path, behind their patterns in its route.
 fn ids<'a>(route: &'a str, path: &'a str) -> impl Iterator<Item = (&'a str, String)> {
     let parts = route.split('/').zip(path.split('/'));
     parts
@@ -111,7 +111,7 @@ fn innermost(route: &str, path: &str) -> String {
     ids(route, path).last().map(|(_, id)| id).unwrap_or_default()
 }
 
-/// Ids have 36 characters and names of tenants 63; what is longer names nothing.
+/// Ids have 36 characters and names of tenants 64; longer texts are no names.
 const LONGEST: usize = 64;
 
 #[cfg(test)]

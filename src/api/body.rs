@@ -21,36 +21,36 @@ use super::spool::{IN_MEMORY, Spool, SpooledBody};
 use crate::schema::ErrorCode;
 use crate::schema::wire::problem::Problem;
 
-/// How much may come and how slowly.
+/// Limits of size and pace of a body.
 #[derive(Clone, Copy)]
 struct Bounds {
     bytes: usize,
     idle: Duration,
 }
 
-/// What a client may go on sending after its request was refused, and for how long: one that still
-/// writes when the connection closes hears no answer.
+/// The amount and the time that a client may still send after its request was refused: one that still
+/// writes when the connection closes gets no response.
 const DRAINED_BYTES: usize = 8 << 20;
 const DRAINED_FOR: Duration = Duration::from_secs(1);
 
-/// The part of a body that its handler has not read.
+/// The part of a body not read by its handler.
 pub struct Unread {
     frames: Arc<tokio::sync::Mutex<BodyDataStream>>,
     coming: BodyState,
 }
 
-/// Whether a body comes still, or broke off.
+/// Whether a body is still arriving, or broke off.
 #[derive(Clone, Default)]
 pub struct BodyState(Arc<AtomicBool>);
 
 impl BodyState {
-    /// Whether the connection ended before the body did.
+    /// Whether the connection ended before the body.
     pub fn is_broken(&self) -> bool {
         self.0.load(Ordering::Relaxed)
     }
 }
 
-/// A body, and a hold on what will be left of it.
+/// A body, and a handle to its unread part.
 pub fn held(body: Body) -> (Body, Unread) {
     let frames = Arc::new(tokio::sync::Mutex::new(body.into_data_stream()));
     let unread = Unread { frames: frames.clone(), coming: BodyState::default() };
@@ -70,7 +70,7 @@ impl Unread {
         self.coming.clone()
     }
 
-    /// Reads and drops what is left, within bounds.
+    /// Reads and discards the remainder, within bounds.
     pub async fn drain(self) {
         let mut frames = self.frames.lock().await;
         let mut drained = 0;
@@ -87,7 +87,7 @@ impl Unread {
     }
 }
 
-/// What a request says its body is, in lower case and without parameters.
+/// The media type of a body, in lower case and without parameters.
 pub fn content_type(headers: &HeaderMap) -> String {
     let value = headers.get(header::CONTENT_TYPE).and_then(|value| value.to_str().ok());
     let name = value.unwrap_or_default().split(';').next();
@@ -109,14 +109,14 @@ pub async fn json(service: &Service, request: Request) -> ApiResult<Bytes> {
     whole(service, request, most).await?.into_bytes().await
 }
 
-/// Refuses a body that does not call itself JSON.
+/// Refuses a body without the media type of JSON.
 pub fn require_json(headers: &HeaderMap) -> ApiResult<()> {
     const JSON: &str = "application/json";
     let kind = content_type(headers);
     if kind == JSON { Ok(()) } else { Err(unsupported(&kind, JSON)) }
 }
 
-/// The document in a part of a form, as long as that of a body may be.
+/// The document in a part of a form, with the size limit of a body.
 pub async fn document(service: &Service, part: SpooledBody) -> ApiResult<Bytes> {
     match usize::try_from(service.limits.json_bytes) {
         Ok(most) if part.bytes > most as u64 => Err(too_large(most)),
@@ -147,7 +147,7 @@ async fn whole(service: &Service, request: Request, most: usize) -> ApiResult<Sp
     spool.finish().await
 }
 
-/// Checks what a request says of its body. Announced bytes count only as they arrive, so that a client which announces
+/// Checks the headers of a body. Announced bytes count only as they arrive, so that a client which announces
 /// much and sends nothing blocks nobody.
 fn begun(service: &Service, headers: &HeaderMap, most: usize) -> ApiResult<Arc<ByteReservation>> {
     check_encoding(headers)?;
@@ -240,7 +240,7 @@ fn check_encoding(headers: &HeaderMap) -> ApiResult<()> {
     }
 }
 
-/// The length that a request says its body has.
+/// The announced length of a body.
 fn announced(headers: &HeaderMap) -> Option<u64> {
     headers.get(header::CONTENT_LENGTH)?.to_str().ok()?.parse().ok()
 }
@@ -250,7 +250,7 @@ fn too_large(most: usize) -> ApiError {
     Problem::new(ErrorCode::PayloadTooLarge, detail).with("limit", most).into()
 }
 
-/// The frames of a body until it is too large or too slow, or its client has too much under way.
+/// The frames of a body until it is too large or too slow, or its client has too many bytes in flight.
 fn bounded(
     body: Body,
     bounds: Bounds,
@@ -273,7 +273,7 @@ fn bounded(
     })
 }
 
-/// A body on its way in.
+/// An incoming body.
 struct Incoming {
     frames: BodyDataStream,
     bounds: Bounds,
@@ -310,7 +310,7 @@ fn broken_off(count: usize) -> ApiError {
     ApiError::new(ErrorCode::MalformedRequest, detail)
 }
 
-/// Body of a request to the admin listener, which may stall for so long.
+/// Body of a request to the admin listener, with its patience.
 pub fn moving(body: Body, idle: Duration) -> Body {
     let frames = body.into_data_stream();
     let frames = futures::stream::unfold(Some(frames), move |frames| async move {
@@ -331,7 +331,7 @@ fn too_slow(count: usize) -> ApiError {
     .header(header::CONNECTION, HeaderValue::from_static("close"))
 }
 
-/// The SHA-256 of a Content-Digest (RFC 9530); other algorithms say nothing here.
+/// The SHA-256 of a Content-Digest (RFC 9530); other algorithms are ignored.
 fn content_digest(headers: &HeaderMap) -> ApiResult<Option<Vec<u8>>> {
     let Some(value) = headers.get("content-digest") else {
         return Ok(None);

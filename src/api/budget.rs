@@ -1,5 +1,5 @@
-//! Budget of bytes in flight, for each client, for each tenant and for the process: request bodies and copies of files
-//! that are sent. They are in files of the data folder, whose disk they must not fill.
+//! Budget of bytes in flight, for each client, for each tenant and for the process: request bodies and copies of sent
+//! files. They are in files of the data folder, whose disk they must not fill.
 
 use std::collections::HashMap;
 use std::hash::Hash;
@@ -18,16 +18,16 @@ pub struct Budget {
     used: Arc<Mutex<BytesInUse>>,
 }
 
-/// How many bytes may be in flight at once. A tenant may have three quarters of what others leave of those of the process,
-/// however many keys it has: there is always something left for one more (dynamic thresholds of Choudhury and Hahne, 1998,
-/// with alpha = 3). One body alone may have all that is left, so that the largest always fits into an idle service.
+/// The most bytes in flight. A tenant may have three quarters of what others leave of the limit of the process,
+/// with any number of keys: there is always something left for another (dynamic thresholds of Choudhury and Hahne, 1998,
+/// with alpha = 3). A single body may have all that is left, so that the largest always fits into an idle service.
 #[derive(Clone, Copy)]
 pub struct ByteLimits {
     pub of_process: u64,
     pub of_client: u64,
 }
 
-/// Whose the bytes of a request are.
+/// The owner of the bytes of a request.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Owner {
     pub tenant: Arc<str>,
@@ -48,7 +48,7 @@ pub struct ByteReservation {
     bytes: Mutex<u64>,
 }
 
-/// How many bytes are there, whose, and how many there may be.
+/// Bytes in flight, their owner, and their limit.
 struct Bound {
     used: u64,
     most: u64,
@@ -75,7 +75,7 @@ impl Budget {
         Ok(())
     }
 
-    /// Whether a request that holds so many bytes may hold so many more.
+    /// Whether a request with this many bytes may reserve this many more.
     fn check(&self, used: &BytesInUse, owner: &Owner, held: u64, more: u64) -> ApiResult<()> {
         let ByteLimits { of_process, of_client } = self.most;
         let of_tenant = used.tenants.get(&owner.tenant).copied().unwrap_or(0);
@@ -93,7 +93,7 @@ impl Budget {
         let full = bounds.into_iter().find(|bound| bound.used + more > bound.most);
         let Some(Bound { used, most, whose }) = full else { return Ok(()) };
         let detail = format!(
-            "{used} bytes of bodies of {whose} are under way, and with {more} more there are more than {most}"
+            "{used} bytes of bodies of {whose} are in flight, and {more} more would exceed {most}"
         );
         Err(Problem::new(ErrorCode::Busy, detail).with("limit", most).into())
     }
@@ -119,7 +119,7 @@ fn subtract<K: Hash + Eq + Clone>(used: &mut HashMap<K, u64>, whose: &K, bytes: 
 }
 
 impl ByteReservation {
-    /// Holds at least so many bytes.
+    /// Reserves at least this many bytes.
     pub fn at_least(&self, bytes: u64) -> ApiResult<()> {
         let mut held = self.lock();
         if bytes > *held {
@@ -129,7 +129,7 @@ impl ByteReservation {
         Ok(())
     }
 
-    /// Refuses bytes beyond the budget at this moment, before a client sends them.
+    /// Refuses bytes beyond the present budget, before a client sends them.
     pub fn check_available(&self, bytes: u64) -> ApiResult<()> {
         let held = *self.lock();
         let used = self.budget.lock();

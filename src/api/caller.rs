@@ -1,5 +1,5 @@
-//! Caller of a request, and what its key allows. The seam for tokens of an identity provider: whatever a request
-//! carries becomes a [`Caller`] here, and nothing behind it asks where that came from.
+//! Caller of a request, and the scopes of its key. The seam for tokens of an identity provider: the credentials of a request
+//! become a [`Caller`] here, and later code does not depend on their kind.
 
 use std::collections::BTreeSet;
 use std::net::SocketAddr;
@@ -20,11 +20,11 @@ use crate::schema::wire::canonical::sha256_hex;
 use crate::schema::wire::problem::Problem;
 use crate::store::{AuditIntent, DEFAULT_TENANT};
 
-/// Who calls.
+/// The caller of a request.
 #[derive(Clone, Debug)]
 pub struct Caller {
     pub tenant: Arc<str>,
-    /// The id of the key, `setting` for the key of the settings, `-` where none is asked for and none was sent.
+    /// The id of the key, `setting` for the key in the settings, `-` if none is required and none was sent.
     pub key: Arc<str>,
     scopes: BTreeSet<Scope>,
 }
@@ -33,7 +33,7 @@ const NO_KEY: &str = "-";
 const KEY_OF_SETTINGS: &str = "setting";
 
 impl Caller {
-    /// One who needs no key, or has that of the settings.
+    /// A caller that needs no key, or has that of the settings.
     fn of_default_tenant(key: &str) -> Caller {
         Caller { tenant: DEFAULT_TENANT.into(), key: key.into(), scopes: Scope::ALL.into() }
     }
@@ -88,7 +88,7 @@ impl FromRequestParts<Service> for Caller {
     }
 }
 
-/// Who sends a request, and what was looked up with the key.
+/// The sender of a request, and the data looked up with its key.
 pub struct Identified {
     pub caller: Caller,
     pub foreseen: Option<ResponseLookup>,
@@ -100,7 +100,7 @@ impl Identified {
     }
 }
 
-/// The caller of a request. What comes of it does not hold the request, whose body no two threads may share.
+/// The caller of a request. The future does not borrow the request, whose body threads cannot share.
 pub fn identify<'a>(
     service: &'a Service,
     request: &Request,
@@ -145,7 +145,7 @@ pub fn unauthorized(detail: &str) -> ApiError {
     error.header(header::WWW_AUTHENTICATE, HeaderValue::from_static("Bearer"))
 }
 
-/// The key that a request carries.
+/// The key in a request.
 pub fn bearer(headers: &HeaderMap) -> Option<&str> {
     let value = headers.get(header::AUTHORIZATION)?.to_str().ok()?;
     let (scheme, given) = value.split_once(' ')?;

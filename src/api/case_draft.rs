@@ -1,4 +1,4 @@
-//! Draft of a posted case: its document, the meshes that came with it, and their consistency.
+//! Draft of a posted case: its document, the meshes uploaded with it, and their consistency.
 
 use std::collections::BTreeMap;
 
@@ -23,7 +23,7 @@ use crate::schema::{
 };
 use crate::store::{AddedCase, NewCase, NewJob};
 
-/// The part of a form that holds the document; the other parts are meshes.
+/// The part of a form with the document; the other parts are meshes.
 const CASE_PART: &str = "case";
 
 /// The parts of a form by their names.
@@ -39,22 +39,22 @@ pub(super) fn split(mut parts: FormParts) -> ApiResult<(SpooledBody, FormParts)>
     Ok((document, parts))
 }
 
-/// A case on its way in, with the meshes that came with it.
+/// A case to be stored, with the meshes uploaded with it.
 pub(super) struct Draft {
     document: CaseBody,
     uploads: Vec<Upload>,
 }
 
-/// What was found of a case before it is kept.
+/// The checks of a case before it is stored.
 pub(super) enum Checked {
-    /// Boundary conditions of its nodes; `None` where only a plan determines them.
+    /// Boundary conditions of its nodes; `None` if they depend on a plan.
     Whole(Box<Option<CheckDocument>>),
-    /// For each mesh or image that the meshing names the hash of its content.
+    /// For each mesh or image of the meshing the hash of its content.
     ToMesh { contents: BTreeMap<String, String> },
 }
 
 impl Draft {
-    /// Reads the meshes, in the turn of their request, and puts their ids where the document names their parts.
+    /// Parses the meshes, with the permit of their request, and replaces the names of their parts in the document by ids.
     pub async fn read(
         service: &Service,
         permit: &Permit,
@@ -102,11 +102,11 @@ impl Draft {
         if unused.is_empty() {
             return Ok(Draft { document, uploads });
         }
-        let detail = format!("the case refers to no part called {}", unused.join(", "));
+        let detail = format!("the case does not refer to part {}", unused.join(", "));
         Err(ApiError::new(ErrorCode::UnusedPart, detail))
     }
 
-    /// Whether the document and its meshes make sense.
+    /// Checks the document with its meshes.
     pub async fn check(&self, service: &Service) -> ApiResult<Checked> {
         match &self.document {
             CaseBody::Whole(case) => {
@@ -160,12 +160,12 @@ impl Draft {
         })
     }
 
-    /// The meshes that came with the case, by their ids.
+    /// The meshes uploaded with the case, by their ids.
     fn brought(&self) -> BTreeMap<String, StoredMesh> {
         self.uploads.iter().map(|upload| (upload.row.id.clone(), upload.mesh.clone())).collect()
     }
 
-    /// Keeps the case and its meshes under an id, unless an earlier request with its key has done so.
+    /// Stores the case and its meshes under an id, unless an earlier request with its key has done so.
     pub async fn store(
         self,
         service: &Service,
@@ -197,7 +197,7 @@ impl Draft {
                 return Ok(());
             }
             AddedCase::Contended => {
-                let detail = "a mesh of the case came or went meanwhile; send the case again";
+                let detail = "a mesh of the case changed meanwhile; send the case again";
                 return Err(ApiError::new(ErrorCode::Conflict, detail));
             }
             AddedCase::QueueFull => return Err(queue_full()),
@@ -210,7 +210,7 @@ impl Draft {
     }
 }
 
-/// Says in which part of a form a mesh was refused.
+/// Adds the part of a form whose mesh was refused.
 fn in_part(error: ApiError, name: &str) -> ApiError {
     error.map_problem(|problem| {
         let detail = format!("part {name}: {}", problem.detail);
@@ -218,7 +218,7 @@ fn in_part(error: ApiError, name: &str) -> ApiError {
     })
 }
 
-/// An image has to be there for materials before hours of meshing end without it.
+/// An image of materials has to exist before hours of meshing end without it.
 fn require_image(sources: &dyn MeshSource, image: &str) -> Result<(), JobError> {
     let at = Pointer::root().key("hounsfield").key("image");
     match sources.mesh(image) {
@@ -235,7 +235,7 @@ fn require_image(sources: &dyn MeshSource, image: &str) -> Result<(), JobError> 
     }
 }
 
-/// The job that makes the mesh of a case, where it has none. It belongs to the case, and goes with it.
+/// The job that makes the mesh of a case without one. It belongs to the case, and is erased with it.
 fn meshing_of(
     case: &str,
     document: &CaseBody,

@@ -12,7 +12,7 @@ use crate::schema::wire::problem::Problem;
 use crate::schema::{CaseDocument, ErrorCode, MaterialDocuments};
 use crate::store::{CaseMeshing, CaseRow};
 
-/// Whether a case can be predicted on.
+/// Whether predictions on a case are possible.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ToSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum CaseState {
@@ -20,7 +20,7 @@ pub enum CaseState {
     Ready,
     /// A job makes its mesh; jobs on it wait.
     Meshing,
-    /// That job made none.
+    /// That job failed.
     Failed,
 }
 
@@ -34,18 +34,18 @@ impl CaseState {
     }
 }
 
-/// The job that makes the mesh of a case, or has made it.
+/// The job that makes or made the mesh of a case.
 #[derive(Serialize, ToSchema)]
 pub struct CaseMeshingView {
     pub job: String,
-    /// Why there is no mesh, where the case has failed.
+    /// Why there is no mesh, if the case has failed.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub error: Option<JobErrorDocument>,
     pub link: Link,
 }
 
-/// The state of a case whose document was read.
+/// The state of a case by its document.
 pub fn state(row: &CaseRow, body: &CaseBody) -> CaseState {
     let Some(meshing) = &row.meshing else { return CaseState::Ready };
     match (meshing.status, body) {
@@ -60,7 +60,7 @@ pub fn body_of(row: &CaseRow) -> ApiResult<CaseBody> {
     CaseBody::stored(&row.document).map_err(ApiError::internal)
 }
 
-/// What a case is told by beside its version: the same version may be meshing, and fail.
+/// The ETag of a case beside its version: the same version may be meshing, and fail.
 pub fn tag_of(row: &CaseRow, state: CaseState) -> String {
     match state {
         CaseState::Ready => row.version.to_string(),
@@ -68,7 +68,7 @@ pub fn tag_of(row: &CaseRow, state: CaseState) -> String {
     }
 }
 
-/// How a case tells of its meshing.
+/// The meshing of a case, as shown to clients.
 pub fn meshing_view(meshing: &CaseMeshing, state: CaseState) -> ApiResult<CaseMeshingView> {
     let error = match state {
         CaseState::Failed => Some(error_of(meshing)?),
@@ -96,7 +96,7 @@ fn error_of(meshing: &CaseMeshing) -> ApiResult<JobErrorDocument> {
     }
 }
 
-/// What a job on a case has of it.
+/// The case as input of a job.
 pub enum CaseOfJob {
     Whole(Box<CaseDocument>),
     Waits(PendingCase),
@@ -106,11 +106,11 @@ pub enum CaseOfJob {
 pub struct PendingCase {
     /// The job that makes the mesh.
     pub meshing: String,
-    /// As they were posted beside the scan.
+    /// As posted beside the scan.
     pub materials: Option<MaterialDocuments>,
 }
 
-/// What a job on this case has of it; refused where there will be no mesh.
+/// This case as input of a job; refused if there will be no mesh.
 pub fn case_of_job(row: &CaseRow) -> ApiResult<CaseOfJob> {
     let body = body_of(row)?;
     let state = state(row, &body);
@@ -128,7 +128,7 @@ pub fn case_of_job(row: &CaseRow) -> ApiResult<CaseOfJob> {
     }
 }
 
-/// The document of a case that has its mesh.
+/// The document of a case with its mesh.
 pub fn whole(row: &CaseRow) -> ApiResult<CaseDocument> {
     let body = body_of(row)?;
     match (state(row, &body), body) {
@@ -137,7 +137,7 @@ pub fn whole(row: &CaseRow) -> ApiResult<CaseDocument> {
     }
 }
 
-/// The refusal of what needs a mesh that is not there.
+/// The refusal of a request that needs a missing mesh.
 fn not_ready(row: &CaseRow, state: CaseState) -> ApiError {
     let Some(meshing) = &row.meshing else { return ApiError::internal("a case without a mesh") };
     let job = &meshing.job;

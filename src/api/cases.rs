@@ -1,4 +1,4 @@
-//! Cases: a patient's meshes with their meaning. One request may bring the case and all its meshes.
+//! Cases: a patient's meshes with their meaning. One request may upload the case and all its meshes.
 
 use std::collections::BTreeMap;
 
@@ -48,7 +48,7 @@ pub fn router() -> Resources {
     json.reads(Scope::Run, routes!(check))
 }
 
-/// A case as it is kept.
+/// A stored case.
 #[derive(Serialize, ToSchema)]
 pub struct CaseView {
     pub id: String,
@@ -57,16 +57,16 @@ pub struct CaseView {
     pub created: String,
     pub updated: String,
     pub state: CaseState,
-    /// The job that makes or has made its mesh, where that was not uploaded.
+    /// The job that makes or made its mesh, if that was not uploaded.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub meshing: Option<CaseMeshingView>,
-    /// As it was posted until its mesh is made, and with that mesh from then on.
+    /// As posted; with the mesh once it is made.
     pub case: CaseBody,
     /// The meshes that the case refers to.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub meshes: Vec<MeshDocument>,
-    /// What holds its nodes before any segment moves; absent where it takes a plan to hold it.
+    /// Its boundary conditions before any segment moves; absent if they depend on a plan.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub check: Option<CheckDocument>,
@@ -85,7 +85,7 @@ struct CaseList {
 #[serde(deny_unknown_fields)]
 #[into_params(parameter_in = Query)]
 struct CreateParameters {
-    /// Takes meshes that are smaller or larger than any head. Default: false.
+    /// Accepts meshes smaller or larger than any head. Default: false.
     allow_any_scale: Option<bool>,
 }
 
@@ -101,7 +101,7 @@ struct ListParameters {
     limit: Option<u32>,
 }
 
-/// The document in a part `case`, and one part for each mesh, named as the document refers to it.
+/// The document in a part `case`, and a part for each mesh, named as the document refers to it.
 #[derive(ToSchema)]
 #[allow(dead_code, reason = "describes the form for the OpenAPI document")]
 struct CaseForm {
@@ -116,10 +116,10 @@ struct CaseForm {
 #[schema(value_type = String, format = Binary)]
 struct MeshPart(Vec<u8>);
 
-/// Keeps a case. As a form it brings its meshes along: the document in the part `case` refers to the
-/// meshes by the names of their parts. A case with a scan to be meshed (`meshing`) is kept in the state `meshing`, and its
-/// job is accepted, which a key has to allow (`run`): jobs on it wait until it is `ready`, and fail where it has `failed`. With
-/// `Prefer: wait=n` the answer comes when that job has ended, at the latest after n seconds (at most 30).
+/// Stores a case. A form includes its meshes: the document in the part `case` refers to the
+/// meshes by the names of their parts. A case with a scan to be meshed (`meshing`) is stored in the state `meshing`, and its
+/// job is accepted, which needs a key with `run`: jobs on it wait until it is `ready`, and fail if it has `failed`. With
+/// `Prefer: wait=n` the response comes when that job has ended, after at most n seconds (at most 30).
 #[utoipa::path(
     post, path = "/v1/cases", operation_id = "create_case", tag = "cases",
     params(
@@ -127,7 +127,7 @@ struct MeshPart(Vec<u8>);
         ("Prefer" = Option<String>, Header, description = "wait=n: wait at most n seconds for the end of its meshing"),
         (
             "Idempotency-Key" = Option<String>, Header, min_length = 1, max_length = 255, pattern = r"^[!-~]([\t -~]*[!-~])?$",
-            description = "a word of the client's, so that the request may be sent again"
+            description = "a unique word of the client, to repeat the request safely"
         ),
     ),
     request_body(description = "the case", content((CaseBody = "application/json"), (CaseForm = "multipart/form-data"))),
@@ -180,14 +180,14 @@ async fn create(
     created(&service, &new.id, wait).await
 }
 
-/// The answer to a request that made a case, or found it made.
+/// The response to a request that created a case, or found it.
 async fn created(service: &Service, id: &str, wait: Option<u32>) -> ApiResult {
     let row = row_when_meshed(service, id, wait).await?;
     let answer = with_wait(answer(service, StatusCode::CREATED, &row).await?, wait);
     Ok(with_header(answer, header::LOCATION, &format!("/v1/cases/{id}")))
 }
 
-/// The row of a case, once its meshing has ended or the wait is over.
+/// The row of a case, once its meshing or the wait has ended.
 async fn row_when_meshed(service: &Service, id: &str, wait: Option<u32>) -> ApiResult<CaseRow> {
     let row = row_of(service, id).await?;
     match (&row.meshing, wait) {
@@ -246,7 +246,7 @@ async fn list(service: Service, Parameters(parameters): Parameters<ListParameter
     Ok(json(StatusCode::OK, &CaseList { items, next }))
 }
 
-/// One case with its meshes; with `Prefer: wait=n` when its meshing has ended, at the latest after n seconds (at most 30).
+/// One case with its meshes; with `Prefer: wait=n` when its meshing has ended, after at most n seconds (at most 30).
 #[utoipa::path(
     get, path = "/v1/cases/{id}", operation_id = "show_case", tag = "cases",
     params(
@@ -255,7 +255,7 @@ async fn list(service: Service, Parameters(parameters): Parameters<ListParameter
     ),
     responses(
         (status = 200, description = "the case", body = CaseView, headers(
-            ("ETag" = String, description = "its version, with its state where it is not ready"),
+            ("ETag" = String, description = "its version, with its state if not ready"),
             ("Preference-Applied" = Option<String>, description = "the wait that was granted"))),
         (status = 304, description = "the client has it already"),
     )
@@ -270,18 +270,18 @@ async fn show(service: Service, Id(id): Id, headers: HeaderMap) -> ApiResult {
     Ok(with_wait(answer(&service, StatusCode::OK, &row).await?, wait))
 }
 
-/// What tells a case from what it was before.
+/// The ETag of a case.
 fn current_tag(row: &CaseRow) -> ApiResult<String> {
     Ok(tag_of(row, case_state::state(row, &case_state::body_of(row)?)))
 }
 
-/// Erases a case: its plans, its jobs with their results, and the meshes that came with it. A meshing of it that runs
-/// stops.
+/// Erases a case: its plans, its jobs with their results, and the meshes uploaded with it. A running meshing of it
+/// is stopped.
 #[utoipa::path(
     delete, path = "/v1/cases/{id}", operation_id = "erase_case", tag = "cases",
     params(
         ("id" = uuid::Uuid, Path, description = "the case"),
-        ("If-Match" = String, Header, description = "the version that is meant, or *"),
+        ("If-Match" = String, Header, description = "the version to change, or *"),
     ),
     responses(
         (status = 204, description = "erased"),
@@ -302,9 +302,9 @@ async fn remove(service: Service, Id(id): Id, headers: HeaderMap) -> ApiResult {
     }
 }
 
-/// What a job with this spec would be held by and take, without solving anything. The body is the spec
-/// that would be posted to /v1/jobs; `case` may be left out, and without a plan, or without a body, nothing moves. A client
-/// that accepts `image/svg+xml` only gets a picture of the boundary, coloured by what holds it.
+/// Boundary conditions and expected cost of a job with this spec, without solving. The body is the spec
+/// of /v1/jobs; `case` may be omitted, and without a plan, or without a body, nothing moves. A client
+/// that accepts `image/svg+xml` only gets a picture of the boundary, coloured by node class.
 #[utoipa::path(
     post, path = "/v1/cases/{id}/check", operation_id = "check_case", tag = "cases", params(("id" = uuid::Uuid, Path, description = "the case")),
     request_body = CheckRequest,
@@ -349,8 +349,8 @@ async fn check(service: Service, Id(id): Id, request: Request) -> ApiResult {
     Ok(picture(svg))
 }
 
-/// What decides a picture, as a hash: meshes never change, and those of a case stay as long as it does. `None` where others
-/// are asked for, which may be gone when the same is asked again.
+/// The input of a picture, as a hash: meshes never change, and those of a case exist as long as it does. `None` if others
+/// are named, which may be deleted by the next request.
 fn question(input: &PredictInput) -> ApiResult<Option<String>> {
     let of_case = input.mesh_ids() == input.case.mesh_ids();
     let text = serde_json::to_vec(input).map_err(ApiError::internal)?;
@@ -366,13 +366,13 @@ fn picture(svg: Bytes) -> Response {
     (headers, svg).into_response()
 }
 
-/// Whether a request comes without a body, be it of any kind.
+/// Whether a request has no body of any kind.
 fn has_no_body(headers: &HeaderMap) -> bool {
     let length = headers.get(header::CONTENT_LENGTH);
     length.is_none_or(|length| length == "0") && !headers.contains_key(header::TRANSFER_ENCODING)
 }
 
-/// The spec of a prediction in which everything may be left out.
+/// The spec of a prediction with all members optional.
 #[derive(ToSchema)]
 #[allow(dead_code, reason = "describes the body for the OpenAPI document")]
 struct CheckRequest {

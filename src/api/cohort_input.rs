@@ -1,4 +1,4 @@
-//! Conversion of a cohort document to a job: the comparisons that it names, read.
+//! Conversion of a cohort document to a job, with its comparisons read.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -12,10 +12,10 @@ use crate::schema::predict::result::ResultDocument;
 use crate::schema::{CohortDocument, ErrorCode, Faults};
 use crate::store::NewJob;
 
-/// The file that holds what a job found.
+/// The file with the result of a job.
 const RESULT: &str = "result.json";
 
-/// A cohort of comparisons that have ended. It belongs to their cases, and goes with each.
+/// A cohort of successful comparisons. It belongs to their cases, and is erased with each.
 pub async fn of_cohort(service: &Service, mut spec: CohortDocument) -> ApiResult<NewJob> {
     check(service, &spec)?;
     let Some(cohort) = spec.cohort.take() else { return of_groups(service, spec, None).await };
@@ -64,11 +64,11 @@ async fn of_groups(
 
 fn compared_nothing(at: &str) -> ApiError {
     let detail =
-        "the job compared nothing: name jobs of kind `compare`, or predictions with `compare_to`";
+        "the job has no comparison: name jobs of kind `compare`, or predictions with `compare_to`";
     fault(at, ErrorCode::NoSuchOutput, detail)
 }
 
-/// What a job that compared found.
+/// The result of a comparison job.
 pub(super) async fn compared(service: &Service, at: &str, job: &str) -> ApiResult<ResultDocument> {
     let found = result_of(service, at, job).await?;
     if found.comparison.is_none() {
@@ -77,7 +77,7 @@ pub(super) async fn compared(service: &Service, at: &str, job: &str) -> ApiResul
     Ok(found)
 }
 
-/// What a job found.
+/// The result of a job.
 async fn result_of(service: &Service, at: &str, job: &str) -> ApiResult<ResultDocument> {
     let row = successful_job(service, at, job).await?;
     let file = service.store.job_file(&row.id, RESULT).await?;

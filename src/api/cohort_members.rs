@@ -1,4 +1,4 @@
-//! Members of a cohort that is posted: each another patient, all in one frame.
+//! Members of a posted cohort: each another patient, all in one frame.
 
 use std::collections::BTreeSet;
 
@@ -14,7 +14,7 @@ use crate::schema::mesh::MeshDocument;
 use crate::schema::{CaseDocument, ErrorCode};
 use crate::store::MemberRow;
 
-/// What members have in common, and what each has alone.
+/// Shared and individual data of members.
 #[derive(Default)]
 struct CommonProperties {
     frame: Option<FrameName>,
@@ -23,7 +23,7 @@ struct CommonProperties {
     contents: BTreeSet<String>,
 }
 
-/// The members of a document whose form was checked: each of another patient, all in one frame.
+/// The members of a document with checked form: each of another patient, all in one frame.
 pub async fn members_of(
     service: &Service,
     document: &StoredCohortDocument,
@@ -37,7 +37,7 @@ pub async fn members_of(
             let at = format!("{at}/comparisons/{method}");
             compared(service, &at, job).await?;
             if !service.store.cases_of_job(job).await?.contains(&case_id) {
-                let detail = "the job compared something of another case than the prediction's";
+                let detail = "the job compared another case than that of the prediction";
                 return Err(fault(&at, ErrorCode::OtherCase, detail));
             }
         }
@@ -65,7 +65,7 @@ async fn checked(
     let case_id = found.case.ok_or_else(without)?;
     if !seen.cases.insert(case_id.clone()) {
         let detail = format!(
-            "its case {case_id} is there twice: a patient who is learned from and predicted proves nothing"
+            "its case {case_id} is listed twice: training and test cases have to be different patients"
         );
         return Err(fault(&prediction, ErrorCode::DuplicateName, &detail));
     }
@@ -76,7 +76,7 @@ async fn checked(
         return Err(fault(&prediction, ErrorCode::FrameConflict, &detail));
     }
     if !seen.contents.insert(require_mesh(service, &actual, &member.actual).await?) {
-        let detail = "the same mesh is that of another member: two patients do not heal alike";
+        let detail = "the same mesh is that of another member: members are different patients";
         return Err(fault(&actual, ErrorCode::DuplicateName, detail));
     }
     let marked = mesh(service, &member.actual).await?.and_then(|mesh| mesh.report.space);
@@ -87,7 +87,7 @@ async fn checked(
     Ok(case_id)
 }
 
-/// The frame of a case: as it says, or as its mesh is marked.
+/// The frame of a case: as stated, or as its mesh is marked.
 async fn frame_of(service: &Service, case: &CaseDocument) -> ApiResult<FrameName> {
     match case.frame {
         FrameName::Unspecified => {

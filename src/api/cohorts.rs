@@ -30,11 +30,11 @@ pub fn router() -> Resources {
         .json_only()
 }
 
-/// A cohort as it is kept.
+/// A stored cohort.
 #[derive(Serialize, ToSchema)]
 pub struct CohortView {
     pub id: String,
-    /// From 1 on; one more whenever members leave.
+    /// From 1; incremented whenever members leave.
     pub version: i64,
     /// RFC 3339, UTC.
     pub created: String,
@@ -44,18 +44,18 @@ pub struct CohortView {
     #[schema(nullable = false)]
     pub consent: Option<ConsentDocument>,
     pub members: Vec<CohortMemberView>,
-    /// Cases that were members and left, with their erasure or that of their prediction.
+    /// Former members, which left by erasure of the case or of its prediction.
     pub left: Vec<CohortLeftView>,
-    /// What was learned from it, newest first, but for what was removed for its own sake.
+    /// Models learned from it, newest first, except those that were removed themselves.
     pub models: Vec<CohortModelView>,
 }
 
 /// A member.
 #[derive(Serialize, ToSchema)]
 pub struct CohortMemberView {
-    /// From 1 on, as it was posted.
+    /// Its number as posted, from 1.
     pub number: i64,
-    /// Of its prediction.
+    /// The case of its prediction.
     pub case: String,
     pub member: MemberDocument,
 }
@@ -72,10 +72,10 @@ pub struct CohortLeftView {
 #[derive(Serialize, ToSchema)]
 pub struct CohortModelView {
     pub job: String,
-    /// Of the cohort, from which it learned.
+    /// The version of the cohort that it learned from.
     pub version: i64,
     pub state: ModelState,
-    /// Cases that it learned from and that have left since.
+    /// Training cases that have left since.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub left: Vec<String>,
 }
@@ -84,11 +84,11 @@ pub struct CohortModelView {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ToSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum ModelState {
-    /// It learned, or learns, from the members that there are.
+    /// It learned, or learns, from the present members.
     Current,
-    /// A member that it learned from has left.
+    /// A training member has left.
     Stale,
-    /// It went with a case that it learned from.
+    /// It was erased with a training case.
     Erased,
 }
 
@@ -100,7 +100,7 @@ pub struct CohortEntry {
     pub created: String,
     pub updated: String,
     pub name: String,
-    /// How many there are.
+    /// The number of members.
     pub members: i64,
 }
 
@@ -170,14 +170,14 @@ async fn row_of(service: &Service, id: &str) -> ApiResult<CohortRow> {
     row.ok_or_else(|| ApiError::not_found("cohort"))
 }
 
-/// Keeps a cohort of operated cases: of each a prediction, what was measured after the operation, and what may be learned from it.
-/// A member leaves with its case and with its prediction. Jobs of kind `learn` and `cohort` may name the cohort in place of its
+/// Stores a cohort of operated cases: of each a prediction, the outcome after the operation, and consent for its uses.
+/// A member leaves if its case or prediction is erased. Jobs of kind `learn` and `cohort` may name the cohort instead of its
 /// members.
 #[utoipa::path(
     post, path = "/v1/cohorts", operation_id = "create_cohort", tag = "cohorts",
     params((
         "Idempotency-Key" = Option<String>, Header, min_length = 1, max_length = 255, pattern = r"^[!-~]([\t -~]*[!-~])?$",
-        description = "a word of the client's, so that the request may be sent again"
+        description = "a unique word of the client, to repeat the request safely"
     )),
     request_body = StoredCohortDocument,
     responses((status = 201, description = "kept", body = CohortView, headers(
@@ -226,23 +226,23 @@ async fn list(service: Service, Parameters(parameters): Parameters<PageParameter
     Ok(json(StatusCode::OK, &CohortList { items: rows.iter().map(entry).collect(), next }))
 }
 
-/// One cohort with its members, those that left, and what was learned from it.
+/// One cohort with its present and former members, and the models learned from it.
 #[utoipa::path(
     get, path = "/v1/cohorts/{id}", operation_id = "show_cohort", tag = "cohorts",
     params(("id" = uuid::Uuid, Path, description = "the cohort")),
     responses((status = 200, description = "the cohort", body = CohortView, headers(
-        ("ETag" = String, description = "its version, which says nothing of its models"))))
+        ("ETag" = String, description = "its version, independent of its models"))))
 )]
 async fn show(service: Service, Id(id): Id) -> ApiResult {
     answer(&service, StatusCode::OK, &row_of(&service, &id).await?).await
 }
 
-/// Deletes a cohort. Its cases stay, and so do jobs that were accepted, models among them.
+/// Deletes a cohort. Its cases stay, and so do accepted jobs, including models.
 #[utoipa::path(
     delete, path = "/v1/cohorts/{id}", operation_id = "remove_cohort", tag = "cohorts",
     params(
         ("id" = uuid::Uuid, Path, description = "the cohort"),
-        ("If-Match" = String, Header, description = "the version that is meant, or *"),
+        ("If-Match" = String, Header, description = "the version to change, or *"),
     ),
     responses(
         (status = 204, description = "deleted"),

@@ -14,7 +14,7 @@ pub fn entity_tag(content: &str) -> HeaderValue {
         .unwrap_or_else(|_| HeaderValue::from_static("\"\""))
 }
 
-/// The tags of a header that lists them; `None` where it is not sent.
+/// The tags listed in a header; `None` if it is not sent.
 fn tags(headers: &HeaderMap, name: header::HeaderName) -> Option<Vec<String>> {
     let values = headers.get_all(name);
     let mut tags = None;
@@ -26,11 +26,11 @@ fn tags(headers: &HeaderMap, name: header::HeaderName) -> Option<Vec<String>> {
     tags
 }
 
-/// Lets a change pass that names the version it is meant for, or any with `*`.
-/// Only strong tags are compared, as If-Match demands.
+/// Permits a change that names the present version, or any with `*`.
+/// Only strong tags are compared, as If-Match requires.
 pub fn require_match(headers: &HeaderMap, current: &str) -> ApiResult<()> {
     let Some(tags) = tags(headers, header::IF_MATCH) else {
-        let detail = "send If-Match with the ETag of the version that is meant, or with *";
+        let detail = "send If-Match with the ETag of the version to change, or with *";
         return Err(Problem::new(ErrorCode::PreconditionRequired, detail)
             .with("etag", format!("\"{current}\""))
             .into());
@@ -42,7 +42,7 @@ pub fn require_match(headers: &HeaderMap, current: &str) -> ApiResult<()> {
     Err(other_version(current))
 }
 
-/// Lets a change pass that names no version, or the one it is meant for.
+/// Permits a change that names no version, or the present one.
 pub fn allow_match(headers: &HeaderMap, current: &str) -> ApiResult<()> {
     match headers.contains_key(header::IF_MATCH) {
         true => require_match(headers, current),
@@ -50,14 +50,14 @@ pub fn allow_match(headers: &HeaderMap, current: &str) -> ApiResult<()> {
     }
 }
 
-/// The refusal of a change that was meant for another version than this.
+/// The refusal of a change to another version than the present one.
 pub fn other_version(current: &str) -> ApiError {
     let quoted = format!("\"{current}\"");
     let detail = format!("the current version is {quoted}");
     Problem::new(ErrorCode::PreconditionFailed, detail).with("etag", quoted).into()
 }
 
-/// True when the client has this version already.
+/// True if the client has this version already.
 pub fn is_known(headers: &HeaderMap, current: &str) -> bool {
     let quoted = format!("\"{current}\"");
     tags(headers, header::IF_NONE_MATCH).is_some_and(|tags| {
@@ -71,7 +71,7 @@ pub fn not_modified(current: &str) -> Response {
     (StatusCode::NOT_MODIFIED, headers).into_response()
 }
 
-/// A document with the hash of its text as its tag, or 304 where the client has it already.
+/// A document with the hash of its text as its tag, or 304 if the client has it already.
 pub async fn document(headers: &HeaderMap, response: Response) -> ApiResult {
     let (mut head, body) = response.into_parts();
     let bytes = axum::body::to_bytes(body, usize::MAX).await.map_err(ApiError::internal)?;
@@ -83,7 +83,7 @@ pub async fn document(headers: &HeaderMap, response: Response) -> ApiResult {
     Ok(Response::from_parts(head, bytes.into()))
 }
 
-/// An immutable file with all that goes with it: tag, 304, one range.
+/// An immutable file with conditional responses: tag, 304, one range.
 pub fn file(
     headers: &HeaderMap,
     file: ServedFile,
@@ -120,7 +120,7 @@ fn set(response: &mut Response, name: header::HeaderName, value: &str) {
     }
 }
 
-/// The Range header, unless If-Range says that it was meant for another version.
+/// The Range header, unless If-Range names another version.
 fn requested_range(headers: &HeaderMap, tag: &str) -> Option<String> {
     let range = headers.get(header::RANGE)?.to_str().ok()?;
     let meant = headers.get(header::IF_RANGE);
@@ -128,8 +128,8 @@ fn requested_range(headers: &HeaderMap, tag: &str) -> Option<String> {
     applies.then(|| range.to_owned())
 }
 
-/// First and last byte of a single range. A server may ignore what is not a range of bytes, and several
-/// ranges at once are ignored here: a thousand of one byte each would cost more than the file.
+/// First and last byte of a single range. A server may ignore other units, and several
+/// ranges are ignored here: a thousand of one byte each would cost more than the file.
 fn single_range(text: &str, total: u64) -> ApiResult<Option<(u64, u64)>> {
     let Some((first, last)) = text
         .strip_prefix("bytes=")

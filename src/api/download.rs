@@ -1,4 +1,4 @@
-//! Streaming of files: read piece by piece, so that a slow client costs no memory of the file's size.
+//! Streaming of files in pieces, so that a slow client costs no memory of the file's size.
 
 use std::fs::File;
 use std::io::{Seek as _, SeekFrom, Write as _};
@@ -19,11 +19,11 @@ use crate::store::StoreError;
 /// Bytes of a file in memory at a time.
 const PIECE: usize = 64 << 10;
 
-/// A file that can be sent, whole or a part of it.
+/// A file that can be sent, whole or in part.
 pub struct ServedFile {
     file: File,
     pub bytes: u64,
-    /// Counts a copy.
+    /// Reserves the bytes of a copy.
     held: Arc<ByteReservation>,
 }
 
@@ -39,7 +39,7 @@ impl ServedFile {
         Ok(ServedFile { file: service.store.file_of(found).await?, bytes, held })
     }
 
-    /// A file of what `make` makes in its turn.
+    /// A file of the bytes that `make` produces under a permit.
     pub async fn made(
         service: &Service,
         permit: &Permit,
@@ -58,7 +58,7 @@ impl ServedFile {
         permit.compute(work).await?
     }
 
-    /// The bytes from `first` on, `count` of them.
+    /// `count` bytes from `first`.
     pub fn into_body(mut self, first: u64, count: u64) -> ApiResult<Body> {
         self.file.seek(SeekFrom::Start(first)).map_err(ApiError::internal)?;
         let part = tokio::fs::File::from_std(self.file).take(count);

@@ -1,4 +1,4 @@
-//! Pictures and reports of jobs, drawn at the first request and cached in memory like those of checks.
+//! Pictures and reports of jobs, drawn on the first request and cached in memory like those of checks.
 
 use std::collections::BTreeMap;
 
@@ -18,7 +18,7 @@ use crate::schema::{ErrorCode, Language, Limits};
 use crate::store::JobRow;
 use mechanics::mesh::ignored::listed;
 
-/// What is asked for: a picture or a report, and in which language its words are.
+/// The requested picture or report, and its language.
 #[derive(Clone, Copy)]
 struct DrawingRequest {
     picture: PictureName,
@@ -26,7 +26,7 @@ struct DrawingRequest {
 }
 
 impl DrawingRequest {
-    /// Under which name it is kept; pictures have one language.
+    /// Its key in the cache; pictures have one language.
     fn cache_key(self) -> String {
         let name = self.picture.output().file_name();
         match PictureName::REPORTS.contains(&self.picture) {
@@ -36,8 +36,8 @@ impl DrawingRequest {
     }
 }
 
-/// A picture or report of a job that is none of its files, in the language that is asked for, else in one that the client
-/// likes.
+/// A picture or report of a job that is none of its files, in the requested language, else in one that the client
+/// prefers.
 pub async fn picture(
     service: &Service,
     job: &JobRow,
@@ -99,7 +99,7 @@ async fn drawn(service: &Service, job: &JobRow, wanted: DrawingRequest) -> ApiRe
     Ok(bytes)
 }
 
-/// What the job found, if there is something to draw.
+/// The result of the job, if it can be drawn.
 async fn finished(service: &Service, job: &JobRow) -> ApiResult<Option<Finished>> {
     let document = service.store.job_document(&job.id).await?.ok_or_else(no_such_job)?;
     let input: JobInput = serde_json::from_str(&document).map_err(ApiError::internal)?;
@@ -109,7 +109,7 @@ async fn finished(service: &Service, job: &JobRow) -> ApiResult<Option<Finished>
     Ok(Finished::of_job(&job.id, input, result, study))
 }
 
-/// With what there is, and how to get more.
+/// With the available files, and how to get more.
 fn no_such_output(job: &JobRow, name: &str) -> ApiError {
     let result = job.result.as_deref().unwrap_or("null");
     let result: serde_json::Value = serde_json::from_str(result).unwrap_or_default();

@@ -9,7 +9,7 @@ use crate::store::StoreError;
 
 const RETRY_AFTER_S: u32 = 5;
 
-/// A refusal on its way out. The outermost layer writes its body, because it knows the request's id.
+/// An error response. The outermost layer writes its body, because it knows the request's id.
 #[derive(Clone, Debug)]
 pub struct ApiError {
     pub problem: Problem,
@@ -44,7 +44,7 @@ impl ApiError {
 
     /// The same request may succeed later.
     pub fn unavailable() -> Self {
-        ApiError::new(ErrorCode::NotReady, "the database or the store of blobs is out of reach")
+        ApiError::new(ErrorCode::NotReady, "the database or the store of blobs is unreachable")
     }
 
     pub fn storage_full() -> Self {
@@ -107,8 +107,8 @@ impl IntoResponse for ApiError {
     }
 }
 
-/// Gives an error its body: `application/problem+json` with the request as `instance`. Errors that the
-/// framework made itself become problems too.
+/// Writes the body of an error: `application/problem+json` with the request as `instance`. Errors of the
+/// framework become problems too.
 pub fn with_problem_body(mut response: Response, request_id: &str) -> Response {
     let status = response.status();
     let told = response.extensions_mut().remove::<Problem>();
@@ -127,13 +127,13 @@ pub fn with_problem_body(mut response: Response, request_id: &str) -> Response {
     Response::from_parts(parts, body.into())
 }
 
-/// For an error that came without a problem of ours.
+/// For an error of the framework.
 fn problem_for(status: StatusCode) -> Problem {
     match status {
         StatusCode::NOT_FOUND => Problem::new(ErrorCode::NotFound, "there is no such resource"),
         StatusCode::METHOD_NOT_ALLOWED => Problem::new(
             ErrorCode::MethodNotAllowed,
-            "the header Allow names the methods that are answered",
+            "the header Allow names the supported methods",
         ),
         StatusCode::PAYLOAD_TOO_LARGE => {
             Problem::new(ErrorCode::PayloadTooLarge, "the body is too large")

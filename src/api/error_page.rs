@@ -1,4 +1,4 @@
-//! The page of error and warning codes, to which the `type` of every problem leads.
+//! The page of error and warning codes, target of the `type` of every problem.
 
 use std::sync::LazyLock;
 
@@ -9,7 +9,7 @@ use utoipa_axum::routes;
 use super::plain_page::plain_page;
 use super::resources::Resources;
 
-/// The page as it is written; a test holds it to the codes of the program.
+/// The source of the page; a test compares it with the codes of the program.
 const WRITTEN: &str = include_str!("../../docs/errors.md");
 const HTML: &str = "text/html; charset=utf-8";
 
@@ -19,7 +19,7 @@ pub fn router() -> Resources {
     Resources::new().open(routes!(errors))
 }
 
-/// Every code of a problem, of a job's error and of a warning, each in a row that has the code as its anchor: the `type`
+/// All codes of problems, job errors and warnings, each in a row with the code as its anchor: the `type`
 /// of a problem is the address of its row.
 #[utoipa::path(
     get, path = "/errors", operation_id = "show_errors", tag = "about",
@@ -34,7 +34,7 @@ pub fn page() -> Response {
     ([(header::CONTENT_TYPE, HTML)], PAGE.as_str()).into_response()
 }
 
-/// The page as HTML: of Markdown only headings, paragraphs, words in backquotes and tables, whose rows are called by
+/// The page as HTML: of Markdown only headings, paragraphs, words in backquotes and tables, whose rows are identified by
 /// the word in their first cell.
 fn html(written: &str) -> String {
     let mut body = String::new();
@@ -59,7 +59,7 @@ fn headline(line: &str) -> String {
     format!("<h{level}>{}</h{level}>\n", inline(text.trim()))
 }
 
-/// A table whose rows have anchors, but for words that are told `above` already: a warning may say what an error says.
+/// A table whose rows have anchors, except for codes with a row `above`: a warning may have the code of an error.
 fn table(above: &str, head: &str, rows: &[&str]) -> String {
     let mut table =
         format!("<div class=\"wide\" tabindex=\"0\"><table>\n<tr>{}</tr>\n", cells(head, "th"));
@@ -77,7 +77,7 @@ fn cells(row: &str, tag: &str) -> String {
     inner.split(" | ").map(|cell| format!("<{tag}>{}</{tag}>", inline(cell))).collect()
 }
 
-/// Text with what stands in backquotes as code. Links lead to documentation that the service does not have: their words stay.
+/// Text with backquoted parts as code. Links lead to documentation that the service does not have: their words remain.
 fn inline(text: &str) -> String {
     let text = without_links(text);
     let mut parts = text.split('`').map(escaped);

@@ -26,28 +26,28 @@ use crate::store::{Changes, EventRow, Store, StoreError};
 
 const MEDIA_TYPE: &str = "text/event-stream";
 const LAST_ID: &str = "last-event-id";
-/// A comment in this time keeps proxies from closing a silent stream.
+/// Interval of comments, which keep proxies from closing a silent stream.
 const SILENCE: Duration = Duration::from_secs(15);
-/// After what time a client that lost its stream comes back.
+/// Delay after which a client reconnects a lost stream.
 const RETRY: Duration = Duration::from_secs(2);
-/// The database is looked at this often even when nothing was announced.
+/// Longest interval between queries of the database, also without notifications.
 const LOOK: Duration = Duration::from_secs(1);
-/// And not more often than this, however much is announced.
+/// Shortest interval between queries, for any number of notifications.
 const PAUSE: Duration = Duration::from_millis(100);
 
 pub fn router() -> Resources {
     Resources::new().reads(Scope::Read, routes!(follow))
 }
 
-/// The events of a job, from the first or from the one after `Last-Event-ID`, until the job has ended. `event` is
-/// `state` when a job is accepted or an attempt begins, `progress` where its work stands, and `end`; `id` counts from 1
-/// without gaps; `data` is a `JobEvent`. The last thousand events of a job are kept. A stream that breaks is resumed
-/// with the id that was read last; when there are no more events, the answer is 204 and there is no need to reconnect.
+/// The events of a job, from the first or from the one after `Last-Event-ID`, to the end of the job. `event` is
+/// `state` when a job is accepted or an attempt begins, `progress` for its progress, and `end`; `id` counts from 1
+/// without gaps; `data` is a `JobEvent`. The last thousand events of a job are kept. A broken stream is resumed
+/// with the last id that was read; if there are no more events, the response is 204: do not reconnect.
 #[utoipa::path(
     get, path = "/v1/jobs/{id}/events", operation_id = "follow_job", tag = "jobs",
     params(
         ("id" = uuid::Uuid, Path, description = "the job"),
-        ("Last-Event-ID" = Option<u64>, Header, description = "the id of the last event that was read"),
+        ("Last-Event-ID" = Option<u64>, Header, description = "the id of the last event read"),
     ),
     responses(
         (status = 200, description = "the events", content((String = "text/event-stream"))),
@@ -105,7 +105,7 @@ struct EventStream {
     stopping: watch::Receiver<bool>,
     store: Store,
     job: String,
-    /// The number of the last event that was taken.
+    /// The number of the last event sent.
     after: i64,
     waiting: VecDeque<Event>,
     ended: bool,
@@ -133,7 +133,7 @@ impl EventStream {
         })
     }
 
-    /// Until something may have happened, or the process is about to stop.
+    /// Waits until there may be new events, or the process is about to stop.
     async fn wait(&mut self) {
         tokio::time::sleep_until(self.looked + PAUSE).await;
         tokio::select! {

@@ -1,5 +1,5 @@
-//! Examples of the bodies of requests, for the pages of the description: all of the block in `examples/block`, with ids
-//! where those of a reader's own meshes, cases and jobs belong.
+//! Examples of request bodies, for the pages of the OpenAPI description: all of the block in `examples/block`, with ids
+//! as placeholders for those of a reader's meshes, cases and jobs.
 
 use serde_json::{Map, Value, json};
 
@@ -11,7 +11,7 @@ pub const SCAN: &str = "0199d3a0-0000-7000-8000-000000000006";
 const SKIN: &str = "0199d3a0-0000-7000-8000-000000000007";
 const SKULL: &str = "0199d3a0-0000-7000-8000-000000000008";
 pub const JOB: &str = "0199d3a0-0000-7000-8000-000000000005";
-/// Of a job that compared.
+/// Of a comparison job.
 const COMPARISON: &str = "0199d3a0-0000-7000-8000-000000000009";
 
 /// Writes examples beside the schema of every JSON body of the operations.
@@ -100,7 +100,7 @@ fn loads() -> Value {
     })
 }
 
-/// Three operated blocks, of the last of which only errors may be told.
+/// Three operated blocks, the last with consent for comparison only.
 fn cohort() -> Value {
     let id = |group: u32, number: u32| format!("0199d3a0-0000-7000-8000-0000000000{group}{number}");
     let member = |number: u32| {
@@ -121,7 +121,7 @@ fn cohort() -> Value {
     })
 }
 
-/// One of each kind of job, and what is asked for most besides.
+/// One of each kind of job, and other frequent ones.
 fn jobs() -> Vec<(&'static str, Value)> {
     [predictions(), meshings(), responses_and_plans(), studies()].concat()
 }
@@ -134,7 +134,7 @@ fn predictions() -> Vec<(&'static str, Value)> {
                 "kind": "predict", "case": CASE, "plan": plan(), "method": "auto", "outputs": ["skin.vtp", "skin.glb"],
             }),
         ),
-        ("predict a plan that is kept", json!({"kind": "predict", "case": CASE, "plan_id": PLAN})),
+        ("predict a stored plan", json!({"kind": "predict", "case": CASE, "plan_id": PLAN})),
         (
             "predict with a membrane",
             json!({

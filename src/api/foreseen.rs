@@ -9,10 +9,10 @@ use super::parameters::id;
 use crate::store::CaseResponses;
 
 const APPLY: &str = "/v1/cases/{id}/response/apply";
-/// A body may take longer to come than what was found holds.
+/// A body may take longer to arrive than a lookup stays valid.
 const FRESH: Duration = Duration::from_secs(1);
 
-/// What was found when the request came.
+/// The lookup at the arrival of a request.
 #[derive(Clone)]
 pub struct ResponseLookup {
     at: Instant,
@@ -20,18 +20,18 @@ pub struct ResponseLookup {
 }
 
 impl ResponseLookup {
-    /// What is found now; `None` where there is no such case.
+    /// A lookup now; `None` if there is no such case.
     pub fn now(responses: Option<CaseResponses>) -> ResponseLookup {
         ResponseLookup { at: Instant::now(), responses }
     }
 
-    /// The responses, unless too much may have changed since; the inner `None` where there was no such case.
+    /// The responses, unless the lookup is too old; the inner `None` if there was no such case.
     pub fn fresh(self) -> Option<Option<CaseResponses>> {
         (self.at.elapsed() < FRESH).then_some(self.responses)
     }
 }
 
-/// The case to whose response a request applies a plan, if it does.
+/// The case of a request that applies a plan to its response, if any.
 pub fn case_of(request: &Request) -> Option<String> {
     let route = request.extensions().get::<MatchedPath>()?;
     let case = request.uri().path().split('/').nth(3)?;

@@ -1,4 +1,4 @@
-//! Status 410 instead of 404 for what was erased, whichever handler does not find it.
+//! Status 410 instead of 404 for erased resources, for every handler.
 
 use axum::extract::rejection::RawPathParamsRejection;
 use axum::extract::{RawPathParams, Request, State};
@@ -12,7 +12,7 @@ use super::{Service, time};
 use crate::schema::ErrorCode;
 use crate::schema::wire::problem::Problem;
 
-/// Looks for the tombstone of what an address names, where a handler found nothing.
+/// Looks for the tombstone of the resource of an address that a handler did not find.
 pub async fn tell(
     State(service): State<Service>,
     parameters: Result<RawPathParams, RawPathParamsRejection>,
@@ -39,7 +39,7 @@ pub async fn tell(
     response
 }
 
-/// The refusal to find what was erased.
+/// The refusal for an erased resource.
 pub fn gone(id: &str, erased: i64) -> ApiError {
     let erased_at = time::rfc3339(erased);
     let problem = Problem::new(ErrorCode::Gone, format!("{id} was erased at {erased_at}"));

@@ -1,4 +1,4 @@
-//! Security headers of answers: nothing is allowed to browsers, except on the pages of the documentation, of the
+//! Security headers of responses: nothing is allowed to browsers, except on the pages of the documentation, of the
 //! clients and for planners, which run their own scripts (W3C Content Security Policy 3).
 
 use axum::extract::Request;
@@ -6,20 +6,20 @@ use axum::http::{HeaderName, HeaderValue, header};
 use axum::middleware::Next;
 use axum::response::Response;
 
-/// No script, no form, nothing that is fetched, in no frame. Styles and images within a report or a picture are its own.
+/// No scripts, forms, fetches or frames. Styles and images within a report or a picture are inline.
 const NOTHING: &str = "default-src 'none'; style-src 'unsafe-inline'; img-src data:; base-uri 'none'; \
      form-action 'none'; frame-ancestors 'none'";
-/// Scripts, styles and pictures of this service, which ask this service only.
+/// Scripts, styles and pictures of this service, with requests to this service only.
 const OWN: &str = "default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; \
      img-src 'self' data:; connect-src 'self'; base-uri 'none'; form-action 'none'; \
      frame-ancestors 'none'";
 
-/// What the page for planners does: no style within its markup either; its pictures may be made in the browser.
+/// The page for planners: no inline styles either; its pictures may be made in the browser.
 const PLANNER: &str = "default-src 'none'; script-src 'self'; style-src 'self'; \
      img-src 'self' data: blob:; connect-src 'self'; base-uri 'none'; form-action 'none'; \
      frame-ancestors 'none'";
 
-/// The headers of every answer.
+/// The headers of every response.
 pub fn guarded(mut response: Response) -> Response {
     let fixed = [
         (header::CONTENT_SECURITY_POLICY, NOTHING),
@@ -38,7 +38,7 @@ pub async fn of_pages(request: Request, next: Next) -> Response {
     as_page(next.run(request).await)
 }
 
-/// An answer that may run scripts of this service.
+/// A response that may run scripts of this service.
 pub fn as_page(mut response: Response) -> Response {
     set_once(&mut response, header::CONTENT_SECURITY_POLICY, OWN);
     response

@@ -15,7 +15,7 @@ use crate::schema::ErrorCode;
 use crate::schema::wire::problem::Problem;
 use crate::store::StoreError;
 
-/// What takes longer than this is no help to a request.
+/// The longest wait that is still useful to a request.
 const READY_WITHIN: Duration = Duration::from_secs(2);
 
 #[derive(Serialize, Deserialize, ToSchema)]
@@ -28,15 +28,15 @@ pub fn router() -> Resources {
     Resources::new().open(routes!(healthz)).open(routes!(readyz)).json_only()
 }
 
-/// Whether the process is alive; touches nothing else.
+/// Liveness of the process, without other checks.
 #[utoipa::path(get, path = "/healthz", tag = "health", responses((status = 200, description = "alive", body = Health)))]
 async fn healthz() -> Response {
     json(StatusCode::OK, &Health { status: "ok".into() })
 }
 
-/// Whether requests will be served: the database answers and took a row within the last second, in less than two; the
-/// folder takes a file; there is space for what is sent, and for erasing. A tenant that asks for more than its turns is
-/// answered 503 `busy` by a service that is ready.
+/// Readiness for requests: the database answers and took a row within the last second, in less than two; the
+/// folder takes a file; there is space for uploads and for erasures. A tenant beyond its share of permits gets
+/// 503 `busy` from a service that is ready.
 #[utoipa::path(get, path = "/readyz", tag = "health", responses((status = 200, description = "ready", body = Health)))]
 async fn readyz(service: Service) -> ApiResult {
     let mut failing: Vec<String> = Vec::new();

@@ -1,4 +1,4 @@
-//! Trusted hosts and origins where no key is required: those of this machine, and those that settings name. A page of
+//! Trusted hosts and origins if no key is required: those of this machine, and those in the settings. A page of
 //! another site reaches a loopback address through the browser of its reader, by a form, or under a name of its own
 //! that it lets resolve to 127.0.0.1 (DNS rebinding).
 
@@ -12,10 +12,10 @@ use super::error::ApiResult;
 use crate::schema::ErrorCode;
 use crate::schema::wire::problem::Problem;
 
-/// What a browser says of where a request comes from (W3C Fetch Metadata).
+/// The browser's header of the origin of a request (W3C Fetch Metadata).
 const FETCH_SITE: &str = "sec-fetch-site";
 
-/// Names by which the service may be called, and origins whose pages may call it, beside those of this machine.
+/// Host names of the service, and origins whose pages may call it, beside those of this machine.
 #[derive(Clone, Debug)]
 pub struct Hosts {
     names: Vec<String>,
@@ -27,8 +27,8 @@ impl Hosts {
         Hosts { names: names.to_vec(), origins: origins.to_vec() }
     }
 
-    /// Refuses a request that calls this service by a name of somebody else's, or that a page of another site sends. A
-    /// request without a Host (HTTP/1.0) and one without the headers that browsers add are none of these.
+    /// Refuses a request with a foreign host name, or from a page of another site. A
+    /// request without a Host (HTTP/1.0) or without the headers that browsers add is neither.
     pub fn check(&self, request: &Request) -> ApiResult<()> {
         let authority = request.uri().authority().map(Authority::as_str);
         let hosts = texts(request.headers(), header::HOST.as_str());
@@ -45,7 +45,7 @@ impl Hosts {
         if is_known {
             return Ok(());
         }
-        let detail = "this service asks for no key and answers to localhost, loopback addresses and the names of the \
+        let detail = "this service requires no key and serves localhost, loopback addresses and the names of the \
              setting allowed-hosts only";
         Err(Problem::new(ErrorCode::UnknownHost, detail).with("host", host).into())
     }
@@ -64,14 +64,14 @@ impl Hosts {
         if !is_cross_site && origins.iter().all(is_own) {
             return Ok(());
         }
-        let detail = "this service asks for no key and is used by its own pages and those of the setting \
+        let detail = "this service requires no key and serves its own pages and those of the setting \
              allowed-origins only";
         let problem = Problem::new(ErrorCode::ForeignOrigin, detail);
         Err(problem.with("origin", origins.join(", ")).into())
     }
 }
 
-/// Refuses a request of HTTP/1.1 that names no host, or several (RFC 9112, section 3.2).
+/// Refuses a request of HTTP/1.1 without a host, or with several (RFC 9112, section 3.2).
 pub fn check_named_once(request: &Request) -> ApiResult<()> {
     let count = request.headers().get_all(header::HOST).iter().count();
     if count == 1 || request.version() != Version::HTTP_11 {
@@ -81,7 +81,7 @@ pub fn check_named_once(request: &Request) -> ApiResult<()> {
     Err(Problem::new(ErrorCode::MalformedRequest, detail).into())
 }
 
-/// The values of a header; one that is no text is no name that is known.
+/// The values of a header; one that is not text is an unknown name.
 fn texts<'a>(headers: &'a HeaderMap, name: &str) -> Vec<&'a str> {
     headers.get_all(name).iter().map(|value| value.to_str().unwrap_or("?")).collect()
 }

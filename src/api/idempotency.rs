@@ -1,6 +1,6 @@
-//! `Idempotency-Key` (draft-ietf-httpapi-idempotency-key-header-07): a request that is sent again, because its
-//! answer got lost, makes nothing twice. The first request with a key gives an id to what it makes; the same
-//! request with the same key makes that or finds it made.
+//! `Idempotency-Key` (draft-ietf-httpapi-idempotency-key-header-07): a request that is repeated, because its
+//! response was lost, creates nothing twice. The first request with a key gives an id to its resource; the same
+//! request with the same key creates or finds that.
 
 use axum::http::HeaderMap;
 
@@ -14,14 +14,14 @@ use crate::store::Reserved;
 const HEADER: &str = "idempotency-key";
 const LONGEST: usize = 255;
 
-/// The id of what a request makes.
+/// The id of the resource of a request.
 pub struct NewId {
     pub id: String,
-    /// Whether an earlier request may have made it already.
+    /// Whether an earlier request may have created it already.
     pub is_known: bool,
     /// Whether that request got an existing resource.
     pub was_found: bool,
-    /// The hash of the key, where the request has one.
+    /// The hash of the key, if the request has one.
     key: Option<String>,
 }
 
@@ -35,15 +35,15 @@ impl NewId {
     }
 }
 
-/// A request that may have been sent before.
+/// A request that may be a repetition.
 pub struct KeyedRequest {
     id: String,
-    /// The hashes of its key and of all that it says, where it has a key.
+    /// The hashes of its key and of its content, if it has a key.
     key: Option<(String, String)>,
 }
 
 impl KeyedRequest {
-    /// `content` is all that the request says, however it is packed.
+    /// `content` is that of the request, independent of its encoding.
     pub fn at(
         service: &Service,
         headers: &HeaderMap,
@@ -58,7 +58,7 @@ impl KeyedRequest {
         Ok(KeyedRequest { id, key: Some((key, fingerprint)) })
     }
 
-    /// The id of what the first request with its key makes, where that is known. Changes nothing.
+    /// The id of the resource of the first request with its key, if known. Read-only.
     pub async fn known(&self, service: &Service) -> ApiResult<Option<NewId>> {
         let Some((key, fingerprint)) = &self.key else { return Ok(None) };
         match service.store.reserved(key, fingerprint).await? {
@@ -67,7 +67,7 @@ impl KeyedRequest {
         }
     }
 
-    /// The id for what it makes: that of the first request with its key, else one of its own.
+    /// The id of its resource: that of the first request with its key, else a new one.
     pub async fn reserve(&self, service: &Service) -> ApiResult<NewId> {
         let reserved = match &self.key {
             Some((key, fingerprint)) => service.store.reserve(key, fingerprint, &self.id).await?,

@@ -1,4 +1,4 @@
-//! Conversion of the body of `POST /v1/jobs` to a job that can be queued: references resolved, everything checked.
+//! Conversion of the body of `POST /v1/jobs` to a job for the queue: references resolved, everything checked.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -30,7 +30,7 @@ use crate::schema::{
 };
 use crate::store::{CaseRow, NewJob};
 
-/// The job that a document asks for.
+/// The job of a document.
 pub async fn of(service: &Service, document: JobDocument) -> ApiResult<NewJob> {
     match document {
         JobDocument::Predict(spec) => of_prediction(service, *spec).await,
@@ -46,7 +46,7 @@ pub async fn of(service: &Service, document: JobDocument) -> ApiResult<NewJob> {
     }
 }
 
-/// A prediction: its case and plan as they are at this moment, checked together with the meshes.
+/// A prediction: its case and plan in their present versions, checked together with the meshes.
 async fn of_prediction(service: &Service, mut spec: PredictDocument) -> ApiResult<NewJob> {
     let row = require_case(service, spec.case.as_deref().unwrap_or_default()).await?;
     let case = match case_of_job(&row)? {
@@ -54,7 +54,7 @@ async fn of_prediction(service: &Service, mut spec: PredictDocument) -> ApiResul
         CaseOfJob::Waits(awaited) => {
             if spec.correction.is_some() {
                 let detail =
-                    "a case that waits for its mesh takes no correction: ask again when it has one";
+                    "a case that waits for its mesh takes no correction: repeat when it has one";
                 return Err(fault("/correction", ErrorCode::MethodNotAvailable, detail));
             }
             let plan = plan_of(service, &row.id, &mut spec).await?;
@@ -81,7 +81,7 @@ async fn of_prediction(service: &Service, mut spec: PredictDocument) -> ApiResul
     new.with(&JobInput::Predict(input))
 }
 
-/// A comparison of surfaces that are there.
+/// A comparison of existing surfaces.
 async fn of_comparison(service: &Service, spec: CompareDocument) -> ApiResult<NewJob> {
     let mut faults = Faults::default();
     spec.check(&service.limits, &mut faults);
@@ -109,7 +109,7 @@ async fn of_comparison(service: &Service, spec: CompareDocument) -> ApiResult<Ne
     new.with(&JobInput::Compare(input))
 }
 
-/// A plan response: its case as it is at this moment, checked with its meshes.
+/// A plan response: its case in its present version, checked with its meshes.
 async fn of_response(service: &Service, mut spec: ResponseDocument) -> ApiResult<NewJob> {
     let row = require_case(service, &spec.case).await?;
     spec.case.clone_from(&row.id);
@@ -133,7 +133,7 @@ async fn of_response(service: &Service, mut spec: ResponseDocument) -> ApiResult
     new.with(&JobInput::Response(input))
 }
 
-/// Inverse planning: its case as it is at this moment, checked with its meshes.
+/// Inverse planning: its case in its present version, checked with its meshes.
 async fn of_optimisation(service: &Service, mut spec: OptimiseDocument) -> ApiResult<NewJob> {
     let row = require_case(service, &spec.case).await?;
     spec.case.clone_from(&row.id);
@@ -158,7 +158,7 @@ async fn of_optimisation(service: &Service, mut spec: OptimiseDocument) -> ApiRe
     new.with(&JobInput::Optimise(input))
 }
 
-/// The reproduction of an operation from bone that is there.
+/// The reproduction of an operation from existing surfaces of bone.
 async fn of_reproduction(service: &Service, spec: ReproduceDocument) -> ApiResult<NewJob> {
     let mut faults = Faults::default();
     spec.check(&service.limits, &mut faults);
@@ -210,7 +210,7 @@ async fn of_meshing(service: &Service, mut spec: MeshingDocument) -> ApiResult<N
     new.with(&JobInput::Meshing(input))
 }
 
-/// A study: its cases and its baseline as they are at this moment, its scenes made and checked.
+/// A study: its cases and its baseline in their present versions, its scenes made and checked.
 async fn of_study(service: &Service, mut spec: StudyDocument) -> ApiResult<NewJob> {
     let mut cases = BTreeMap::new();
     for (index, scene) in spec.scenes.iter_mut().enumerate() {
@@ -272,7 +272,7 @@ async fn of_study(service: &Service, mut spec: StudyDocument) -> ApiResult<NewJo
     new.with(&JobInput::Study(input))
 }
 
-/// The report of the study that another is to be held against, and the cases of that study.
+/// The report of a baseline, and the cases of that study.
 async fn baseline(service: &Service, job: &str) -> ApiResult<(ReportDocument, Vec<String>)> {
     const AT: &str = "/baseline";
     let id = id(job).ok_or_else(|| fault(AT, ErrorCode::UnknownJob, "there is no such job"))?;
@@ -284,7 +284,7 @@ async fn baseline(service: &Service, job: &str) -> ApiResult<(ReportDocument, Ve
         fault(
             AT,
             ErrorCode::NoSuchOutput,
-            "the job is no study that has ended well: name one of kind `study` or `batch` whose status is `successful`, or leave `baseline` out",
+            "the job is not a successful study: name one of kind `study` or `batch` whose status is `successful`, or omit `baseline`",
         )
     };
     Ok((found.ok_or_else(missing)?.1, service.store.cases_of_job(&id).await?))
@@ -336,7 +336,7 @@ async fn stored_plan(
     serde_json::from_str(&found.document).map(Some).map_err(ApiError::internal)
 }
 
-/// A case that has to be there.
+/// A case that has to exist.
 async fn require_case(service: &Service, case: &str) -> ApiResult<CaseRow> {
     let row = match id(case) {
         Some(id) => service.store.case(&id).await?,
@@ -346,7 +346,7 @@ async fn require_case(service: &Service, case: &str) -> ApiResult<CaseRow> {
         fault(
             "/case",
             ErrorCode::UnknownCase,
-            "there is no such case: GET /v1/cases lists those there are",
+            "there is no such case: GET /v1/cases lists the existing ones",
         )
     })
 }

@@ -61,7 +61,7 @@ fn message(row: &JobRow) -> String {
         },
         (JobStatus::Running, Some(phase)) => format!("attempt {}: {phase}", row.attempt),
         (JobStatus::Running, None) => format!("attempt {} has started", row.attempt),
-        (JobStatus::Successful, _) => "the results are there".to_owned(),
+        (JobStatus::Successful, _) => "the results are available".to_owned(),
         (JobStatus::Failed, _) => "failed; `error` says why".to_owned(),
         (JobStatus::Dismissed, _) => "dismissed on request".to_owned(),
     }

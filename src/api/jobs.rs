@@ -1,4 +1,4 @@
-//! Jobs: created, read, awaited, dismissed.
+//! Jobs: create, read, wait, dismiss.
 
 use axum::extract::Request;
 use axum::http::{HeaderMap, StatusCode, header};
@@ -57,7 +57,7 @@ struct ListParameters {
     kind: Option<JobKind>,
     /// Only jobs with this tag.
     tag: Option<String>,
-    /// Only jobs of this case, and those that read it among others: all that goes when it is erased, such as models that were learned from it.
+    /// Only jobs of this case, and those that read it among others: all that is erased with it, such as models learned from it.
     #[param(format = Uuid)]
     case: Option<String>,
     cursor: Option<String>,
@@ -66,26 +66,26 @@ struct ListParameters {
     limit: Option<u32>,
 }
 
-/// Accepts a job. The same inputs, from any client of the tenant, are the same job, which gets the tags of each
-/// request; a job that was dismissed, or failed by its budget or through no fault of its own, is accepted again. With
-/// `Prefer: wait=n` the answer comes when the job has ended, at the latest after n seconds (at most 30). One that keeps
-/// meshes (`keep`) stores what it makes, which a key has to allow (`write`).
+/// Accepts a job. Equal inputs, from any client of the tenant, give the same job, which gets the tags of each
+/// request; a job that was dismissed, or failed by its budget or by infrastructure, is accepted again. With
+/// `Prefer: wait=n` the response comes when the job has ended, after at most n seconds (at most 30). One with
+/// `keep` stores meshes, which needs a key with `write`.
 #[utoipa::path(
     post, path = "/v1/jobs", operation_id = "create_job", tag = "jobs",
     params(
         ("Prefer" = Option<String>, Header, description = "wait=n: wait at most n seconds for the end"),
         (
             "Idempotency-Key" = Option<String>, Header, min_length = 1, max_length = 255, pattern = r"^[!-~]([\t -~]*[!-~])?$",
-            description = "a word of the client's, so that the request may be sent again"
+            description = "a unique word of the client, to repeat the request safely"
         ),
     ),
     request_body = JobDocument,
     responses(
         (status = 201, description = "accepted", body = StatusInfo, headers(
-            ("Location" = String, description = "the job"), ("Retry-After" = Option<u32>, description = "seconds after which to look again"),
+            ("Location" = String, description = "the job"), ("Retry-After" = Option<u32>, description = "seconds to wait before the next request"),
             ("Preference-Applied" = Option<String>, description = "the wait that was granted"))),
         (status = 200, description = "successful within the wait, or known already (`deduplicated`)", body = StatusInfo, headers(
-            ("Content-Location" = String, description = "the job"), ("Retry-After" = Option<u32>, description = "seconds after which to look again"),
+            ("Content-Location" = String, description = "the job"), ("Retry-After" = Option<u32>, description = "seconds to wait before the next request"),
             ("Preference-Applied" = Option<String>, description = "the wait that was granted"))),
     )
 )]
@@ -136,7 +136,7 @@ async fn create(service: Service, caller: Caller, request: Request) -> ApiResult
     created(&service, &id, deduplicated, wait).await
 }
 
-/// The answer to a request that made a job, or found it made.
+/// The response to a request that created a job, or found it.
 async fn created(service: &Service, id: &str, deduplicated: bool, wait: Option<u32>) -> ApiResult {
     let job = wait_for_end(service, id, wait.unwrap_or(0)).await?;
     let job = job.ok_or_else(no_such_job)?;
@@ -151,7 +151,7 @@ async fn created(service: &Service, id: &str, deduplicated: bool, wait: Option<u
     Ok(answer)
 }
 
-/// The state of a job with the headers that go with it.
+/// The state of a job with its headers.
 fn answer(status: StatusCode, job: &JobRow, deduplicated: bool, wait: Option<u32>) -> ApiResult {
     let mut answer = json(status, &status_info(job, deduplicated)?);
     if !job.status.is_terminal() {
@@ -160,7 +160,7 @@ fn answer(status: StatusCode, job: &JobRow, deduplicated: bool, wait: Option<u32
     Ok(with_wait(answer, wait))
 }
 
-/// The state of a job; with `Prefer: wait=n` when it has ended, at the latest after n seconds (at most 30).
+/// The state of a job; with `Prefer: wait=n` when it has ended, after at most n seconds (at most 30).
 #[utoipa::path(
     get, path = "/v1/jobs/{id}", operation_id = "show_job", tag = "jobs",
     params(
@@ -169,9 +169,9 @@ fn answer(status: StatusCode, job: &JobRow, deduplicated: bool, wait: Option<u32
         ("If-None-Match" = Option<String>, Header, description = "the state that the client has"),
     ),
     responses(
-        (status = 200, description = "its state, and its results once it is successful", body = StatusInfo, headers(
+        (status = 200, description = "its state, with its results once successful", body = StatusInfo, headers(
             ("ETag" = String, description = "the hash of this state"),
-            ("Retry-After" = Option<u32>, description = "seconds after which to look again"),
+            ("Retry-After" = Option<u32>, description = "seconds to wait before the next request"),
             ("Preference-Applied" = Option<String>, description = "the wait that was granted"))),
         (status = 304, description = "the client has it already"),
     )
@@ -183,14 +183,14 @@ async fn show(service: Service, Id(id): Id, headers: HeaderMap) -> ApiResult {
     conditional::document(&headers, answer).await
 }
 
-/// Changes the tags of a job, whatever its state. Tags to `add` are put on it and tags to `remove` are taken off, and all
-/// others stay; what is so already is no mistake. So changes of several clients do not overwrite each other, and need no
-/// If-Match; one that is sent has to name the state of the job as it is.
+/// Changes the tags of a job, in any state. Adds the tags of `add` and removes those of `remove`; all
+/// others stay; redundant changes are no mistake. So changes of several clients do not overwrite each other, and need no
+/// If-Match; one that is sent has to name the present state of the job.
 #[utoipa::path(
     patch, path = "/v1/jobs/{id}", operation_id = "change_job", tag = "jobs",
     params(
         ("id" = uuid::Uuid, Path, description = "the job"),
-        ("If-Match" = Option<String>, Header, description = "the state that is meant, or *"),
+        ("If-Match" = Option<String>, Header, description = "the state to change, or *"),
     ),
     request_body = JobChangeDocument,
     responses(
@@ -214,13 +214,13 @@ async fn change(service: Service, Id(id): Id, request: Request) -> ApiResult {
     conditional::document(&HeaderMap::new(), answer).await
 }
 
-/// The hash of the state of a job, as a GET shows it.
+/// The hash of the state of a job, as in a GET.
 fn state_tag(job: &JobRow) -> ApiResult<String> {
     let state = serde_json::to_vec(&status_info(job, false)?).map_err(ApiError::internal)?;
     Ok(sha256_hex(&state))
 }
 
-/// Puts tags on a job and takes others off it.
+/// Adds tags to a job and removes others.
 async fn tag(service: &Service, id: &str, add: &[String], remove: &[String]) -> ApiResult<()> {
     let most = service.limits.tags as usize;
     match service.store.change_tags(id, add, remove, most).await? {

@@ -1,4 +1,4 @@
-//! Keys of a tenant: made, listed, rotated, ended. The key itself is in the answer that makes it and nowhere else.
+//! Keys of a tenant: create, list, rotate, revoke. The key itself is only in the response to its creation.
 
 use axum::extract::Request;
 use axum::http::{StatusCode, header};
@@ -37,7 +37,7 @@ pub struct KeyView {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub expires: Option<String>,
-    /// When it was ended.
+    /// When it was revoked.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub revoked: Option<String>,
@@ -52,7 +52,7 @@ pub struct KeyList {
     next: Option<String>,
 }
 
-/// A key, this once.
+/// A key, shown only this once.
 #[derive(Serialize, ToSchema)]
 pub struct NewKey {
     pub id: String,
@@ -83,14 +83,14 @@ pub async fn listed(store: &Store, parameters: &PageParameters) -> ApiResult {
     Ok(json(StatusCode::OK, &KeyList { items, next }))
 }
 
-/// The answer that shows a key.
+/// The response with a key.
 pub fn shown(key: Key) -> Response {
     let place = format!("/v1/keys/{}", key.id);
     let new = NewKey { id: key.id, key: key.text };
     with_header(json(StatusCode::CREATED, &new), header::LOCATION, &place)
 }
 
-/// Ends a key of a tenant.
+/// Revokes a key of a tenant.
 pub async fn revoked(store: &Store, id: &str) -> ApiResult {
     match store.revoke_key(id).await? {
         true => Ok(StatusCode::NO_CONTENT.into_response()),
@@ -98,7 +98,7 @@ pub async fn revoked(store: &Store, id: &str) -> ApiResult {
     }
 }
 
-/// Makes a key in place of another of its tenant.
+/// Creates a key to replace another of its tenant.
 pub async fn rotated(store: &Store, id: &str, rotation: RotationDocument) -> ApiResult {
     rotation.check()?;
     let key = store.rotate_key(id, rotation.overlap_h).await?;
@@ -109,13 +109,13 @@ fn no_such_key() -> ApiError {
     ApiError::not_found("key that is in force")
 }
 
-/// The keys of the tenant, oldest first, also those that are over.
+/// The keys of the tenant, oldest first, including invalid ones.
 #[utoipa::path(get, path = "/v1/keys", operation_id = "list_keys", tag = "keys", params(PageParameters), responses((status = 200, description = "a page of them", body = KeyList)))]
 async fn list(service: Service, Parameters(parameters): Parameters<PageParameters>) -> ApiResult {
     listed(&service.store, &parameters).await
 }
 
-/// Makes a key.
+/// Creates a key.
 #[utoipa::path(
     post, path = "/v1/keys", operation_id = "create_key", tag = "keys", request_body = KeyDocument,
     responses((status = 201, description = "the key, this once", body = NewKey, headers(("Location" = String, description = "the key"))))
@@ -127,16 +127,16 @@ async fn create(service: Service, request: Request) -> ApiResult {
     Ok(shown(service.store.make_key(&wanted).await?))
 }
 
-/// Ends a key at once.
+/// Revokes a key at once.
 #[utoipa::path(
     delete, path = "/v1/keys/{id}", operation_id = "revoke_key", tag = "keys", params(("id" = String, Path, description = "the middle part of the key")),
-    responses((status = 204, description = "no request with it is let in any more"))
+    responses((status = 204, description = "requests with it are refused"))
 )]
 async fn revoke(service: Service, KeyId(id): KeyId) -> ApiResult {
     revoked(&service.store, &id).await
 }
 
-/// Makes a key that allows the same, and lets the old one end after a while.
+/// Creates a key with the same scopes, and lets the old one expire after a while.
 #[utoipa::path(
     post, path = "/v1/keys/{id}/rotation", operation_id = "rotate_key", tag = "keys", params(("id" = String, Path, description = "the middle part of the key")),
     request_body = RotationDocument,

@@ -1,4 +1,4 @@
-//! Meshes: uploaded once, never changed, fetched in other formats.
+//! Meshes: uploaded once, immutable, downloaded in other formats.
 
 use axum::extract::Request;
 use axum::http::{HeaderMap, StatusCode, header};
@@ -35,20 +35,20 @@ pub fn router() -> Resources {
     json.reads(Scope::Read, routes!(content))
 }
 
-/// What an upload says about its bytes.
+/// Parameters of an upload.
 #[derive(Clone, Default, Deserialize, IntoParams)]
 #[serde(deny_unknown_fields)]
 #[into_params(parameter_in = Query)]
 pub struct UploadParameters {
-    /// The frame of the coordinates; a `SPACE=` mark in the file has to agree. The `space` of an image has the
-    /// last word.
+    /// The frame of the coordinates; a `SPACE=` mark in the file has to agree. The `space` of an image takes
+    /// precedence.
     frame: Option<FrameName>,
     /// The unit of length of the file. Default: mm. An image is in mm or in its own `space units`.
     units: Option<LengthUnit>,
-    /// What the mesh is used for, a word of at most 32 letters; kept and not interpreted.
+    /// Use of the mesh, a word of at most 32 letters; stored and not interpreted.
     #[param(pattern = "^[A-Za-z0-9_-]{1,32}$")]
     role: Option<String>,
-    /// Takes a mesh that is smaller or larger than any head. Default: false.
+    /// Accepts a mesh smaller or larger than any head. Default: false.
     allow_any_scale: Option<bool>,
 }
 
@@ -72,7 +72,7 @@ impl UploadParameters {
 }
 
 /// Stores a mesh: VTU, VTP, VTK legacy, Gmsh, STL, PLY or OBJ, or an image: NRRD, NIfTI, MetaImage or the files of a
-/// DICOM series in one zip archive; recognised by content. Bytes that were stored before are not stored again.
+/// DICOM series in one zip archive; recognised by content. Identical bytes are not stored twice.
 #[utoipa::path(
     post, path = "/v1/meshes", operation_id = "upload_mesh", tag = "meshes", params(UploadParameters),
     request_body(description = "the file", content(
@@ -86,7 +86,7 @@ impl UploadParameters {
     )),
     responses(
         (status = 201, description = "stored", body = MeshDocument, headers(("Location" = String, description = "the mesh"))),
-        (status = 200, description = "the same bytes, so described, were stored before", body = MeshDocument),
+        (status = 200, description = "the same bytes, so described, existed before", body = MeshDocument),
     )
 )]
 async fn upload(
@@ -117,7 +117,7 @@ async fn upload(
     Ok(with_header(answer, header::LOCATION, &location))
 }
 
-/// A form with the file as its one part.
+/// A form with the file as its only part.
 #[derive(utoipa::ToSchema)]
 #[allow(dead_code, reason = "describes the form for the OpenAPI document")]
 struct MeshForm {
@@ -130,19 +130,19 @@ fn single_part(mut parts: Vec<(String, SpooledBody)>) -> ApiResult<SpooledBody> 
         (Some((_, part)), 0) => Ok(part),
         (last, others) => {
             let count = others + usize::from(last.is_some());
-            let detail = format!("the form has {count} parts and has to have one, the file");
+            let detail = format!("the form has {count} parts, and needs exactly one, the file");
             Err(ApiError::new(ErrorCode::MalformedMultipart, detail))
         }
     }
 }
 
-/// An upload that was stored before, or one that can be stored.
+/// An upload: stored before, or to be stored.
 pub enum TakenIn {
     Known(MeshRow),
     New(Box<Upload>),
 }
 
-/// Looks whether bytes are known, and reads them when not, in the turn of their request.
+/// Looks up bytes, and parses unknown ones with the permit of their request.
 pub async fn take_in(
     service: &Service,
     permit: &Permit,
@@ -187,7 +187,7 @@ async fn row_of(service: &Service, id: &str) -> ApiResult<MeshRow> {
     row.ok_or_else(|| ApiError::not_found("mesh"))
 }
 
-/// What a mesh holds.
+/// Content of a mesh.
 #[utoipa::path(
     get, path = "/v1/meshes/{id}", operation_id = "show_mesh", tag = "meshes", params(("id" = uuid::Uuid, Path, description = "the mesh")),
     responses(
@@ -208,7 +208,7 @@ async fn show(service: Service, Id(id): Id, headers: HeaderMap) -> ApiResult {
 #[serde(deny_unknown_fields)]
 #[into_params(parameter_in = Query)]
 struct ContentParameters {
-    /// `vtu` (volumes only), `vtp`, `stl` or `ply`; of a volume the last three hold the boundary. `nrrd` (images
+    /// `vtu` (volumes only), `vtp`, `stl` or `ply`; of a volume the last three have the boundary. `nrrd` (images
     /// only).
     #[param(inline)]
     format: Option<ContentFormat>,
@@ -245,7 +245,7 @@ impl From<ContentFormat> for ExportFormat {
         (status = 200, description = "the file", content(
             (Vec<u8> = "application/vnd.vtk.xml"), (Vec<u8> = "model/stl"), (Vec<u8> = "application/vnd.ply"),
             (Vec<u8> = "application/x-nrrd"))),
-        (status = 206, description = "the range that was asked for", content(
+        (status = 206, description = "the requested range", content(
             (Vec<u8> = "application/vnd.vtk.xml"), (Vec<u8> = "model/stl"), (Vec<u8> = "application/vnd.ply"),
             (Vec<u8> = "application/x-nrrd"))),
         (status = 304, description = "the client has it already"),

@@ -30,7 +30,7 @@ const TRACE_PARENT: &str = "traceparent";
 const LONGEST_URI: usize = 8 << 10;
 const LARGEST_HEAD: usize = 16 << 10;
 
-/// What the outermost layer needs to know.
+/// The state of the outermost layer.
 #[derive(Clone)]
 pub struct MiddlewareState {
     pub service: Service,
@@ -88,7 +88,7 @@ pub async fn surround(
     response
 }
 
-/// An answer with the id of its request, and its body where it is a problem.
+/// A response with the id of its request, and its body if it is a problem.
 pub fn named(response: Response, id: &str) -> Response {
     let mut response = guarded(with_problem_body(response, id));
     if let Ok(value) = HeaderValue::from_str(id) {
@@ -97,7 +97,7 @@ pub fn named(response: Response, id: &str) -> Response {
     response
 }
 
-/// The id that the client gave, when it is one that can stand in a log; else one of ours.
+/// The id given by the client, if it is safe in a log; else a new one.
 fn request_id(headers: &HeaderMap) -> String {
     let given = headers.get(REQUEST_ID).and_then(|value| value.to_str().ok());
     let is_plain = |byte: u8| byte.is_ascii_alphanumeric() || matches!(byte, b'.' | b'_' | b'-');
@@ -107,19 +107,19 @@ fn request_id(headers: &HeaderMap) -> String {
     }
 }
 
-/// Where in a trace its client made a request.
+/// The client's trace context of a request.
 fn trace_parent(headers: &HeaderMap) -> Option<TraceParent> {
     TraceParent::parse(headers.get(TRACE_PARENT)?.to_str().ok()?)
 }
 
-/// A request that is let in.
+/// An admitted request.
 enum Admission {
-    /// To what is open to all.
+    /// To an open route.
     ToAll,
     Known(Entry),
 }
 
-/// What is known of a request with a caller.
+/// Data of a request with a caller.
 struct Entry {
     caller: Caller,
     left: Option<RateAllowance>,
@@ -127,8 +127,8 @@ struct Entry {
     audit: Audit,
 }
 
-/// Lets a request in whose head is sound, whose caller is known and has requests left; whose it is, and what was declared
-/// of its route, stands beside it.
+/// Admits a request with a valid head, whose caller is known and within the rate limit; its caller, and the access of its
+/// route, are attached.
 async fn admit(door: &MiddlewareState, request: &mut Request) -> ApiResult<Admission> {
     check_head(request)?;
     check_named_once(request)?;
@@ -160,7 +160,7 @@ struct IncomingRequest {
 }
 
 impl Entry {
-    /// Hands the request on where its key allows it. What changes something is noted, and what is not allowed.
+    /// Forwards a request that its key allows. Changes and forbidden requests are audited.
     async fn pass(
         self,
         service: &Service,
@@ -194,7 +194,7 @@ impl Entry {
     }
 }
 
-/// Answer to a forbidden request, audited without waiting for writers.
+/// Response to a forbidden request, audited without waiting for writers.
 async fn refused(error: ApiError, intent: &AuditIntent) -> Response {
     let response = error.into_response();
     match intent.end(intent.object(), response.status().as_str(), true).await {
@@ -220,7 +220,7 @@ fn check_head(request: &Request) -> ApiResult<()> {
     Ok(())
 }
 
-/// For routes that answer in JSON only.
+/// For routes with JSON responses only.
 pub async fn accepts_json(request: Request, next: Next) -> Response {
     match check_accept(request.headers(), "application/json") {
         Ok(()) => next.run(request).await,
@@ -228,16 +228,16 @@ pub async fn accepts_json(request: Request, next: Next) -> Response {
     }
 }
 
-/// Whether the client takes a media type (RFC 9110, section 12.5.1).
+/// Whether the client accepts a media type (RFC 9110, section 12.5.1).
 pub fn check_accept(headers: &HeaderMap, offered: &str) -> Result<(), ApiError> {
     if preference(headers, offered).1 > 0.0 {
         return Ok(());
     }
-    let detail = format!("the answer is {offered}, which the header Accept does not allow");
+    let detail = format!("the response is {offered}, which the header Accept does not allow");
     Err(ApiError::new(ErrorCode::NotAcceptable, detail))
 }
 
-/// Which of several media types a client likes best; of equals the one it names most precisely, then the first.
+/// The media type that a client prefers; of equals the one named most precisely, then the first.
 pub fn preferred(headers: &HeaderMap, offered: &[&str]) -> Result<usize, ApiError> {
     let mut best: Option<(usize, f32, u8)> = None;
     for (number, offer) in offered.iter().enumerate() {
@@ -251,7 +251,7 @@ pub fn preferred(headers: &HeaderMap, offered: &[&str]) -> Result<usize, ApiErro
     best.map(|(number, ..)| number).ok_or_else(|| ApiError::new(ErrorCode::NotAcceptable, detail()))
 }
 
-/// How precisely a client names a media type, and how well it likes it, from 0 to 1.
+/// The precision with which a client names a media type, and its quality, from 0 to 1.
 fn preference(headers: &HeaderMap, offered: &str) -> (u8, f32) {
     let values = headers.get_all(header::ACCEPT).iter().filter_map(|value| value.to_str().ok());
     let mut ranges = values
@@ -270,7 +270,7 @@ fn preference(headers: &HeaderMap, offered: &str) -> (u8, f32) {
     likings.fold((0, 0.0), |best, preference| if preference.0 > best.0 { preference } else { best })
 }
 
-/// How precisely a range names what is offered; 0 when it does not.
+/// The precision with which a range names the offered type; 0 if it does not.
 fn precision_of(range: &str, offered: &str) -> u8 {
     if range == offered {
         return 3;
@@ -284,7 +284,7 @@ fn precision_of(range: &str, offered: &str) -> u8 {
     }
 }
 
-/// A panic in a handler costs that request and nothing else.
+/// A panic in a handler fails only that request.
 pub fn after_panic(panic: Box<dyn std::any::Any + Send + 'static>) -> Response {
     let reason = panic
         .downcast_ref::<String>()

@@ -1,4 +1,4 @@
-//! The description of the service (OpenAPI 3.1), made from the code.
+//! The description of the service (OpenAPI 3.1), generated from the code.
 
 use axum::http::Method;
 use serde_json::json;
@@ -18,38 +18,38 @@ use crate::schema::ProblemDocument;
 use crate::schema::job::JobEvent;
 use crate::schema::job_document::JobKind;
 
-/// Problems that every operation may answer with: what is wrong with the head of the request, and what is
-/// wrong with the service.
+/// Problems of every operation: faults of the head of the request, and
+/// failures of the service.
 const ALWAYS: [(&str, &str); 11] = [
     ("400", "a parameter or a header is not valid"),
-    ("401", "the service asks for a key"),
-    ("403", "the key does not allow it, or a page of another site asks"),
-    ("406", "the header Accept does not allow the answer"),
+    ("401", "the service requires a key"),
+    ("403", "the key does not allow it, or the request is from a page of another site"),
+    ("406", "the header Accept does not allow the response"),
     ("414", "the address is too long"),
-    ("421", "the service asks for no key and is called by a name that is not of its machine"),
+    ("421", "the service requires no key and the host name is not one of its machine"),
     (
         "429",
-        "the client asks for more than one may have; the header Retry-After says when to come back",
+        "a rate limit or quota of the client is exceeded; the header Retry-After has the delay",
     ),
     ("431", "the headers are too large"),
-    ("500", "something broke in the service"),
-    ("503", "the service is busy; the header Retry-After says when to come back"),
+    ("500", "the service failed"),
+    ("503", "the service is busy; the header Retry-After says when to retry"),
     ("507", "the disk of the service is full"),
 ];
-/// How the description calls the key of a client.
+/// The name of a client's key in the description.
 const KEY: &str = "key";
 const NO_SCOPES: [&str; 0] = [];
 
-const WITH_PATH: [(&str, &str); 2] = [("404", "it is not there"), ("410", "it was erased")];
+const WITH_PATH: [(&str, &str); 2] = [("404", "it does not exist"), ("410", "it was erased")];
 const WITH_BODY: [(&str, &str); 5] = [
-    ("409", "something it refers to changed meanwhile"),
+    ("409", "a resource that it refers to changed meanwhile"),
     ("408", "the body came too slowly"),
     ("413", "the body is too large"),
-    ("415", "the body is of a kind that is not read"),
+    ("415", "the body has an unsupported media type"),
     ("422", "the body was understood and is refused; `code` and `errors` say why"),
 ];
 
-/// The description as it is served and as it stands in `openapi/openapi.json`.
+/// The description as served and as stored in `openapi/openapi.json`.
 pub fn document() -> serde_json::Value {
     let described = serde_json::to_value(described()).unwrap_or_default();
     let mut document = openapi_types::typed(described);
@@ -60,7 +60,7 @@ pub fn document() -> serde_json::Value {
     document
 }
 
-/// What a check takes has the members of a prediction, none of which it asks for.
+/// The body of a check has the members of a prediction, all optional.
 fn describe_check(schemas: &mut serde_json::Value) {
     let mut members = schemas["PredictDocument"].clone();
     members["description"] = schemas["CheckRequest"]["description"].clone();
@@ -70,7 +70,7 @@ fn describe_check(schemas: &mut serde_json::Value) {
     schemas["CheckRequest"] = members;
 }
 
-/// Which document belongs to which kind of job.
+/// The mapping of kinds of jobs to documents.
 fn describe_kinds(document: &mut serde_json::Value) {
     let reference = |kind: &JobKind| format!("#/components/schemas/{}", kind.document());
     let mapping: BTreeMap<&str, String> =
@@ -78,7 +78,7 @@ fn describe_kinds(document: &mut serde_json::Value) {
     document["discriminator"] = json!({ "propertyName": "kind", "mapping": mapping });
 }
 
-/// The description as the handlers and documents say it.
+/// The description derived from the handlers and documents.
 fn described() -> OpenApi {
     let info = InfoBuilder::new()
         .title("facies")
@@ -127,7 +127,7 @@ fn operations(item: &mut PathItem) -> impl Iterator<Item = (Method, &mut Operati
     operations.into_iter().filter_map(|(method, operation)| Some((method, operation.as_mut()?)))
 }
 
-/// Writes down the answers that the layers around the handlers give, and the body of all problems.
+/// Adds the responses of the middleware, and the body of all problems.
 fn add_problems(path: &str, operation: &mut Operation) {
     let mut problems = ALWAYS.to_vec();
     if path.contains('{') {

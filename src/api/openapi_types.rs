@@ -3,10 +3,10 @@
 
 use serde_json::{Map, Value, json};
 
-/// An id as it is spelled: as text, because documents refer to ids as text.
+/// The schema of ids: text, because documents refer to ids as text.
 const ID_PATTERN: &str = "^[0-9a-f]{8}-[0-9a-f]{4}-[0-9a-f]{4}-[0-9a-f]{4}-[0-9a-f]{12}$";
 
-/// The same description, easier to make types from.
+/// The same description, in a form suited to generated types.
 pub fn typed(mut document: Value) -> Value {
     let schemas = document["components"]["schemas"].clone();
     simplify(&mut document, &schemas);
@@ -37,7 +37,7 @@ fn one_type(object: &mut Map<String, Value>) {
     object.insert("type".into(), only);
 }
 
-/// Parameters and headers are there or not; there is no null in them.
+/// Parameters and headers are present or absent, never null.
 fn never_null(object: &mut Map<String, Value>) {
     let Some(schema) = object.get_mut("schema") else { return };
     let kind = match schema["type"].as_array().map(Vec::as_slice) {
@@ -47,7 +47,7 @@ fn never_null(object: &mut Map<String, Value>) {
     schema["type"] = kind;
 }
 
-/// A parameter that is an id has the type that ids have in documents.
+/// A parameter that is an id has the type of ids in documents.
 fn id_as_text(object: &mut Map<String, Value>) {
     if object.get("format").is_some_and(|format| format == "uuid") {
         object.remove("format");
@@ -55,7 +55,7 @@ fn id_as_text(object: &mut Map<String, Value>) {
     }
 }
 
-/// A body of bytes is no list of numbers, and a stream that goes on is no text.
+/// A body of bytes is no list of numbers, and an event stream is no text.
 fn bytes(object: &mut Map<String, Value>) {
     let Some(content) = object.get_mut("content").and_then(Value::as_object_mut) else { return };
     for (media_type, content) in content {
@@ -70,7 +70,7 @@ fn bytes(object: &mut Map<String, Value>) {
     }
 }
 
-/// Members that stand side by side in JSON, but in several parts in the code, are one object.
+/// Members of one JSON object that are in several parts in the code are one object.
 fn flat(object: &mut Map<String, Value>, schemas: &Value) {
     let Some(parts) = object.get("allOf").and_then(Value::as_array) else { return };
     let mut properties = Map::new();

@@ -1,14 +1,14 @@
-//! Cross-origin requests (CORS): none are allowed unless a setting names their origins.
+//! Cross-origin requests (CORS): none are allowed except from origins in the settings.
 
 use std::time::Duration;
 
 use axum::http::{HeaderName, HeaderValue, Method, header};
 use tower_http::cors::CorsLayer;
 
-/// How long a browser may remember what is allowed.
+/// How long a browser may cache a preflight response.
 const REMEMBERED: Duration = Duration::from_secs(3600);
 
-/// What is allowed to pages of these origins; `None` where there are none.
+/// The permissions of pages of these origins; `None` if there are none.
 pub fn allowed(origins: &[String]) -> Option<CorsLayer> {
     let origins: Vec<HeaderValue> =
         origins.iter().filter_map(|origin| HeaderValue::from_str(origin).ok()).collect();

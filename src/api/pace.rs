@@ -1,4 +1,4 @@
-//! Minimum transfer rate of clients, in windows of time: bytes that moved fast at first do not excuse a later stall.
+//! Minimum transfer rate of clients, in windows of time: a fast start does not excuse a later stall.
 
 use std::io;
 use std::pin::Pin;
@@ -11,7 +11,7 @@ use tokio::time::Sleep;
 /// Bytes a second.
 const LEAST_RATE: f64 = 16.0 * 1024.0;
 
-/// What moved in the window that is open. Only time in which the service waited for the client counts.
+/// Bytes in the open window. Only time in which the service waited for the client counts.
 #[derive(Debug)]
 pub struct Pace {
     window: Duration,
@@ -24,7 +24,7 @@ impl Pace {
         Pace { window, waited: Duration::ZERO, moved: 0 }
     }
 
-    /// Counts bytes that moved after a wait; false where a window is over in which too few did.
+    /// Counts bytes transferred after a wait; false if a window with too few is over.
     pub fn keeps(&mut self, bytes: usize, waited: Duration) -> bool {
         self.moved += bytes;
         self.waited += waited;
@@ -42,11 +42,11 @@ impl Pace {
     }
 }
 
-/// A connection whose client has to take what it is sent.
+/// A connection whose client has to read at a minimum rate.
 pub struct Paced<S> {
     stream: S,
     pace: Pace,
-    /// Since when nothing more could be sent, and when the window will be over.
+    /// Since when nothing more could be sent, and the end of the window.
     blocked: Option<(Instant, Pin<Box<Sleep>>)>,
 }
 
@@ -55,7 +55,7 @@ impl<S> Paced<S> {
         Paced { stream, pace: Pace::new(window), blocked: None }
     }
 
-    /// What came of an attempt to send: an error where the client has taken too little for too long.
+    /// The result of an attempt to send: an error if the client has read too slowly.
     fn sent(
         &mut self,
         context: &mut Context<'_>,
@@ -86,7 +86,7 @@ impl<S> Paced<S> {
 }
 
 fn too_slow() -> io::Error {
-    io::Error::new(io::ErrorKind::TimedOut, "the client takes its answer too slowly")
+    io::Error::new(io::ErrorKind::TimedOut, "the client reads its response too slowly")
 }
 
 impl<S: AsyncRead + Unpin> AsyncRead for Paced<S> {

@@ -1,4 +1,4 @@
-//! Packages of the clients and their example page, as files of a folder that the operator names.
+//! Client packages and their example page, as files of a folder that the operator names.
 
 use std::path::{Path, PathBuf};
 
@@ -18,12 +18,12 @@ pub fn router() -> Resources {
     Resources::new().open(routes!(clients)).open(routes!(client))
 }
 
-/// What there is to install, each as a link.
+/// The installable packages, each as a link.
 #[utoipa::path(
     get, path = "/clients", operation_id = "list_clients", tag = "about",
     responses(
         (status = 200, description = "the page", body = String, content_type = "text/html"),
-        (status = 404, description = "the service has no folder of clients, or there is nothing in it"),
+        (status = 404, description = "the service has no folder of clients, or it is empty"),
     )
 )]
 async fn clients(service: Service) -> ApiResult {
@@ -39,7 +39,7 @@ async fn clients(service: Service) -> ApiResult {
     Ok(Html(plain_page("clients", &body)).into_response())
 }
 
-/// A file of the clients: a package for pip or npm, or a part of the example page.
+/// A client file: a package for pip or npm, or a part of the example page.
 #[utoipa::path(
     get, path = "/clients/{file}", operation_id = "download_client", tag = "about",
     params(("file" = String, Path, description = "a name of the list")),
@@ -70,8 +70,8 @@ fn not_built(detail: &str) -> ApiError {
     ApiError::new(ErrorCode::ClientsNotBuilt, detail)
 }
 
-/// The names of the files of the folder itself, in their order. What is no plain file, or has another name than packages
-/// and pages have, is not served: no link leads out of the folder.
+/// The names of the files directly in the folder, in their order. Anything but a plain file with a name like packages
+/// and pages have is not served: no link leads out of the folder.
 fn names(folder: &Path) -> Vec<String> {
     let entries = std::fs::read_dir(folder).into_iter().flatten().filter_map(Result::ok);
     let files = entries.filter(|entry| entry.file_type().is_ok_and(|kind| kind.is_file()));

@@ -1,4 +1,4 @@
-//! Web page for planners: the bundle that `web/build` makes of `web/`, within the program, so that it needs no other
+//! Web page for planners: the bundle that `web/build` makes of `web/`, embedded in the program, so that it needs no other
 //! host.
 
 use axum::http::{HeaderMap, header};

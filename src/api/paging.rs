@@ -1,4 +1,4 @@
-//! Lists in pages, each with the cursor of the next.
+//! Lists in pages, each with the cursor of the next one.
 
 use axum::http::header;
 use axum::response::Response;
@@ -15,7 +15,7 @@ use super::with_header;
 const LONGEST_PAGE: u32 = 200;
 const USUAL_PAGE: u32 = 50;
 
-/// The parameters of a list that has no others.
+/// The parameters of a list without others.
 #[derive(Deserialize, IntoParams)]
 #[serde(deny_unknown_fields)]
 #[into_params(parameter_in = Query)]
@@ -32,7 +32,7 @@ impl PageParameters {
         Page::new(self.cursor.as_deref(), self.limit)
     }
 
-    /// The page of a list whose rows have names of another kind.
+    /// The page of a list whose rows have other keys.
     pub fn page_by(&self, is_name: fn(&str) -> bool) -> ApiResult<Page> {
         let limit = checked_limit(self.limit)?;
         let name = |text: &str| is_name(text).then(|| text.to_owned());
@@ -41,9 +41,9 @@ impl PageParameters {
     }
 }
 
-/// Which page of a list.
+/// The page of a list.
 pub struct Page {
-    /// The last id of the page before.
+    /// The last id of the previous page.
     pub after: Option<String>,
     pub limit: usize,
 }
@@ -55,7 +55,7 @@ impl Page {
         Ok(Page { after, limit: limit as usize })
     }
 
-    /// One row more than the page holds shows whether there is another page.
+    /// One row more than the page, to see whether there is another page.
     pub fn rows(&self) -> i64 {
         self.limit as i64 + 1
     }
@@ -69,7 +69,7 @@ impl Page {
         rows.last().map(|row| URL_SAFE_NO_PAD.encode(id_of(row)))
     }
 
-    /// Tells the next page, where there is one, beside a body that has no room for it: `Link` of RFC 8288.
+    /// The header with the next page, if there is one, for a body without cursor: `Link` of RFC 8288.
     pub fn linked(&self, answer: Response, path: &str, next: Option<String>) -> Response {
         let Some(next) = next else { return answer };
         let link = format!("<{path}?cursor={next}&limit={}>; rel=\"next\"", self.limit);
@@ -77,7 +77,7 @@ impl Page {
     }
 }
 
-/// How many rows a page has.
+/// The number of rows of a page.
 pub fn checked_limit(limit: Option<u32>) -> ApiResult<u32> {
     let limit = limit.unwrap_or(USUAL_PAGE);
     if (1..=LONGEST_PAGE).contains(&limit) {
@@ -87,12 +87,12 @@ pub fn checked_limit(limit: Option<u32>) -> ApiResult<u32> {
     Err(ApiError::invalid_parameter("limit", detail))
 }
 
-/// What a cursor names, where it is of the kind that the rows of the list are named by.
+/// The key in a cursor, if it is of the kind of this list.
 fn read_cursor(cursor: &str, name: impl Fn(&str) -> Option<String>) -> ApiResult<String> {
     let text = URL_SAFE_NO_PAD.decode(cursor).ok();
     text.and_then(|text| String::from_utf8(text).ok())
         .and_then(|text| name(&text))
-        .ok_or_else(|| ApiError::invalid_parameter("cursor", "the cursor is none of ours"))
+        .ok_or_else(|| ApiError::invalid_parameter("cursor", "the cursor is not of this list"))
 }
 
 #[cfg(test)]

@@ -28,7 +28,7 @@ impl<T: DeserializeOwned, S: Sync> FromRequestParts<S> for Parameters<T> {
     }
 }
 
-/// The one id of the path. What is not an id names nothing.
+/// The only id of the path. Other texts are not found.
 pub struct Id(pub String);
 
 impl<S: Send + Sync> FromRequestParts<S> for Id {
@@ -115,7 +115,7 @@ async fn path_texts<S: Send + Sync>(parts: &mut Parts, state: &S) -> ApiResult<V
     Ok(parameters.iter().map(|(_, text)| text.to_owned()).collect())
 }
 
-/// An id in its one spelling.
+/// An id in canonical form.
 pub fn id(text: &str) -> Option<String> {
     let id = Uuid::try_parse(text).ok()?.to_string();
     id.eq_ignore_ascii_case(text).then_some(id)

@@ -17,7 +17,7 @@ pub struct FairSemaphore(fair_semaphore::FairSemaphore);
 pub struct Permit(fair_semaphore::Permit);
 
 impl FairSemaphore {
-    /// `what` is what the places are for, in the words of the metrics; `most` requests of one tenant wait.
+    /// `what` is the use of the permits, as in the metrics; at most `most` requests of one tenant wait.
     pub fn new(what: &'static str, places: usize, most: usize) -> FairSemaphore {
         FairSemaphore(fair_semaphore::FairSemaphore::new(what, places, most))
     }
@@ -25,15 +25,15 @@ impl FairSemaphore {
     /// Waits for a permit for a request of a tenant.
     pub async fn acquire(&self, tenant: &str) -> ApiResult<Permit> {
         self.0.acquire(tenant).await.map(Permit).map_err(|fair_semaphore::Full { most }| {
-            let detail = format!("{most} requests of this tenant wait for their turn already");
+            let detail = format!("{most} requests of this tenant are waiting already");
             Problem::new(ErrorCode::Busy, detail).with("limit", most).into()
         })
     }
 }
 
 impl Permit {
-    /// Runs work that takes a processor for long on a thread of its own, which gives way to those that answer. The turn
-    /// lasts until the work is done, also where its client has gone.
+    /// Runs long computations on a separate thread of lower priority than those that respond. The permit
+    /// is held until the work is done, even if its client has disconnected.
     pub async fn compute<T: Send + 'static>(
         &self,
         work: impl FnOnce() -> T + Send + 'static,

@@ -1,6 +1,6 @@
 //! Static pages without a script, in the colours of the page for planners.
 
-/// Its colours, light and dark.
+/// Light and dark colours.
 const PALETTE: &str = include_str!("../../web/dist/assets/palette.css");
 
 const STYLE: &str = "
@@ -22,7 +22,7 @@ tr:target td { background: var(--warn-ground); color: var(--warn-ink); }
 @media (max-width: 760px) { main { padding: .8em; } td:first-child { white-space: normal; overflow-wrap: anywhere; } th, td { padding: .35em .5em; } }
 ";
 
-/// A page of its own with a way back to the one at `/`; `body` is HTML.
+/// A separate page with a link back to the one at `/`; `body` is HTML.
 pub fn plain_page(title: &str, body: &str) -> String {
     format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\

@@ -1,4 +1,4 @@
-//! Plans stored with their case. A plan may as well be part of the job that uses it.
+//! Plans stored with their case. A plan may also be part of the job that uses it.
 
 use axum::extract::Request;
 use axum::http::{HeaderMap, StatusCode, header};
@@ -28,7 +28,7 @@ pub fn router() -> Resources {
         .json_only()
 }
 
-/// A plan as it is kept.
+/// A stored plan.
 #[derive(Serialize, ToSchema)]
 pub struct PlanView {
     pub id: String,
@@ -70,7 +70,7 @@ async fn row_of(service: &Service, case: &str, id: &str) -> ApiResult<PlanRow> {
     row.ok_or_else(|| ApiError::not_found("plan of this case"))
 }
 
-/// The plan of a body; its form and name are checked here, what it means with the case when it is carried out.
+/// The plan of a body; its form and name are checked here, its meaning with the case when a job uses it.
 async fn read(service: &Service, request: Request) -> ApiResult<String> {
     let bytes = body::json(service, request).await?;
     let plan: PlanDocument = strict::parse(&bytes, &service.limits)?;
@@ -80,14 +80,14 @@ async fn read(service: &Service, request: Request) -> ApiResult<String> {
     serde_json::to_string(&plan).map_err(ApiError::internal)
 }
 
-/// Keeps a plan with its case.
+/// Stores a plan with its case.
 #[utoipa::path(
     post, path = "/v1/cases/{id}/plans", operation_id = "create_plan", tag = "plans",
     params(
         ("id" = uuid::Uuid, Path, description = "the case"),
         (
             "Idempotency-Key" = Option<String>, Header, min_length = 1, max_length = 255, pattern = r"^[!-~]([\t -~]*[!-~])?$",
-            description = "a word of the client's, so that the request may be sent again"
+            description = "a unique word of the client, to repeat the request safely"
         ),
     ),
     request_body = PlanDocument,
@@ -146,12 +146,12 @@ async fn show(service: Service, PlanPath { case, id }: PlanPath, headers: Header
     answer(StatusCode::OK, &row)
 }
 
-/// Replaces a plan. Jobs that were accepted keep the plan they were accepted with.
+/// Replaces a plan. Accepted jobs keep the plan of their acceptance.
 #[utoipa::path(
     put, path = "/v1/cases/{id}/plans/{plan}", operation_id = "replace_plan", tag = "plans",
     params(
         ("id" = uuid::Uuid, Path, description = "the case"), ("plan" = uuid::Uuid, Path, description = "the plan"),
-        ("If-Match" = String, Header, description = "the version that is meant, or *"),
+        ("If-Match" = String, Header, description = "the version to change, or *"),
     ),
     request_body = PlanDocument,
     responses(
@@ -174,12 +174,12 @@ async fn replace(
     answer(StatusCode::OK, &row_of(&service, &case, &id).await?)
 }
 
-/// Deletes a plan. Jobs that were accepted keep it.
+/// Deletes a plan. Accepted jobs keep it.
 #[utoipa::path(
     delete, path = "/v1/cases/{id}/plans/{plan}", operation_id = "remove_plan", tag = "plans",
     params(
         ("id" = uuid::Uuid, Path, description = "the case"), ("plan" = uuid::Uuid, Path, description = "the plan"),
-        ("If-Match" = String, Header, description = "the version that is meant, or *"),
+        ("If-Match" = String, Header, description = "the version to change, or *"),
     ),
     responses(
         (status = 204, description = "deleted"),

@@ -1,4 +1,4 @@
-//! `Prefer: wait=n` (RFC 7240): how long a client waits for a job to end.
+//! `Prefer: wait=n` (RFC 7240): the wait of a client for the end of a job.
 
 use std::time::Duration;
 
@@ -14,13 +14,13 @@ use crate::schema::job::JobStatus;
 use crate::schema::wire::problem::Problem;
 use crate::store::JobRow;
 
-/// Rows are looked at this often even when nothing was announced: another process may have changed them.
+/// Interval of queries without notifications: another process may have changed rows.
 const LOOK: Duration = Duration::from_secs(1);
 
-/// How long a client had better wait before it asks again.
+/// The advised delay before a client retries.
 pub const RETRY_AFTER_S: u32 = 1;
 
-/// The seconds that a client asks for, at most `cap`; `None` when it does not ask or asks for nonsense.
+/// The requested seconds, at most `cap`; `None` if absent or invalid.
 pub fn requested_wait(headers: &HeaderMap, cap: u32) -> Option<u32> {
     headers
         .get_all("prefer")
@@ -33,14 +33,14 @@ pub fn requested_wait(headers: &HeaderMap, cap: u32) -> Option<u32> {
         .map(|seconds| u32::try_from(seconds).unwrap_or(u32::MAX).min(cap))
 }
 
-/// Tells the wait that was granted.
+/// Adds the header of the granted wait.
 pub fn with_wait(answer: Response, wait: Option<u32>) -> Response {
     let Some(wait) = wait else { return answer };
     with_header(answer, HeaderName::from_static("preference-applied"), &format!("wait={wait}"))
 }
 
-/// Waits until a job has ended, is gone, the time is up, the client has left or the process is about to stop, and tells
-/// how it is then.
+/// Waits until a job has ended or is gone, the time is up, the client has left or the process is about to stop, and returns
+/// its state then.
 pub async fn wait_for_end(service: &Service, id: &str, seconds: u32) -> ApiResult<Option<JobRow>> {
     let store = &service.store;
     let mut stopping = service.streams.stopping();
@@ -64,7 +64,7 @@ pub async fn wait_for_end(service: &Service, id: &str, seconds: u32) -> ApiResul
     }
 }
 
-/// The job, when it has results; a client that prefers to wait for them does so.
+/// The job, if it has results; waits for them on a client's preference.
 pub(super) async fn successful(
     service: &Service,
     id: &str,

@@ -1,8 +1,8 @@
-//! Rate limit: requests of a client in a minute, and headers with the number that is left
+//! Rate limit: requests of a client per minute, and headers with the remaining number
 //! (draft-ietf-httpapi-ratelimit-headers-10).
 //!
-//! A bucket holds a minute's worth of requests and fills evenly, so that short bursts pass and long ones
-//! settle at the allowed rate. Source: the generic cell rate algorithm, ITU-T I.371, 2004, annex A.
+//! A bucket has the requests of one minute and fills evenly, so that short bursts pass and long ones
+//! are limited to the allowed rate. Source: the generic cell rate algorithm, ITU-T I.371, 2004, annex A.
 
 use std::collections::HashMap;
 use std::sync::{Mutex, PoisonError};
@@ -17,7 +17,7 @@ use crate::schema::ErrorCode;
 use crate::schema::wire::problem::Problem;
 
 const WINDOW: Duration = Duration::from_secs(60);
-/// Clients that are remembered at once; above it those with a full bucket are forgotten.
+/// The most clients with state; above it those with a full bucket are dropped.
 const REMEMBERED: usize = 10_000;
 
 /// The buckets of all clients.
@@ -27,7 +27,7 @@ pub struct Rates {
     full: Mutex<HashMap<Client, Instant>>,
 }
 
-/// What a client has left.
+/// The remaining requests of a client.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RateAllowance {
     per_minute: u32,
@@ -42,7 +42,7 @@ impl Rates {
         Rates { per_minute, full: Mutex::default() }
     }
 
-    /// Takes one request out of the bucket of a client; `None` without a limit.
+    /// Takes one request from the bucket of a client; `None` without a limit.
     pub fn take(&self, client: Client) -> Result<Option<RateAllowance>, ApiError> {
         self.take_at(client, Instant::now())
     }
@@ -80,7 +80,7 @@ impl Rates {
 }
 
 impl RateAllowance {
-    /// Writes the headers of the rate limit into the answer.
+    /// Adds the headers of the rate limit to the response.
     pub fn tell(&self, response: &mut Response) {
         let policy = format!("\"requests\";q={};w={}", self.per_minute, WINDOW.as_secs());
         let left = format!("\"requests\";r={};t={}", self.requests, self.reset_s);

@@ -1,4 +1,4 @@
-//! The report of a study: as JSON, table, test results or chart, judged against any earlier study.
+//! The report of a study: as JSON, table, test results or chart, judged against a selected baseline.
 
 use axum::http::{HeaderMap, StatusCode, header};
 use axum::response::IntoResponse;
@@ -67,20 +67,20 @@ impl ReportFormat {
 #[serde(deny_unknown_fields)]
 #[into_params(parameter_in = Query)]
 struct ReportParameters {
-    /// Default: what the header Accept likes best, else `json`.
+    /// Default: the preferred type of the header Accept, else `json`.
     #[param(inline)]
     format: Option<ReportFormat>,
-    /// Judges the study again, against the study of this job. Default: the baseline of its spec.
+    /// Judges the study again, with the study of this job as baseline. Default: the baseline of its spec.
     #[param(format = Uuid)]
     baseline: Option<String>,
 }
 
-/// The report of a study: every row with its time and its error, the fronts, comparisons of variants, and the outcome:
-/// `pass`, `worse`, `incomplete` or `no-baseline`. A row is worse where it exceeds a threshold of the spec, where its p95
-/// error grew by more than 5 % and 1e-4 mm over the baseline, or its time by more than half and 20 ms, unless the spec
-/// states other ratios; a row that fails is worse unless it is expected to or failed the same way before.
-/// The test results have a failure or an error exactly where the outcome is not `pass`. The chart shows all scenes;
-/// a study of several has one for each among its files.
+/// The report of a study: every row with its time and its error, Pareto fronts, comparisons of variants, and the outcome:
+/// `pass`, `worse`, `incomplete` or `no-baseline`. A row is worse if it exceeds a threshold of the spec, if its p95
+/// error grew by more than 5 % and 1e-4 mm over the baseline, or its iterations by more than half and 5, unless the spec
+/// states other ratios, or its time by a stated ratio and 20 ms; a failed row is worse unless expected or as before.
+/// The test results have a failure or an error exactly if the outcome is not `pass`. The chart shows all scenes;
+/// a study of several has one for each in its files.
 #[utoipa::path(
     get, path = "/v1/jobs/{id}/report", operation_id = "show_report", tag = "jobs",
     params(
@@ -93,9 +93,9 @@ struct ReportParameters {
             (ReportDocument = "application/json"), (String = "text/csv"), (String = "application/xml"),
             (String = "image/svg+xml")),
             headers(("Facies-Outcome" = String, description = "pass, worse, incomplete or no-baseline"))),
-        (status = 206, description = "the range that was asked for", content((Vec<u8> = "*/*"))),
+        (status = 206, description = "the requested range", content((Vec<u8> = "*/*"))),
         (status = 304, description = "the client has it already"),
-        (status = 404, description = "there is no such job, it is no study, or it has not ended"),
+        (status = 404, description = "there is no such job, it is not a study, or has not ended"),
         (status = 416, description = "the range is outside the report"),
         (status = 422, description = "the job failed or was dismissed"),
     )
@@ -157,7 +157,7 @@ async fn report(
     Ok(told(answer, outcome))
 }
 
-/// The format that is asked for; the parameter is more explicit than the header.
+/// The requested format; the parameter takes precedence over the header.
 fn wanted(parameters: &ReportParameters, headers: &HeaderMap) -> ApiResult<ReportFormat> {
     if let Some(format) = parameters.format {
         return Ok(format);
@@ -176,7 +176,7 @@ async fn file(service: &Service, job: &str, name: &str) -> ApiResult<FileRow> {
     row.ok_or_else(|| ApiError::internal(format!("a study without {name}")))
 }
 
-/// The report of a job, where it has one.
+/// The report of a job, if it has one.
 pub(super) async fn stored_report(
     service: &Service,
     job: &str,
@@ -194,8 +194,8 @@ pub(super) async fn stored_report(
     Ok(Some((row, report)))
 }
 
-/// The report of an earlier study with the same rows, if its cases are all among those of the new one: it is kept with the
-/// new one's document, and goes with these.
+/// The report of an earlier study with the same rows, if its cases are all among those of the new one: it is stored with the
+/// new one's document, and erased with these.
 pub(super) async fn with_rows(
     service: &Service,
     rows_key: &str,

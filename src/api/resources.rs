@@ -10,7 +10,7 @@ use super::access::{Access, Declared};
 use super::middleware;
 use crate::schema::key::Scope;
 
-/// Routes with their descriptions and what each of them takes.
+/// Routes with their descriptions and access requirements.
 pub struct Resources {
     pub router: OpenApiRouter<Service>,
     pub declared: Declared,
@@ -21,22 +21,22 @@ impl Resources {
         Resources { router: OpenApiRouter::new(), declared: Declared::default() }
     }
 
-    /// Routes that answer without a key.
+    /// Routes without a key.
     pub fn open(self, routes: UtoipaMethodRouter<Service>) -> Resources {
         self.with(Access::Open, routes)
     }
 
-    /// Routes that change nothing.
+    /// Read-only routes.
     pub fn reads(self, scope: Scope, routes: UtoipaMethodRouter<Service>) -> Resources {
         self.with(Access::reads(scope), routes)
     }
 
-    /// Routes that change something.
+    /// Routes with changes.
     pub fn changes(self, scope: Scope, routes: UtoipaMethodRouter<Service>) -> Resources {
         self.with(Access::changes(scope), routes)
     }
 
-    /// Declares routes that a library answers to all.
+    /// Declares open routes of a library.
     pub fn pages(mut self, routes: &[&str]) -> Resources {
         for route in routes {
             self.declared.add(route, Method::GET, Access::Open);
@@ -53,7 +53,7 @@ impl Resources {
         Resources { router: self.router.routes(routes), declared: self.declared }
     }
 
-    /// The same routes for clients that take JSON only.
+    /// The same routes, which produce JSON only.
     pub fn json_only(self) -> Resources {
         let router = self.router.route_layer(from_fn(middleware::accepts_json));
         Resources { router, ..self }

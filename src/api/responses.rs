@@ -1,4 +1,4 @@
-//! Plan responses: the columns for clients that add them up themselves, and the skin for one plan.
+//! Plan responses: the columns for clients that apply plans themselves, and the skin for one plan.
 
 use std::time::Instant;
 
@@ -41,18 +41,18 @@ pub fn router() -> Resources {
 #[serde(deny_unknown_fields)]
 #[into_params(parameter_in = Query)]
 struct ResponseParameters {
-    /// The job that built the response. Default: the newest that was built for the case as it is now, with the materials of the
-    /// case where there is one, whatever order, membrane and segments its spec names; the answer says which.
+    /// The job that built the response. Default: the newest for the present version of the case, with the materials of the
+    /// case if there is one, of any order, membrane and segments; the response to the request says which.
     #[param(format = Uuid)]
     job: Option<String>,
-    /// 2: in place of the columns those of second order, little-endian i16 [column][node][xyz], which `second_order` of
-    /// the description tells how to read; 404 where the response was built to order 1. Default: 1.
+    /// 2: the columns of second order instead, little-endian i16 [column][node][xyz], which `second_order` of
+    /// the description specifies; 404 if the response was built to order 1. Default: 1.
     #[param(minimum = 1, maximum = 2)]
     order: Option<u8>,
 }
 
 impl ResponseParameters {
-    /// The file with the columns of the order asked for.
+    /// The file with the columns of the requested order.
     fn columns_file(&self) -> ApiResult<&'static str> {
         match self.order {
             None | Some(1) => Ok(COLUMNS_FILE),
@@ -69,16 +69,16 @@ impl ResponseParameters {
 #[serde(deny_unknown_fields)]
 #[into_params(parameter_in = Query)]
 struct ApplyParameters {
-    /// The job that built the response. Default: the newest that was built for the case as it is now, with the materials of the
-    /// case where there is one, whatever order, membrane and segments its spec names; the answer says which.
+    /// The job that built the response. Default: the newest for the present version of the case, with the materials of the
+    /// case if there is one, of any order, membrane and segments; the response to the request says which.
     #[param(format = Uuid)]
     job: Option<String>,
     /// The displacement in mm at which the colours of `model/gltf-binary` end; they begin at 0. Default: 10.
     #[param(minimum = 0.001, maximum = 1000.0)]
     range_mm: Option<f64>,
-    /// Whether triangles of the moved skin are looked for that pass through each other and do not at rest (warning
-    /// `skin-overlaps`): some milliseconds for each ten thousand triangles. Default: false, and the answer says that
-    /// it was not measured.
+    /// Whether to look for triangles of the moved skin that intersect and did not before (warning
+    /// `skin-overlaps`): some milliseconds for each ten thousand triangles. Default: false, and the result says that
+    /// it was not checked.
     check_skin: Option<bool>,
 }
 
@@ -95,7 +95,7 @@ impl ApplyParameters {
     }
 }
 
-/// Which response a request means.
+/// The response of a request.
 struct ResponseReference<'a> {
     case: &'a str,
     job: Option<&'a str>,
@@ -137,8 +137,8 @@ fn refusal(missing: MissingResponse) -> ApiError {
     }
 }
 
-/// The columns of a response, or how to read them. A front end that has both moves the skin without asking
-/// again: u = sum over segments of column 12 s + 4 i + j times (R - I)_ij (j < 3) or t_i (j = 3), with x
+/// The columns of a response, or their description. A front end with both moves the skin without further
+/// requests: u = sum over segments of column 12 s + 4 i + j times (R - I)_ij (j < 3) or t_i (j = 3), with x
 /// measured from the segment's centre, and of `inner_columns`, growth and muscles, after these.
 #[utoipa::path(
     get, path = "/v1/cases/{id}/response", operation_id = "show_response", tag = "responses",
@@ -147,7 +147,7 @@ fn refusal(missing: MissingResponse) -> ApiError {
         (status = 200, description = "the description; or the columns as little-endian f32 [column][node][xyz] in mm; or the skin at rest, its vertices in the order of `node_ids`", content(
             (ResponseDescription = "application/json"), (Vec<u8> = "application/octet-stream"), (Vec<u8> = "model/gltf-binary")),
             headers(("ETag" = String, description = "the hash of the content"))),
-        (status = 206, description = "the range that was asked for", content((Vec<u8> = "*/*"))),
+        (status = 206, description = "the requested range", content((Vec<u8> = "*/*"))),
         (status = 304, description = "the client has it already"),
         (status = 404, description = "there is no such case, or no response was built"),
         (status = 409, description = "the case or the program changed since the response was built"),
@@ -185,7 +185,7 @@ async fn show(
     Ok(with_header(response, HeaderName::from_static("facies-job"), &found.job))
 }
 
-/// The skin at rest as binary glTF. Its tag is that of the description, which the same job wrote.
+/// The undeformed skin as binary glTF. Its tag is that of the description, which the same job wrote.
 async fn rest(service: &Service, found: &FoundResponse, headers: &HeaderMap) -> ApiResult {
     let tag = format!("{}-rest", found.job);
     let response = if conditional::is_known(headers, &tag) {
@@ -201,12 +201,12 @@ async fn rest(service: &Service, found: &FoundResponse, headers: &HeaderMap) -> 
     Ok(with_header(response, HeaderName::from_static("facies-job"), &found.job))
 }
 
-/// The skin after a plan, in milliseconds. Segments that the plan does not name stay where they are; growth and activations
+/// The skin after a plan, computed in milliseconds. Segments that the plan does not name stay; growth and activations
 /// of the plan need their columns in the response. A response of order
-/// 1 is exact within linear elasticity; what that leaves out is estimated from samples of the second order along and about
+/// 1 is exact within linear elasticity; the linearisation error is estimated from samples of the second order along and about
 /// each axis of each segment (of quadratic tetrahedra by a rule of thumb). A response of order 2 adds the second-order term of finite
-/// strain, tells its mean length, and estimates the third order from samples. Above 0.5 mm the answer carries the
-/// warning `outside-linear-range` or `outside-second-order-range`. Beside a binary body the numbers stand in headers.
+/// strain, reports its mean length, and estimates the third order from samples. Out of range the result has the
+/// warning `outside-linear-range` or `outside-second-order-range`. With a binary body the numbers are in headers.
 #[utoipa::path(
     post, path = "/v1/cases/{id}/response/apply", operation_id = "apply_response", tag = "responses",
     params(("id" = uuid::Uuid, Path, description = "the case"), ApplyParameters),
@@ -218,15 +218,15 @@ async fn rest(service: &Service, found: &FoundResponse, headers: &HeaderMap) -> 
                 ("Facies-Job" = String, description = "the job that built the response"),
                 ("Facies-Max-Mm" = f64, description = "the largest displacement of a skin node"),
                 ("Facies-Largest-Rotation-Deg" = f64, description = "the largest rotation of a segment"),
-                ("Facies-Order" = u8, description = "that of the response: 2 where the second-order term is in the displacement"),
-                ("Facies-Nonlinearity-Estimate-Mm" = f64, description = "what the displacement leaves out: of order 1 the second-order term, of order 2 the third-order term, from samples; absent where tissue grows or muscles pull"),
-                ("Facies-Within-Linear-Range" = bool, description = "whether that is at most 0.5 mm"),
+                ("Facies-Order" = u8, description = "that of the response: 2 if the displacement includes the second-order term"),
+                ("Facies-Nonlinearity-Estimate-Mm" = f64, description = "the linearisation error: of order 1 the second-order term, of order 2 the third-order term, from samples; absent if tissue grows or muscles pull"),
+                ("Facies-Within-Linear-Range" = bool, description = "as `within_linear_range`"),
                 ("Facies-Warning" = Option<String>, description = "the codes of the warnings: outside-linear-range, outside-second-order-range, nonlinearity-unknown, nothing-moves, plan-units-suspect, sliding-normal-turned, skin-overlaps, and those of the case as the response was built"),
-                ("Facies-Not-Measured" = Option<String>, description = "Codes of warnings that were not looked for: numerical-error-large, and skin-overlaps without `check_skin`"),
-                ("Server-Timing" = String, description = "milliseconds to find the response, to add up its columns, to check the skin, and to write the answer"))),
+                ("Facies-Not-Measured" = Option<String>, description = "codes of warnings that were not checked: numerical-error-large, and skin-overlaps without `check_skin`"),
+                ("Server-Timing" = String, description = "milliseconds to find the response, to add up its columns, to check the skin, and to write the result"))),
         (status = 404, description = "there is no such case, or no response was built"),
         (status = 409, description = "the case or the program changed since the response was built"),
-        (status = 422, description = "the plan asks for what the response does not know: loads, prescribed displacements, other segments, growth and muscles without a column, movements beyond the limits"),
+        (status = 422, description = "the response does not support the plan: loads, prescribed displacements, other segments, growth and muscles without a column, movements beyond the limits"),
     )
 )]
 async fn apply(
@@ -276,7 +276,7 @@ async fn apply(
     Ok(with_header(response, HeaderName::from_static("server-timing"), &times.join(", ")))
 }
 
-/// The form of an answer, and what is looked at for it.
+/// The form of a result, and the checks of it.
 #[derive(Clone, Copy)]
 struct ReplyOptions {
     media_type: &'static str,
@@ -285,7 +285,7 @@ struct ReplyOptions {
 }
 
 impl ReplyOptions {
-    /// The body of an answer.
+    /// The body of a result.
     fn encoded(
         &self,
         loaded: &LoadedResponse,
@@ -312,7 +312,7 @@ impl ReplyOptions {
     }
 }
 
-/// The numbers of an answer as headers.
+/// The numbers of a result as headers.
 fn with_summary(response: Response, job: &str, applied: &Applied) -> Response {
     let summary = &applied.summary;
     let numbers = [

@@ -45,12 +45,12 @@ async fn manifest(service: Service, Id(id): Id, headers: HeaderMap) -> ApiResult
 #[serde(deny_unknown_fields)]
 #[into_params(parameter_in = Query)]
 struct FileParameters {
-    /// The language of a report that is drawn. Default: what the header Accept-Language likes best, else `en`.
+    /// The language of a drawn report. Default: the preferred one of the header Accept-Language, else `en`.
     #[param(inline)]
     lang: Option<Language>,
 }
 
-/// One file of the results, or one of its pictures or its report, which is drawn when it is first asked for.
+/// One file of the results, or a picture or report, which is drawn when first requested.
 #[utoipa::path(
     get, path = "/v1/jobs/{id}/results/{file}", operation_id = "download_result", tag = "jobs",
     params(
@@ -60,8 +60,8 @@ struct FileParameters {
         FileParameters
     ),
     responses(
-        (status = 200, description = "the file, of the media type that the manifest says", content((Vec<u8> = "*/*"))),
-        (status = 206, description = "the range that was asked for", content((Vec<u8> = "*/*"))),
+        (status = 200, description = "the file, with the media type in the manifest", content((Vec<u8> = "*/*"))),
+        (status = 206, description = "the requested range", content((Vec<u8> = "*/*"))),
         (status = 304, description = "the client has it already"),
         (status = 404, description = "there is no such job or file, or the job has not ended"),
         (status = 416, description = "the range is outside the file"),

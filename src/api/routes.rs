@@ -2,10 +2,10 @@
 
 use super::resources::Resources;
 
-/// Where the description is shown to people.
+/// The address of the description for people.
 pub(super) const PAGES: &[&str] = &["/docs", "/docs/", "/docs/{*rest}"];
 
-/// The resources with their descriptions, before anything is laid around them.
+/// The resources with their descriptions, without middleware.
 pub(super) fn resources() -> Resources {
     Resources::new()
         .merge(super::health::router())

@@ -8,7 +8,7 @@ use axum::middleware::{from_fn, from_fn_with_state};
 use axum::{Extension, Router};
 use tower_http::catch_panic::CatchPanicLayer;
 
-/// Everything that is served.
+/// The whole router.
 pub fn router(service: Service) -> Router {
     let Resources { router, declared } = resources();
     let resources: Router<Service> = router.into();

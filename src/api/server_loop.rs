@@ -1,5 +1,5 @@
-//! HTTP server loop: connections are closed when they stall. A client that sends no request, half of one or takes
-//! nothing of its answer costs a descriptor, and the memory of the answer, for `patience` only.
+//! HTTP server loop: stalled connections are closed. A client that sends no request, half of one or reads
+//! nothing of its response costs a descriptor, and the memory of the response, for `patience` only.
 
 use std::net::SocketAddr;
 use std::pin::pin;
@@ -17,7 +17,7 @@ use hyper_util::service::TowerToHyperService;
 use tokio::net::{TcpListener, TcpStream};
 use tower::{Service as _, ServiceExt as _};
 
-/// Answers until `stop` is done, and then what has been asked by then.
+/// Serves until `stop` is done, then finishes the requests received so far.
 pub async fn serve(
     mut listener: TcpListener,
     router: Router,
@@ -52,12 +52,12 @@ pub async fn serve(
     open.shutdown().await;
 }
 
-/// Bytes of an answer that the system keeps for a client: few, so that what a client takes shows soon.
+/// Bytes of a response that the system buffers for a client: few, so that its reading rate is seen soon.
 #[cfg(target_os = "linux")]
 const SENT_AHEAD: usize = 256 << 10;
 
-/// The last piece of an answer is not held back until the client has confirmed the ones before it, and what a client does
-/// not take is not offered for ever. Elsewhere than on Linux it is.
+/// The last piece of a response does not wait until the client has acknowledged the previous ones, and data that a client does
+/// not read is not retransmitted for ever, on Linux only.
 fn prepare(stream: &TcpStream, patience: Duration) {
     if let Err(error) = stream.set_nodelay(true) {
         tracing::debug!(%error, "TCP_NODELAY");

@@ -16,15 +16,15 @@ use crate::worker::process::slot_bytes;
 use std::sync::Arc;
 use std::time::Duration;
 
-/// Meshes that are parsed at the same time, and jobs that are checked.
+/// Meshes parsed concurrently, and jobs checked.
 const PARSED_AT_ONCE: usize = 2;
 const CHECKED_AT_ONCE: usize = 2;
-/// Pages of jobs that are read and written out at the same time.
+/// Pages of jobs read and serialised concurrently.
 const LISTED_AT_ONCE: usize = 2;
-/// How long a list of jobs waits for its turn, as long as one waits for a connection to a database.
+/// How long a list of jobs waits for its permit, equal to the wait for a database connection.
 const LIST_PATIENCE: Duration = Duration::from_millis(2500);
 
-/// What every request may use.
+/// State shared by all requests.
 #[derive(Clone)]
 pub struct Service {
     pub config: Arc<Config>,
@@ -42,12 +42,12 @@ pub struct Service {
     /// Of a request that may change something.
     intent: Option<AuditIntent>,
     pub(super) rates: Arc<super::rate::Rates>,
-    /// Trusted hosts, where no key is required.
+    /// Trusted hosts, if no key is required.
     pub(super) hosts: Option<Arc<Hosts>>,
     pub streams: super::streams::Streams,
 }
 
-/// The limits that these settings give.
+/// The limits in these settings.
 pub fn limits(config: &Config) -> Limits {
     let mut limits = Limits {
         upload_bytes: config.upload_bytes as u64,
@@ -93,7 +93,7 @@ impl Service {
         }
     }
 
-    /// The same service scoped to a tenant, asked by one of its clients; what may change something is noted.
+    /// The same service scoped to a tenant, for a request of one of its clients; changes are audited.
     pub(super) fn scoped_to(
         &self,
         tenant: &str,
@@ -110,19 +110,19 @@ impl Service {
         }
     }
 
-    /// The turn of this request to parse a mesh or to write one: each may take several times its size in memory, which is
-    /// held until the turn is over.
+    /// The permit of this request to parse or write a mesh: each may take several times its size in memory, which is
+    /// held until the permit is released.
     pub(super) async fn parse_permit(&self) -> ApiResult<Permit> {
         self.parsing.acquire(self.store.tenant()).await
     }
 
-    /// Permit of this request to check a job or a case, which needs meshes that are parsed already, or small ones.
+    /// Permit of this request to check a job or a case, with parsed meshes or small ones.
     pub(super) async fn check_permit(&self) -> ApiResult<Permit> {
         self.checking.acquire(self.store.tenant()).await
     }
 
     /// Permit of this request to list jobs, whose positions are counted over the whole queue: frequent lists must not
-    /// take the database and the processors from others. Where the database answers late, the client gets
+    /// take the database and the processors from others. If the database is slow, the client gets
     /// `Retry-After`.
     pub(super) async fn list_permit(&self) -> ApiResult<Permit> {
         let permit = self.listing.acquire(self.store.tenant());
@@ -145,7 +145,7 @@ impl Service {
         self.budget.hold(Owner { tenant, client: self.client.clone() })
     }
 
-    /// Where bodies and copies lie.
+    /// The place of bodies and copies.
     pub(super) fn ground(&self) -> Ground {
         let floor_bytes = self.config.free_space_floor_bytes;
         Ground { store: self.store.clone(), floor_bytes }

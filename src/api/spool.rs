@@ -13,10 +13,10 @@ use super::error::{ApiError, ApiResult};
 use crate::schema::wire::canonical::hex;
 use crate::store::{Store, StoreError};
 
-/// Bytes of one body in memory at a time; one that has no more never reaches the disk.
+/// Bytes of one body in memory at a time; smaller bodies are never written to disk.
 pub const IN_MEMORY: usize = 256 << 10;
 
-/// Free space that is left alone.
+/// Reserved free space.
 #[derive(Clone)]
 pub struct Ground {
     pub store: Store,
@@ -35,7 +35,7 @@ impl Ground {
     }
 }
 
-/// A body that comes.
+/// An incoming body.
 pub struct Spool {
     ground: Ground,
     held: Arc<ByteReservation>,
@@ -45,7 +45,7 @@ pub struct Spool {
     bytes: u64,
 }
 
-/// A body that has come.
+/// A received body.
 pub struct SpooledBody {
     content: Content,
     pub bytes: u64,
@@ -58,7 +58,7 @@ enum Content {
     File(File),
 }
 
-/// What is written at once, on a thread that may block.
+/// Bytes to write at once, on a thread that may block.
 struct Batch {
     file: Option<File>,
     hasher: Sha256,
@@ -71,7 +71,7 @@ impl Spool {
         Spool { ground, held, buffer, hasher, file: None, bytes: 0 }
     }
 
-    /// Takes what came next.
+    /// Appends the next bytes.
     pub async fn push(&mut self, frame: &[u8]) -> ApiResult<()> {
         self.bytes += frame.len() as u64;
         self.buffer.extend_from_slice(frame);
@@ -133,7 +133,7 @@ impl SpooledBody {
         }
     }
 
-    /// Small as it is known to be.
+    /// The bytes of a body known to be small.
     pub async fn into_bytes(mut self) -> ApiResult<Bytes> {
         if let Content::Memory(bytes) = self.content {
             return Ok(bytes);

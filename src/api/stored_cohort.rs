@@ -1,4 +1,4 @@
-//! A stored cohort that a job names: its present members, each with consent for this use.
+//! A stored cohort named by a job: its present members, each with consent for this use.
 
 use std::collections::BTreeMap;
 
@@ -11,7 +11,7 @@ use crate::schema::cohort::stored::{
 };
 use crate::schema::{CohortDocument, ErrorCode, LearnDocument};
 
-/// A stored cohort as it is now, each of whose members may be used so.
+/// A stored cohort in its present version, with consent of all members for this use.
 pub struct Members {
     pub version: CohortVersionDocument,
     /// With their numbers.
@@ -26,7 +26,7 @@ impl Members {
             None => None,
         };
         let unknown = || {
-            let detail = "there is no such cohort: GET /v1/cohorts lists those there are";
+            let detail = "there is no such cohort: GET /v1/cohorts lists the existing ones";
             fault(AT, ErrorCode::UnknownCohort, detail)
         };
         let row = row.ok_or_else(unknown)?;

@@ -12,7 +12,7 @@ use crate::schema::ErrorCode;
 use crate::schema::wire::problem::Problem;
 use axum::http::{HeaderValue, header};
 
-/// How long a client had better wait for one of its streams to end.
+/// The advised wait for one of a client's streams to end.
 const RETRY_AFTER_S: u32 = 10;
 
 /// Counts open streams, and ends them.
@@ -28,7 +28,7 @@ impl Streams {
         Streams { most, open: Arc::default(), stopping: watch::Sender::new(false) }
     }
 
-    /// Ends what is open: streams, and requests that wait for a job.
+    /// Ends open streams, and requests that wait for a job.
     pub fn stop(&self) {
         self.stopping.send_replace(true);
     }
@@ -38,7 +38,7 @@ impl Streams {
         self.stopping.subscribe()
     }
 
-    /// A place for one more stream of a client.
+    /// A permit for one more stream of a client.
     pub fn enter(&self, client: Client) -> ApiResult<StreamPlace> {
         let mut open = self.open.lock().unwrap_or_else(PoisonError::into_inner);
         let count = open.entry(client.clone()).or_insert(0);
@@ -53,7 +53,7 @@ impl Streams {
     }
 }
 
-/// The place of an open stream; free again when dropped.
+/// The permit of an open stream; released when dropped.
 pub struct StreamPlace {
     client: Client,
     open: Arc<Mutex<HashMap<Client, u32>>>,

@@ -1,5 +1,5 @@
-//! Jobs on a case whose mesh is being made: accepted with the checks that need no mesh, and claimed once it is there.
-//! Their rows lack the case, which the claim puts in.
+//! Jobs on a case whose mesh is being made: accepted with the checks that need no mesh, and claimed once it exists.
+//! Their rows lack the case, which the claim inserts.
 
 use serde_json::{Value, json};
 
@@ -66,7 +66,7 @@ impl Waiting<'_> {
         self.accept(service, &JobInput::Optimise(input), JobRequest { asked, tags, named }).await
     }
 
-    /// Checks what needs no mesh, in the places where it stands on a case that has one.
+    /// Checks that need no mesh, with the same places as on a case with one.
     fn check(
         &self,
         service: &Service,
@@ -121,16 +121,16 @@ impl Waiting<'_> {
     }
 }
 
-/// What a job asks for.
+/// The content of a job.
 struct JobRequest {
-    /// All of it that decides the result, but for the case.
+    /// All of it that determines the result, except the case.
     asked: Value,
     tags: Vec<String>,
     /// Meshes, and bones of the case.
     named: Vec<String>,
 }
 
-/// Stands for the case until there is one.
+/// Placeholder of the case until there is one.
 fn to_come() -> CaseDocument {
     CaseDocument::of_volume("", LengthUnit::Mm)
 }

@@ -1,4 +1,4 @@
-//! The clock of a job: the wall time of each phase, and the budget of all of them.
+//! The clock of a job: the wall time of each phase, and the total time budget.
 
 use std::sync::Mutex;
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
@@ -9,7 +9,7 @@ use crate::schema::wire::date::date_and_time;
 use mechanics::prediction::{ModelError, SolverError};
 use mechanics::progress::{Phase, Progress};
 
-/// Passes progress on, takes the time of the phases, and asks the work to stop once its time is used up.
+/// Forwards progress, measures the time of the phases, and cancels the work once its time is used up.
 pub struct Observed<'a> {
     inner: &'a dyn Progress,
     started: Instant,
@@ -49,7 +49,7 @@ impl<'a> Observed<'a> {
         Ok(())
     }
 
-    /// What a prediction that failed means for the job: one that stopped may have run out of time.
+    /// The job error of a failed prediction: a cancelled one may have run out of time.
     pub fn judge(&self, error: ModelError) -> JobError {
         match error {
             ModelError::Solver(SolverError::Stopped) => self.stopped(),
@@ -93,7 +93,7 @@ impl<'a> Observed<'a> {
         self.started.elapsed().as_secs_f64()
     }
 
-    /// What is left of the budget, in s.
+    /// The remaining budget, in s.
     pub fn left_s(&self) -> f64 {
         self.budget.saturating_sub(self.started.elapsed()).as_secs_f64()
     }
@@ -143,7 +143,7 @@ pub fn now_rfc3339() -> String {
     format!("{}Z", date_and_time(i64::try_from(since.as_secs()).unwrap_or(i64::MAX)))
 }
 
-/// The peak memory of this process in MB, where the system tells.
+/// The peak memory of this process in MB, if the system reports it.
 pub fn peak_rss_mb() -> Option<f64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;

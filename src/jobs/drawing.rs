@@ -17,7 +17,7 @@ use crate::schema::predict::result::{ResultDocument, StatisticsDocument};
 use crate::schema::{Language, Limits, ReportDocument};
 use mechanics::mesh::TriangleSurface;
 
-/// A job that has ended well and has something to show.
+/// A successful job with something to draw.
 pub struct Finished {
     job: String,
     result: ResultDocument,
@@ -31,7 +31,7 @@ enum MadeOf {
 }
 
 impl Finished {
-    /// What a job found, if there is a picture or a report of it; `study` is the report of a study.
+    /// The result of a job, if there is a picture or a report of it; `study` is the report of a study.
     pub fn of_job(
         job: &str,
         input: JobInput,
@@ -57,12 +57,12 @@ impl Finished {
         Some(Finished { job: job.to_owned(), result, made_of })
     }
 
-    /// Whether there is such a picture of a job of its kind.
+    /// Whether a job of its kind has this picture.
     pub fn has(&self, picture: PictureName) -> bool {
         self.has_skin() || PictureName::REPORTS.contains(&picture)
     }
 
-    /// Whether pictures need the skin that the job wrote.
+    /// Whether pictures need the written skin of the job.
     pub fn has_skin(&self) -> bool {
         matches!(self.made_of, MadeOf::Prediction(..))
     }
@@ -118,7 +118,7 @@ impl Finished {
         }
     }
 
-    /// The skin that the job wrote, which has the points of the skin at rest.
+    /// The written skin of the job, with the points of the undeformed skin.
     fn skin(
         &self,
         prepared: &Prepared,

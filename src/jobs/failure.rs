@@ -15,7 +15,7 @@ use mechanics::prediction::{InvertedCell, ModelError, SolverError};
 use mechanics::study::StudyError;
 use mechanics::validation::StatisticsError;
 
-/// Residuals of a diverged solver that are reported; a history has one for each iteration.
+/// The most reported residuals of a diverged solver, from one for each iteration.
 const TOLD_RESIDUALS: usize = 200;
 
 #[derive(Debug, thiserror::Error)]
@@ -83,7 +83,7 @@ impl JobError {
         }
     }
 
-    /// The stable word of the error catalogue.
+    /// The code of the error catalogue.
     pub fn kind(&self) -> ErrorCode {
         match self {
             JobError::Refused(problem) => problem.code,
@@ -106,7 +106,7 @@ impl JobError {
         }
     }
 
-    /// The `error` of a failed job. Names of files and systems stay in the log.
+    /// The `error` of a failed job. Names of files and systems are only in the log.
     pub fn to_document(&self) -> JobErrorDocument {
         let detail = match self {
             JobError::Write { .. } => "a result file could not be written".to_owned(),
@@ -161,7 +161,7 @@ fn class_of(error: &AnatomyError) -> ErrorClass {
     }
 }
 
-/// Error document of an equilibrium that was not found.
+/// Error document of a missed equilibrium.
 fn no_equilibrium(error: &ModelError) -> Value {
     match error {
         ModelError::Inverted(InvertedCell { cell }) => json!({ "element": cell }),

@@ -10,7 +10,7 @@ pub fn fetch(sources: &dyn MeshSource, id: &str, at: &Pointer) -> Result<StoredM
     found(sources.mesh(id), id, at)
 }
 
-/// A mesh that is not there or not a mesh is a mistake at a place of the documents.
+/// A missing or wrong mesh is a mistake at a place of the documents.
 pub fn found(
     result: Result<StoredMesh, SourceError>,
     id: &str,
@@ -29,7 +29,7 @@ pub fn found(
     }
 }
 
-/// An image stands at a place where a mesh is needed.
+/// An image at a place where a mesh is needed.
 pub fn no_surface(at: &Pointer) -> JobError {
     Problem::at(at, ErrorCode::WrongMesh, "this is an image, and a mesh is needed").into()
 }

@@ -13,7 +13,7 @@ use mechanics::cephalometry::{
 use mechanics::mesh::Vector;
 
 type NamedPoints = BTreeMap<String, Vector>;
-/// Where a segment of that name takes a point; nowhere where it stays.
+/// The planned position of a point of a segment of this name; none if it stays.
 type SegmentMotion<'a> = &'a dyn Fn(&str, &Vector) -> Option<Vector>;
 type BoneLandmarks = BTreeMap<String, BoneLandmarkOfCaseDocument>;
 
@@ -32,14 +32,14 @@ pub struct Skin {
     pub predicted: Option<NamedPoints>,
 }
 
-/// A head by its landmarks, with norms that take the place of those that are built in.
+/// A head by its landmarks, with norms that replace built-in ones.
 pub struct Head {
     pub bone: Bone,
     pub skin: Skin,
     pub norms: NormDocuments,
 }
 
-/// A value, or what is like one, at each stage.
+/// A value or similar at each stage.
 struct Stages<T> {
     before: T,
     planned: Option<T>,
@@ -48,25 +48,25 @@ struct Stages<T> {
 }
 
 impl Bone {
-    /// Before anything is done.
+    /// Before the operation.
     pub fn before(landmarks: &BoneLandmarks) -> Self {
         let places = landmarks.iter();
         let before = places.map(|(name, own)| (name.clone(), own.position_mm.into())).collect();
         Bone { before, ..Bone::default() }
     }
 
-    /// With what the movements of segments make of it.
+    /// With the values after the planned movements.
     pub fn planned(self, landmarks: &BoneLandmarks, moved: SegmentMotion) -> Self {
         Bone { planned: Some(taken(landmarks, moved)), ..self }
     }
 
-    /// With what an operation made of it.
+    /// With the values after the operation.
     pub fn performed(self, landmarks: &BoneLandmarks, moved: SegmentMotion) -> Self {
         Bone { performed: Some(taken(landmarks, moved)), ..self }
     }
 }
 
-/// Each landmark where its segment takes it.
+/// Each landmark moved with its segment.
 fn taken(landmarks: &BoneLandmarks, moved: SegmentMotion) -> NamedPoints {
     let taken = |(name, own): (&String, &BoneLandmarkOfCaseDocument)| {
         let at = Vector::from(own.position_mm);
@@ -77,7 +77,7 @@ fn taken(landmarks: &BoneLandmarks, moved: SegmentMotion) -> NamedPoints {
 }
 
 impl Head {
-    /// What a function of landmarks is at each stage; none where it is nothing before.
+    /// A function of landmarks at each stage; none if undefined before.
     fn at<T>(&self, tissue: Tissue, of: impl Fn(&Landmarks) -> Option<T>) -> Option<Stages<T>> {
         let after =
             |places: &Option<NamedPoints>| places.as_ref().and_then(|own| of(&Landmarks(own)));
@@ -97,7 +97,7 @@ impl Head {
         })
     }
 
-    /// Every measure whose landmarks are there.
+    /// Every measure whose landmarks are all given.
     pub fn measures(&self) -> Vec<MeasureDocument> {
         MEASURES.iter().filter_map(|measure| self.measure(measure)).collect()
     }
@@ -117,7 +117,7 @@ impl Head {
         })
     }
 
-    /// That of the case, or else the one that is built in.
+    /// The norm of the case, or else the built-in one.
     fn norm(&self, measure: &str) -> Option<NormDocument> {
         let built_in = NORMS.iter().find(|norm| norm.measure == measure);
         let built_in = built_in.map(|norm| NormDocument {
@@ -128,7 +128,7 @@ impl Head {
         self.norms.get(measure).cloned().or(built_in)
     }
 
-    /// Every pair and every landmark of the middle, against the mid-sagittal plane before the operation: that of bone, or else that
+    /// Every pair and every midline landmark, relative to the mid-sagittal plane before the operation: that of bone, or else that
     /// of the skin; none without either.
     pub fn symmetry(&self) -> Vec<SymmetryDocument> {
         let (bone, skin) = (Landmarks(&self.bone.before), Landmarks(&self.skin.before));

@@ -1,4 +1,4 @@
-//! Job input: a job as it is queued, and what the inputs of all kinds share.
+//! Job input: a job as queued, and the common parts of the inputs of all kinds.
 
 use serde::{Deserialize, Serialize};
 
@@ -15,7 +15,7 @@ use super::study::StudyInput;
 use crate::schema::job_document::JobKind;
 use crate::schema::study::document::StudyKind;
 
-/// Everything that decides its result, but for the meshes.
+/// Everything that determines its result, except the meshes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 #[expect(clippy::large_enum_variant, reason = "there is one for each job, not thousands in a row")]
@@ -51,7 +51,7 @@ impl JobInput {
         }
     }
 
-    /// The same with the id of its job and how long it waited from acceptance to start, in s.
+    /// The same with the id of its job and its wait from acceptance to start, in s.
     pub fn of_job(mut self, id: &str, waited_s: f64) -> JobInput {
         let (job, queue_s) = (Some(id.to_owned()), Some(waited_s));
         match &mut self {

@@ -1,4 +1,4 @@
-//! Errors of patients that the program makes itself.
+//! Errors of generated patients.
 
 use super::clock::Observed;
 use super::failure::JobError;
@@ -18,7 +18,7 @@ pub fn refused_virtual(error: VirtualError, clock: &Observed) -> JobError {
     }
 }
 
-/// A cohort from which nothing can be learned.
+/// The refusal of a cohort unsuited to learning.
 pub fn refused_cohort(error: &CohortError) -> JobError {
     let cases = Pointer::from_text("/spec/cases");
     let (at, code) = match error {

@@ -1,4 +1,4 @@
-//! Jobs, from document to result files: one path for the service and for the command line.
+//! Jobs, from document to result files: the same code for the service and the command line.
 
 mod clock;
 mod cohort;

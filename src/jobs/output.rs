@@ -1,4 +1,4 @@
-//! Job output: what a job made, and the place where it works.
+//! Job output: the results of a job, and its working context.
 
 use std::path::Path;
 
@@ -13,25 +13,25 @@ use mechanics::mesh::Frame;
 pub struct JobOutput {
     /// The content of `result.json`.
     pub result: ResultDocument,
-    /// Every file in the folder, with `result.json` itself.
+    /// Every file in the folder, including `result.json`.
     pub files: Vec<FileDocument>,
-    /// To be stored as meshes; the service does so when it publishes the result, and names them there.
+    /// Meshes to store; the service does so when it publishes the result, with their ids.
     pub meshes: Vec<MadeMesh>,
 }
 
-/// A mesh that a job leaves for others, in mm.
+/// A mesh that a job stores for others, in mm.
 #[derive(Clone, Debug)]
 pub struct MadeMesh {
     pub what: MadeName,
-    /// Of a bone, that of its segment.
+    /// Of a bone, the name of its segment.
     pub name: Option<String>,
     pub shape: StoredShape,
     pub frame: Frame,
-    /// What its meshing has to say, which every job on it says too.
+    /// The warnings of its meshing, which every job on it repeats.
     pub told: Vec<WarningDocument>,
 }
 
-/// Where a job finds its meshes, what it is allowed, and where its files go.
+/// The source of a job's meshes, its limits, and its folder.
 pub struct JobContext<'a> {
     pub sources: &'a dyn MeshSource,
     pub limits: &'a Limits,

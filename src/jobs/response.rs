@@ -1,4 +1,4 @@
-//! The job that builds a plan response: its columns, their description, and the skin they move.
+//! The job that builds a plan response: its columns, their description, and the undeformed skin.
 
 use serde::{Deserialize, Serialize};
 
@@ -35,10 +35,10 @@ pub const COLUMNS_FILE: &str = "response.f32";
 pub const COLUMNS_MEDIA_TYPE: &str = "application/octet-stream";
 /// i16 little-endian, [pair][node][xyz], of a response of second order.
 pub const SECOND_ORDER_FILE: &str = "response_second_order.i16";
-/// How to read the columns, and what applying a plan needs.
+/// The description of the columns, and the data to apply a plan.
 pub const DESCRIPTION_FILE: &str = "response.json";
 pub const DESCRIPTION_MEDIA_TYPE: &str = "application/json";
-/// The skin before anything moves, its points in the order of a column.
+/// The undeformed skin, its points in the order of a column.
 pub const REST_FILE: &str = "skin_at_rest.vtp";
 
 /// A response: the case in full beside the spec.
@@ -52,7 +52,7 @@ pub struct ResponseInput {
     pub spec: ResponseDocument,
 }
 
-/// A response whose documents are sound.
+/// A response with valid documents.
 pub struct PreparedResponse {
     pub key: String,
     prepared: Prepared,
@@ -61,7 +61,7 @@ pub struct PreparedResponse {
 }
 
 impl PreparedResponse {
-    /// Refuses a response that is expected to need more memory than a slot has.
+    /// Refuses a response with more expected memory than a slot has.
     pub fn admit(&self, limits: &Limits) -> Result<(), JobError> {
         let columns = COLUMNS_PER_SEGMENT * self.segments + self.inner.len();
         self.prepared.admit(columns, limits)

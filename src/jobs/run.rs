@@ -15,7 +15,7 @@ use super::response::response_job;
 use super::study::study_job;
 use mechanics::progress::Progress;
 
-/// Does a job. The same input and meshes give the same files, but for times in `result.json`.
+/// Runs a job. The same input and meshes give the same files, except times in `result.json`.
 pub fn work(
     input: &JobInput,
     place: &JobContext,

@@ -1,4 +1,4 @@
-//! Scale of a mesh: whether it can be a head, or a part of one, in its unit.
+//! Scale of a mesh: whether its size in its unit is plausible for a head or a part of one.
 
 use super::source::StoredShape;
 use crate::schema::ErrorCode;
@@ -8,7 +8,7 @@ use mechanics::mesh::{Vector, Warning};
 
 /// Diagonals of the bounding boxes of heads and their parts, in mm.
 const USUAL_DIAGONAL_MM: std::ops::RangeInclusive<f64> = 50.0..=600.0;
-/// Beyond these a unit is wrong, unless it is said that any scale is meant.
+/// Beyond these the unit is wrong, unless any scale is permitted.
 const POSSIBLE_DIAGONAL_MM: std::ops::RangeInclusive<f64> = 5.0..=5000.0;
 
 /// The diagonal of the bounding box of a mesh, in its unit.
@@ -33,7 +33,7 @@ impl MeshSize {
         }
     }
 
-    /// Refuses what no head can measure, unless any scale is meant; a warning where it is unusual.
+    /// Refuses a size that no head has, unless any scale is permitted; a warning if it is unusual.
     pub fn check(self, allow_any_scale: bool) -> Result<Option<Warning>, Problem> {
         let diagonal_mm = self.diagonal * self.units.in_mm();
         if USUAL_DIAGONAL_MM.contains(&diagonal_mm) {

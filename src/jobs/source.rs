@@ -16,25 +16,25 @@ pub trait MeshSource {
     /// The predicted skin of an earlier job, in mm.
     fn predicted_skin(&self, job: &str) -> Result<StoredMesh, SourceError>;
 
-    /// The bytes of what an earlier job learned; a source without jobs has none.
+    /// The bytes of the learned model of an earlier job; a source without jobs has none.
     fn model(&self, job: &str) -> Result<Vec<u8>, SourceError> {
         Err(SourceError::Unknown { id: job.to_owned() })
     }
 }
 
-/// A parsed mesh and the hash of the bytes it came from.
+/// A parsed mesh and the hash of its bytes.
 #[derive(Clone, Debug)]
 pub struct StoredMesh {
     pub shape: StoredShape,
-    /// Of a surface that was just read; a stored mesh does not keep them.
+    /// Of a surface that was just read; not of a stored mesh.
     pub of_points: Arc<SurfaceArrays>,
-    /// The frame that a mark in the file names.
+    /// The frame mark in the file.
     pub frame: Option<Frame>,
-    /// The unit stated when it was uploaded, which must be that of a case that uses it.
+    /// The unit stated at upload, which must be that of a case that uses it.
     pub units: Option<LengthUnit>,
-    /// What the reader had to say.
+    /// The warnings of the reader.
     pub warnings: Vec<Warning>,
-    /// What the meshing that made it had to say.
+    /// The warnings of the meshing that made it.
     pub told: Vec<WarningDocument>,
     /// SHA-256 in hexadecimal.
     pub sha256: String,
@@ -59,13 +59,13 @@ pub enum SourceError {
     Unreadable {
         id: String,
         detail: String,
-        /// Whether it is out of reach only, so that the same may succeed later.
+        /// Whether it is only temporarily unreachable, so that the same may succeed later.
         may_pass: bool,
     },
 }
 
 impl StoredMesh {
-    /// A mesh that was just read from bytes with this hash. An image has no unit to be stated: it is in mm.
+    /// A mesh that was just read from bytes with this hash. An image has no stated unit: it is in mm.
     pub fn new(read: ReadMesh, units: Option<LengthUnit>, sha256: String) -> Self {
         let shape = match read.mesh {
             Mesh::Volume(volume) => StoredShape::Volume(Arc::new(volume)),

@@ -1,4 +1,4 @@
-//! A plan applied to a response: request and answer.
+//! A plan applied to a response: request and result.
 
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
@@ -16,7 +16,7 @@ pub struct ApplyDocument {
     pub plan: PlanDocument,
 }
 
-/// The displacement of the skin for a plan, and how far it can be trusted.
+/// The displacement of the skin for a plan, with its error estimate.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct AppliedDocument {
     /// The job that built the response.
@@ -29,48 +29,48 @@ pub struct AppliedDocument {
     #[serde(flatten)]
     pub summary: AppliedSummary,
     pub warnings: Vec<WarningDocument>,
-    /// Codes of warnings that were not looked for: `numerical-error-large`, since a response does not know what its mesh leaves out of
+    /// Codes of warnings that were not checked: `numerical-error-large`, since a response does not estimate the mesh error of
     /// a plan, and `skin-overlaps` without `check_skin`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub not_measured: Vec<String>,
 }
 
-/// Estimates and warnings beside the displacement, in headers where the body is binary.
+/// Estimates and warnings beside the displacement; headers of a binary body.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct AppliedSummary {
     /// The largest displacement of a skin node.
     pub max_mm: f64,
     /// The largest rotation of a segment.
     pub largest_rotation_deg: f64,
-    /// That of the response: 2 where the displacement has the second-order term in it.
+    /// That of the response: 2 if the displacement includes the second-order term.
     #[serde(default = "first_order")]
     pub order: u8,
-    /// Of order 2: the mean length over the skin that moves of the second-order term, which is what order 1 leaves out.
+    /// Of order 2: the mean length of the second-order term over the moving skin, the error of order 1.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub second_order_mm: Option<f64>,
-    /// What the displacement leaves out, mean over the skin that moves (by more than a tenth of what moves farthest): of order 1 the
-    /// second-order term, of order 2 the third-order term, both estimated from samples. Absent where the plan grows tissue or activates muscles, of
-    /// which that is not known.
+    /// The linearisation error, mean over the moving skin (by more than a tenth of the largest displacement): of order 1 the
+    /// second-order term, of order 2 the third-order term, both estimated from samples. Absent if the plan grows tissue or activates muscles:
+    /// then it is not known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub nonlinearity_estimate_mm: Option<f64>,
-    /// Whether the estimate is at most 0.5 mm, and of order 2 at most half of the second-order term where it is above
-    /// 0.1 mm. False where there is none.
+    /// Whether the estimate is at most 0.5 mm, and of order 2 at most half of the second-order term if it is above
+    /// 0.1 mm. False without an estimate.
     pub within_linear_range: bool,
 }
 
-/// What linearity is known to leave out of a plan.
+/// Estimated linearisation error of a plan.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LinearPart {
     /// Of its movements.
     pub nonlinearity: Nonlinearity,
-    /// Whether tissue grows or muscles pull, of which no more is known.
+    /// Whether tissue grows or muscles pull, which have no estimate.
     pub acts_inside: bool,
 }
 
-/// Third-order terms above this many mm have to be smaller than this share of the second-order term, or the series is not
-/// to be trusted.
+/// Third-order terms above this many mm have to be smaller than this share of the second-order term, else the series is not
+/// trusted.
 const SERIES_MM: f64 = 0.1;
 const SERIES: f64 = 0.5;
 
@@ -79,7 +79,7 @@ fn first_order() -> u8 {
 }
 
 impl AppliedSummary {
-    /// `beyond` of a response of second order; `nonlinearity` of the movements, reported where nothing else acts.
+    /// `beyond` of a response of second order; `nonlinearity` of the movements, reported if nothing else acts.
     pub fn new(displacement: &[Vector], beyond: Option<BeyondLinear>, linear: &LinearPart) -> Self {
         let LinearPart { nonlinearity, acts_inside } = *linear;
         let squared = displacement.iter().map(Vector::norm_squared).fold(0.0, f64::max);
@@ -98,13 +98,13 @@ impl AppliedSummary {
         }
     }
 
-    /// The word of warning that goes with an answer outside the linear range.
+    /// The warning code of a result outside the linear range.
     pub const OUTSIDE: &'static str = "outside-linear-range";
 
-    /// The same of a response of second order.
+    /// The same for a response of second order.
     pub const OUTSIDE_SECOND: &'static str = "outside-second-order-range";
 
-    /// The same where nothing estimates how far it is.
+    /// The same without an estimate.
     pub const UNKNOWN: &'static str = "nonlinearity-unknown";
 
     pub fn warnings(&self) -> Vec<WarningDocument> {

@@ -1,18 +1,18 @@
-//! The codes of all errors: the word on the wire, the HTTP status and the title of each, one line a code. What is not in
-//! this table cannot be said.
+//! The codes of all errors: the word on the wire, the HTTP status and the title of each, one line a code. There are no
+//! others.
 
 use std::fmt;
 
 use serde::{Serialize, Serializer};
 
-const TOO_MUCH: &str = "The client asks for more than one may have";
-const LATER: &str = "Come back later";
-/// The code says what is wrong with what was sent.
+const TOO_MUCH: &str = "A limit of the client is exceeded";
+const LATER: &str = "Retry later";
+/// The code names the fault of the request.
 const REFUSED: &str = "The request was understood and is refused";
 
 macro_rules! error_codes {
     ($($code:ident $status:literal $word:literal $title:expr,)+) => {
-        /// What went wrong: the last word of a problem's `type`, the code of a mistake in a document, or the type of a
+        /// The code of an error: the last word of a problem's `type`, the code of a mistake in a document, or the type of a
         /// job's error.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
         pub enum ErrorCode {
@@ -54,14 +54,14 @@ error_codes! {
     InvalidParameter 400 "invalid-parameter" "A parameter is not valid",
     Unauthorized 401 "unauthorized" "A key is needed",
     ForbiddenScope 403 "forbidden-scope" "The key does not allow this",
-    ForeignOrigin 403 "foreign-origin" "Pages of other sites may not ask for this",
+    ForeignOrigin 403 "foreign-origin" "Pages of other sites may not request this",
     NotFound 404 "not-found" "There is nothing here",
     NoSuchJob 404 "no-such-job" "There is no such job",
     NoSuchOutput 404 "no-such-output" "The job has no such file",
     ClientsNotBuilt 404 "clients-not-built" "The service has no clients to hand out",
     ResponseNotBuilt 404 "response-not-built" "The case has no response",
     ResultNotReady 404 "result-not-ready" "The job has not ended",
-    MethodNotAllowed 405 "method-not-allowed" "The resource does not answer to this method",
+    MethodNotAllowed 405 "method-not-allowed" "The resource does not support this method",
     NotAcceptable 406 "not-acceptable" "The resource has no such representation",
     RequestTimeout 408 "request-timeout" "The body came too slowly",
     CaseNotReady 409 "case-not-ready" "The case has no mesh",
@@ -73,14 +73,14 @@ error_codes! {
     PreconditionFailed 412 "precondition-failed" "It has another version",
     PayloadTooLarge 413 "payload-too-large" "The body is too large",
     UriTooLong 414 "uri-too-long" "The address is too long",
-    UnsupportedMediaType 415 "unsupported-media-type" "The body is of a kind that is not read here",
+    UnsupportedMediaType 415 "unsupported-media-type" "The media type of the body is not supported",
     RangeNotSatisfiable 416 "range-not-satisfiable" "The range is outside the file",
-    UnknownHost 421 "unknown-host" "The service does not answer to this name",
-    PreconditionRequired 428 "precondition-required" "The version that is meant has to be named in If-Match",
+    UnknownHost 421 "unknown-host" "The service does not have this host name",
+    PreconditionRequired 428 "precondition-required" "If-Match has to name the version",
     RateLimited 429 "rate-limited" TOO_MUCH,
     TooManyStreams 429 "too-many-streams" TOO_MUCH,
     HeaderTooLarge 431 "header-too-large" "The headers are too large",
-    Internal 500 "internal" "Something broke here",
+    Internal 500 "internal" "The service failed",
     Integrity 500 "integrity" "A stored file is damaged",
     Busy 503 "busy" LATER,
     NotReady 503 "not-ready" LATER,

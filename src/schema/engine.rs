@@ -1,4 +1,4 @@
-//! The program that computes, as results and states of jobs name it.
+//! The program and its version, in results and states of jobs.
 
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
@@ -10,8 +10,8 @@ use mechanics::prediction::NUMERICS_REVISION;
 pub struct EngineDocument {
     pub name: String,
     pub version: String,
-    /// Raised with every change of its numbers; jobs of another revision are other jobs. 0 of results from before
-    /// there were revisions.
+    /// Raised with every change of its numbers; it is part of the hash of a job. 0 in results older than
+    /// revisions.
     #[serde(default)]
     pub numerics: u32,
     /// Processor and operating system.
@@ -21,7 +21,7 @@ pub struct EngineDocument {
 }
 
 impl EngineDocument {
-    /// The program that is running.
+    /// The running program.
     pub fn this() -> Self {
         let profile = if cfg!(debug_assertions) { "debug" } else { "release" };
         EngineDocument {

@@ -1,4 +1,4 @@
-//! The hash of each kind of job and the key of a response: the same work has the same hash, whoever asks for it.
+//! The hash of each kind of job and the key of a response: the same work has the same hash, for every client.
 
 use std::collections::BTreeMap;
 
@@ -20,8 +20,8 @@ use super::study::document::StudyDocument;
 use super::wire::canonical::{hash, to_value};
 use super::wire::fault::Pointer;
 
-/// The hash of a prediction: contents of meshes in place of their ids, the plan in full, names and tags left out.
-/// `content_of` gives the SHA-256 of a mesh by its id; an id it does not know stands for itself.
+/// The hash of a prediction: contents of meshes instead of their ids, the plan in full, without names and tags.
+/// `content_of` gives the SHA-256 of a mesh by its id; an unknown id stays.
 pub fn predict_hash(
     case: &CaseDocument,
     plan: &PlanDocument,
@@ -45,7 +45,7 @@ pub fn predict_hash(
     }))
 }
 
-/// A case with contents of meshes in place of their ids, without name and tags.
+/// A case with contents of meshes instead of their ids, without name and tags.
 pub fn stated(case: &CaseDocument, content_of: &dyn Fn(&str) -> Option<String>) -> Value {
     let mut case = case.clone();
     case.name = None;
@@ -56,7 +56,7 @@ pub fn stated(case: &CaseDocument, content_of: &dyn Fn(&str) -> Option<String>) 
     to_value(&case)
 }
 
-/// The hash of inverse planning: contents of meshes in place of their ids, names and tags left out.
+/// The hash of inverse planning: contents of meshes instead of their ids, without names and tags.
 pub fn optimise_hash(
     case: &CaseDocument,
     spec: &OptimiseDocument,
@@ -72,8 +72,8 @@ pub fn optimise_hash(
     }))
 }
 
-/// The hash of a study: its cases with contents of meshes in place of their ids, in the order of its scenes, and the
-/// report that it is held against; names of cases stay, since rows carry them, and those of plans do not.
+/// The hash of a study: its cases with contents of meshes instead of their ids, in the order of its scenes, and the
+/// report of its baseline; with names of cases, which rows contain, and without those of plans.
 pub fn study_hash(
     cases: &[&CaseDocument],
     spec: &StudyDocument,
@@ -107,7 +107,7 @@ pub fn study_hash(
     }))
 }
 
-/// The key of the rows of a study: its hash without the rules by which they are judged.
+/// The key of the rows of a study: its hash without the rules of the outcome.
 pub fn rows_key(
     cases: &[&CaseDocument],
     spec: &StudyDocument,
@@ -116,7 +116,7 @@ pub fn rows_key(
     study_hash(cases, &spec.without_rules(), None, content_of)
 }
 
-/// The hash of a comparison; `content_of` also answers for the predicted skin of a job.
+/// The hash of a comparison; `content_of` also takes the predicted skin of a job.
 pub fn compare_hash(spec: &CompareDocument, content_of: &dyn Fn(&str) -> Option<String>) -> String {
     let mut spec = spec.clone();
     spec.tags.clear();
@@ -132,7 +132,7 @@ pub fn compare_hash(spec: &CompareDocument, content_of: &dyn Fn(&str) -> Option<
     hash(json!({ "spec": to_value(&spec) }))
 }
 
-/// The hash of a reproduction: contents of meshes in place of their ids, tags left out.
+/// The hash of a reproduction: contents of meshes instead of their ids, without tags.
 pub fn reproduce_hash(
     spec: &ReproduceDocument,
     content_of: &dyn Fn(&str) -> Option<String>,
@@ -145,7 +145,7 @@ pub fn reproduce_hash(
     hash(json!({ "spec": to_value(&spec) }))
 }
 
-/// The hash of a conformation: contents of meshes in place of their ids, tags left out.
+/// The hash of a conformation: contents of meshes instead of their ids, without tags.
 pub fn conform_hash(spec: &ConformDocument, content_of: &dyn Fn(&str) -> Option<String>) -> String {
     let mut spec = spec.clone();
     spec.tags.clear();
@@ -155,7 +155,7 @@ pub fn conform_hash(spec: &ConformDocument, content_of: &dyn Fn(&str) -> Option<
     hash(json!({ "spec": to_value(&spec) }))
 }
 
-/// The hash of a cohort: what the comparisons found in place of their ids, tags left out, and the stored cohort that they are of.
+/// The hash of a cohort: results of the comparisons instead of their ids, without tags, and their stored cohort.
 pub fn cohort_hash(
     spec: &CohortDocument,
     stored: Option<&CohortVersionDocument>,
@@ -172,8 +172,8 @@ pub fn cohort_hash(
     }
 }
 
-/// The hash of a meshing: the contents of the scan or the surfaces in place of their ids, tags left out. One that a case waits
-/// for belongs to that case, so that it goes when the case is erased.
+/// The hash of a meshing: the contents of the scan or the surfaces instead of their ids, without tags. One that a case waits
+/// for belongs to that case, so that it is erased with it.
 pub fn meshing_hash(
     spec: &MeshingDocument,
     content_of: &dyn Fn(&str) -> Option<String>,
@@ -194,11 +194,11 @@ pub fn waiting_hash(case: &str, asked: &Value) -> String {
     hash(json!({ "waiting": asked, "case": case }))
 }
 
-/// Changes where the description of a response tells what earlier ones did not, so that these are not taken for it.
+/// Changes with the content of the description of a response, so that earlier ones are not reused.
 const DESCRIPTION_REVISION: u32 = 2;
 
 /// The key of a response: the case but for its name, tags, landmarks and skin regions, contents of meshes in
-/// place of their ids. The case's own id is part of it, so that a response goes when its case is erased.
+/// place of their ids. The case's own id is part of it, so that a response is erased with its case.
 pub fn response_key(
     case: &CaseDocument,
     spec: &ResponseDocument,

@@ -1,4 +1,4 @@
-//! The columns of a response beside those of its segments: growth of a region, or a muscle that pulls.
+//! The columns of a response beside those of its segments: growth of a region, or activation of a muscle.
 
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
@@ -12,7 +12,7 @@ use mechanics::mesh::ignored::listed;
 use mechanics::prediction::linear_strain;
 use mechanics::response::InnerLoad;
 
-/// What a column is of. It follows those of the segments: the k-th of S segments is column 12 S + k.
+/// Subject of a column. It follows those of the segments: the k-th after S segments is column 12 S + k.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 pub struct InnerColumnDocument {
     pub kind: InnerColumnKind,
@@ -20,11 +20,11 @@ pub struct InnerColumnDocument {
     pub name: String,
 }
 
-/// What its column is multiplied by.
+/// The factor of its column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum InnerColumnKind {
-    /// (1 + volume_change)^(1/3) - 1; `*` stands for all tissue, and a region beside it for what it grows more than that.
+    /// (1 + volume_change)^(1/3) - 1; `*` is all tissue, and a region beside it its additional growth.
     Growth,
     /// `stress_kpa`.
     Muscle,
@@ -48,7 +48,7 @@ impl InnerColumnDocument {
     }
 }
 
-/// What the columns of growth and muscles are multiplied by for a plan; pointers start at `at`. A region or a muscle without
+/// The factors of the columns of growth and muscles for a plan; pointers start at `at`. A region or a muscle without
 /// a column is refused.
 pub fn inner_amounts(
     columns: &[InnerColumnDocument],

@@ -10,7 +10,7 @@ use crate::schema::predict::result::{EngineDocument, ResultDocument};
 use crate::schema::study::expected::TruthCostDocument;
 use crate::schema::wire::warning::WarningDocument;
 
-/// Where a job is in its life.
+/// The status of a job.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum JobStatus {
@@ -32,7 +32,7 @@ impl JobStatus {
         }
     }
 
-    /// The status a stored word names.
+    /// The status of a stored word.
     pub fn from_name(name: &str) -> Option<JobStatus> {
         use JobStatus::{Accepted, Dismissed, Failed, Running, Successful};
         [Accepted, Running, Successful, Failed, Dismissed]
@@ -40,7 +40,7 @@ impl JobStatus {
             .find(|status| status.name() == name)
     }
 
-    /// Whether nothing will happen to it any more.
+    /// Whether the status is final.
     pub fn is_terminal(self) -> bool {
         !matches!(self, JobStatus::Accepted | JobStatus::Running)
     }
@@ -52,15 +52,15 @@ pub struct StatusInfo {
     pub id: String,
     pub kind: JobKind,
     pub status: JobStatus,
-    /// `validate`, `mesh`, `assemble`, `solve`, `contact`, `surface`, `compare` or `write`, while it runs.
+    /// `validate`, `mesh`, `assemble`, `solve`, `estimate`, `contact`, `surface`, `compare`, `correct` or `write`, while it runs.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub phase: Option<String>,
     pub message: String,
-    /// 0 to 100, never falling.
+    /// 0 to 100, never decreasing.
     #[schema(maximum = 100)]
     pub progress: u8,
-    /// Of what the job solves at this moment; absent once it has ended, as `residual` and `phase`.
+    /// Of the present solution; absent once the job has ended, as `residual` and `phase`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub iteration: Option<u64>,
@@ -76,9 +76,9 @@ pub struct StatusInfo {
     #[schema(nullable = false)]
     pub finished: Option<String>,
     pub updated: String,
-    /// How often it was started.
+    /// The number of starts.
     pub attempt: u32,
-    /// 0 is the next one; absent once it has started, and while it waits for the mesh of its case.
+    /// Position in the queue, 0 is next; absent once it has started, and while it waits for the mesh of its case.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub queue_position: Option<u64>,
@@ -88,7 +88,7 @@ pub struct StatusInfo {
     #[schema(nullable = false)]
     pub case: Option<String>,
     pub tags: Vec<String>,
-    /// True where an earlier job with the same hash is the answer.
+    /// True if this is an earlier job with the same hash.
     #[serde(default)]
     #[schema(required)]
     pub deduplicated: bool,
@@ -100,14 +100,14 @@ pub struct StatusInfo {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub results: Option<ResultDocument>,
-    /// Of a study: what the truths that it has to solve are expected to take, known from the start.
+    /// Of a study: the expected cost of the reference solutions, known from the start.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     #[schema(required = false)]
     pub truths: Vec<TruthCostDocument>,
     pub links: Vec<Link>,
 }
 
-/// A state that a job was in: the `data` of an event.
+/// A past state of a job: the `data` of an event.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct JobEvent {
     /// From 1, without gaps: the `id` of the event.
@@ -119,7 +119,7 @@ pub struct JobEvent {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub phase: Option<String>,
-    /// 0 to 100, never falling.
+    /// 0 to 100, never decreasing.
     #[schema(maximum = 100)]
     pub progress: u8,
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -128,7 +128,7 @@ pub struct JobEvent {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub residual: Option<f64>,
-    /// How often it was started.
+    /// The number of starts.
     pub attempt: u32,
 }
 
@@ -140,24 +140,24 @@ pub struct JobErrorDocument {
     pub kind: String,
     pub class: ErrorClass,
     pub detail: String,
-    /// Members that belong to the type, e.g. `which` of `budget-exceeded`.
+    /// Members of the type, e.g. `which` of `budget-exceeded`.
     #[serde(flatten)]
     #[schema(value_type = Object)]
     pub members: Map<String, Value>,
 }
 
-/// What kind of thing went wrong; only `infrastructure` is ever tried again.
+/// The cause of a failure; only `infrastructure` is retried.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum ErrorClass {
-    /// The numbers: the same again would fail again.
+    /// The numerics: a repetition would fail again.
     Numerical,
     /// The documents or meshes.
     Input,
     /// Disks, databases, processes.
     Infrastructure,
-    /// Somebody asked it to stop.
+    /// Stopped on request.
     Cancelled,
-    /// Time or memory that the spec allows.
+    /// Time or memory limits of the spec.
     Budget,
 }

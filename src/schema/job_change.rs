@@ -1,4 +1,4 @@
-//! A change of a job that is there: its tags.
+//! A change of an existing job: its tags.
 
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
@@ -8,14 +8,14 @@ use super::wire::limits::Limits;
 use super::wire::names::check_tags;
 use crate::schema::code::ErrorCode;
 
-/// What may be changed of a job.
+/// A change of a job.
 #[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct JobChangeDocument {
     pub tags: TagChangeDocument,
 }
 
-/// Tags to put on a job and to take off it.
+/// Tags to add to a job and to remove from it.
 #[derive(Clone, Debug, Default, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TagChangeDocument {
@@ -32,7 +32,7 @@ impl JobChangeDocument {
         check_tags(add, &at.key("add"), limits, faults);
         check_tags(remove, &at.key("remove"), limits, faults);
         for (index, tag) in add.iter().enumerate().filter(|(_, tag)| remove.contains(tag)) {
-            let detail = format!("the tag `{tag}` is to be put on and to be taken off");
+            let detail = format!("the tag `{tag}` is both to be added and to be removed");
             faults.add(&at.key("add").index(index), ErrorCode::DuplicateName, detail);
         }
     }

@@ -25,7 +25,7 @@ use crate::schema::wire::strict;
 /// A row of the table of kinds.
 struct Row {
     name: &'static str,
-    /// How the description of the service calls the document.
+    /// Its schema name in the OpenAPI description.
     document: fn() -> Cow<'static, str>,
     priority: i64,
     has_report: bool,
@@ -34,7 +34,7 @@ struct Row {
 /// Makes the enum of the kinds and their table, so that a kind is in both or in neither.
 macro_rules! job_kinds {
     ($($kind:ident, $name:tt, $document:ty, $priority:literal, $has_report:literal;)+) => {
-        /// What a job does.
+        /// The kind of a job.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, ToSchema)]
         pub enum JobKind {
             $(#[serde(rename = $name)] $kind,)+
@@ -84,17 +84,17 @@ impl JobKind {
         (self.row().document)()
     }
 
-    /// Its place in the queue; the smallest is first.
+    /// Its priority in the queue; the smallest is first.
     pub fn priority(self) -> i64 {
         self.row().priority
     }
 
-    /// Whether its result is a report on rows.
+    /// Whether its result is a report with rows.
     pub fn has_report(self) -> bool {
         self.row().has_report
     }
 
-    /// The kind a stored word names.
+    /// The kind of a stored word.
     pub fn from_name(name: &str) -> Option<JobKind> {
         JobKind::ALL.iter().copied().find(|kind| kind.name() == name)
     }
@@ -147,7 +147,7 @@ pub enum JobDocument {
 }
 
 impl JobDocument {
-    /// Whether it leaves meshes behind that others may use.
+    /// Whether it stores meshes for other jobs.
     pub fn keeps_meshes(&self) -> bool {
         match self {
             JobDocument::Mesh(_) | JobDocument::Conform(_) => true,

@@ -9,17 +9,17 @@ use super::code::ErrorCode;
 use crate::schema::wire::fault::{Faults, Pointer};
 use crate::schema::wire::problem::Problem;
 
-/// What a key allows.
+/// A permission of a key.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Scope {
-    /// To look.
+    /// To read.
     Read,
     /// To store and erase meshes, cases and plans.
     Write,
-    /// To have jobs run, and to end them.
+    /// To start and dismiss jobs.
     Run,
-    /// To make and end keys and read the audit log of its tenant.
+    /// To create and revoke keys and read the audit log of its tenant.
     Admin,
 }
 
@@ -36,7 +36,7 @@ impl Scope {
     }
 }
 
-/// Scopes from words between spaces or commas; the word that is none, where there is one.
+/// Scopes from words separated by spaces or commas; else the first word that is none.
 pub fn scopes_of(words: &str) -> Result<BTreeSet<Scope>, String> {
     let words = words.split([' ', ',']).filter(|word| !word.is_empty());
     words
@@ -46,12 +46,12 @@ pub fn scopes_of(words: &str) -> Result<BTreeSet<Scope>, String> {
         .collect()
 }
 
-/// The same as words with spaces between them.
+/// The same as words separated by spaces.
 pub fn scope_words(scopes: &BTreeSet<Scope>) -> String {
     scopes.iter().map(|scope| scope.name()).collect::<Vec<_>>().join(" ")
 }
 
-/// A key as its owner has it: `fcs_<id>_<secret>`, 12 and 64 hexadecimal digits.
+/// A key in full: `fcs_<id>_<secret>`, 12 and 64 hexadecimal digits.
 pub struct Key {
     pub id: String,
     pub text: String,
@@ -71,7 +71,7 @@ impl Key {
         Key { id: id.to_owned(), text: format!("{PREFIX}_{id}_{secret}") }
     }
 
-    /// None where the text has not the form of a key.
+    /// None if the text is not in the form of a key.
     pub fn parse(text: &str) -> Option<Key> {
         let mut parts = text.split('_');
         let (prefix, id, secret) = (parts.next()?, parts.next()?, parts.next()?);
@@ -83,27 +83,27 @@ impl Key {
     }
 }
 
-/// A key to be made.
+/// A key to be created.
 #[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct KeyDocument {
-    /// What it is for: 1 to 100 characters, no name of a person.
+    /// Its purpose: 1 to 100 characters, no name of a person.
     #[schema(min_length = 1, max_length = 100)]
     pub label: String,
-    /// One that is named twice counts once.
+    /// Duplicates count once.
     #[schema(min_items = 1, value_type = Vec<Scope>)]
     pub scopes: BTreeSet<Scope>,
-    /// After so many days it ends; without a number it does not.
+    /// Days to expiry; absent: it does not expire.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false, minimum = 1, maximum = 3650)]
     pub days: Option<i64>,
 }
 
-/// How a key gives way to another.
+/// The rotation of a key.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RotationDocument {
-    /// How many hours the old key can still be used.
+    /// Hours for which the old key remains valid.
     #[serde(default = "default_overlap_s")]
     #[schema(default = 24, minimum = 0, maximum = 8760)]
     pub overlap_h: i64,
@@ -159,7 +159,7 @@ fn is_hexadecimal(text: &str, bytes: usize) -> bool {
     text.len() == 2 * bytes && text.bytes().all(is_digit)
 }
 
-/// What names of tenants are.
+/// The rule for names of tenants.
 pub const TENANT_NAMES: &str = "a tenant has 1 to 64 of a to z, 0 to 9, - and .";
 
 /// Bounds of the retention of unchanged resources.

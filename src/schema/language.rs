@@ -13,7 +13,7 @@ pub enum Language {
 }
 
 impl Language {
-    /// As HTML and PDF name it.
+    /// Its code in HTML and PDF.
     pub fn tag(self) -> &'static str {
         match self {
             Language::En => "en",
@@ -21,7 +21,7 @@ impl Language {
         }
     }
 
-    /// What a header `Accept-Language` likes best (RFC 9110, section 12.5.4); English where it names neither.
+    /// The language preferred by a header `Accept-Language` (RFC 9110, section 12.5.4); English if it names neither.
     pub fn accepted(header: &str) -> Self {
         let mut best = (Language::En, 0.0);
         for range in header.split(',') {

@@ -9,14 +9,14 @@ use super::{CornerPair, Triple};
 use crate::schema::case::document::{FrameName, LengthUnit};
 use crate::schema::wire::warning::WarningDocument;
 
-/// The answer of `POST /v1/meshes` and `GET /v1/meshes/{id}`.
+/// The response of `POST /v1/meshes` and `GET /v1/meshes/{id}`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct MeshDocument {
     pub id: String,
-    /// Of the bytes that were sent, in hexadecimal.
+    /// Of the uploaded bytes, in hexadecimal.
     pub sha256: String,
     pub bytes: u64,
-    /// As sniffed from the bytes, e.g. `vtu`, `stl`, `gmsh`, `nrrd`, `dicom`.
+    /// As detected from the bytes, e.g. `vtu`, `stl`, `gmsh`, `nrrd`, `dicom`.
     pub format: String,
     /// RFC 3339, UTC.
     pub created: String,
@@ -32,7 +32,7 @@ pub struct MeshDocument {
     pub report: MeshReport,
 }
 
-/// What a mesh file holds. Lengths are in the units of the file.
+/// Content of a mesh file. Lengths are in the units of the file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct MeshReport {
     pub kind: MeshKind,
@@ -45,7 +45,7 @@ pub struct MeshReport {
     /// Lowest and highest corner.
     pub bounding_box: CornerPair,
     pub diagonal: f64,
-    /// The frame that a `SPACE=` mark in the file, or the `space` of an image, names.
+    /// The frame in a `SPACE=` mark of the file, or in the `space` of an image.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub space: Option<FrameName>,
@@ -54,7 +54,7 @@ pub struct MeshReport {
     pub node_sets: BTreeMap<String, u64>,
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub cell_sets: BTreeMap<String, u64>,
-    /// Integer arrays with their distinct values; `label_values` of the limits says how many an array may have.
+    /// Integer arrays with their distinct values, at most `label_values` of the limits.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub node_labels: BTreeMap<String, Vec<i64>>,
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
@@ -65,10 +65,10 @@ pub struct MeshReport {
     /// Arrays of vectors of cells, for fibre directions.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub cell_vectors: Vec<String>,
-    /// Arrays of the file that nothing reads.
+    /// Ignored arrays of the file.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub ignored_arrays: Vec<String>,
-    /// Why nothing reads them, in the same order.
+    /// Why they are ignored, in the same order.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub ignored_because: Vec<IgnoredArrayDocument>,
     /// Of volumes: the smallest scaled Jacobian of a cell; 1 is perfect, below 0 is inverted.
@@ -80,12 +80,12 @@ pub struct MeshReport {
     #[schema(nullable = false)]
     pub image: Option<ImageReport>,
     pub warnings: Vec<WarningDocument>,
-    /// Of a volume that a meshing made: what that had to say of the scan or the surfaces. Every job on the mesh says it too.
+    /// Of a volume made by a meshing: its warnings on the scan or the surfaces. Every job on the mesh repeats them.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub meshing: Vec<WarningDocument>,
 }
 
-/// An array of a file that nothing reads.
+/// An ignored array of a file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct IgnoredArrayDocument {
     pub name: String,
@@ -95,7 +95,7 @@ pub struct IgnoredArrayDocument {
     pub why: String,
 }
 
-/// What a mesh is made of.
+/// The kind of a mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum MeshKind {
@@ -110,7 +110,7 @@ pub enum MeshKind {
 pub struct ImageReport {
     /// Voxels along each axis.
     pub size: Vec<u64>,
-    /// How far they are apart along each axis.
+    /// Their spacing along each axis.
     pub spacing_mm: Triple,
     /// The centre of the first voxel.
     pub origin_mm: Triple,
@@ -119,6 +119,6 @@ pub struct ImageReport {
     /// The lowest value.
     pub lowest_hu: f64,
     pub highest_hu: f64,
-    /// How the values are kept: `int16` or `float32`.
+    /// Type of the stored values: `int16` or `float32`.
     pub kept_as: String,
 }

@@ -1,5 +1,5 @@
-//! The JSON documents of the service and the command line: units in the names, every value checked,
-//! converted once to and from the types of the path (mm, ms, mg, mN, kPa, radians).
+//! The JSON documents of the service and the command line: units in the names, every value validated,
+//! converted once to and from the types of the numerics (mm, ms, mg, mN, kPa, radians).
 
 pub mod applied;
 pub mod case;

@@ -1,4 +1,4 @@
-//! Repair of distorted cells: bounds of the moves of nodes, and report.
+//! Repair of distorted cells: bounds of node movement, and report.
 
 use std::sync::Arc;
 
@@ -13,14 +13,14 @@ use mechanics::mesh::{VolumeMesh, Warning};
 use mechanics::progress::Unobserved;
 use mechanics::repair::{Bounds, RepairReport, repair};
 
-/// A mesh with a larger share of cells that are not proven valid has other faults than a few distorted cells.
+/// The largest share of cells not proven valid that is repaired; beyond it a mesh has other faults.
 const MOST_UNPROVEN: f64 = 0.1;
-/// So many may always be repaired.
+/// This number may always be repaired.
 const FEW_UNPROVEN: usize = 100;
-/// Cells that a warning names.
+/// The number of cells named in a warning.
 const NAMED: usize = 10;
 
-/// How far a repair may move nodes, so that every cell is valid in every point.
+/// Bounds of node movement in a repair, which makes every cell valid at every point.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RepairDocument {
@@ -48,10 +48,10 @@ impl Default for RepairDocument {
     }
 }
 
-/// What moves of nodes mended.
+/// The result of a repair.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct RepairResultDocument {
-    /// Cells that were not proven valid in every point before.
+    /// Cells not proven valid at every point before.
     #[serde(default)]
     #[schema(required)]
     pub unproven_before: u64,
@@ -59,11 +59,11 @@ pub struct RepairResultDocument {
     pub nodes_moved: u64,
     pub mean_move_mm: f64,
     pub largest_move_mm: f64,
-    /// Every cell that is not proven valid; empty where all are.
+    /// Every cell not proven valid; empty if all are.
     pub unproven: Vec<UnprovenDocument>,
 }
 
-/// A cell that moves within the bounds did not mend.
+/// A cell that was not repaired within the bounds.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct UnprovenDocument {
     /// From 0.
@@ -71,7 +71,7 @@ pub struct UnprovenDocument {
     pub smallest_jacobian_mm3: f64,
 }
 
-/// A mesh in mm after a repair, and what that did.
+/// A mesh in mm after a repair, and its report.
 pub struct RepairedMesh {
     pub volume: Arc<VolumeMesh>,
     pub report: RepairReport,
@@ -84,7 +84,7 @@ impl RepairDocument {
         faults.check_range(&at.key("inner_mm"), self.inner_mm, 0.0..=10.0, "mm") && is_right
     }
 
-    /// A mesh in mm with its cells repaired, its boundary moved along itself only. `None` where faults were added: a mesh of
+    /// A mesh in mm with its cells repaired, its boundary moved tangentially only. `None` if faults were added: a mesh of
     /// which many cells are distorted is refused.
     pub fn mended(
         &self,
@@ -117,7 +117,7 @@ impl RepairDocument {
 }
 
 impl RepairedMesh {
-    /// What a reader of a result has to know; nothing where all cells were valid.
+    /// The warning of a result, if not all cells were valid.
     pub fn warning(&self) -> Option<Warning> {
         let RepairReport { unproven_before, nodes_moved, largest_move, unproven, .. } =
             &self.report;
@@ -159,17 +159,15 @@ impl From<&RepairReport> for RepairResultDocument {
     }
 }
 
-/// Refuses cells of which no stiffness can be formed: those that no repair was asked for, or that it left.
+/// Refuses cells without a valid stiffness: those that no repair was requested for, or that it left.
 pub fn check_cells(volume: &VolumeMesh, is_repaired: bool, at: &Pointer, faults: &mut Faults) {
     let cells = (0..volume.cells.len()).into_par_iter();
     let invalid: Vec<usize> =
         cells.filter(|&cell| !volume.cell_jacobian(cell).is_valid()).collect();
     let (Some(first), count) = (invalid.first(), invalid.len()) else { return };
     let (place, remedy) = match is_repaired {
-        true => {
-            ("repair", "they stay so within the bounds of the repair: larger ones may mend them")
-        }
-        false => ("volume", "`repair` in the case may mend them"),
+        true => ("repair", "they remain so within the bounds of the repair: larger ones may help"),
+        false => ("volume", "`repair` in the case may correct them"),
     };
     let detail = format!(
         "{count} of {} cells are inverted or flat at a Gauss point, the first of them {first} (from 0): {remedy}",

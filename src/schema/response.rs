@@ -1,4 +1,4 @@
-//! The job that builds a plan response.
+//! The spec of a job that builds a plan response.
 
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
@@ -25,7 +25,7 @@ pub enum ResponseKind {
     Response,
 }
 
-/// A plan response: twelve solutions for each segment, of which every movement of the segments is a sum.
+/// A plan response: twelve solutions for each segment; the solution of every movement is a sum of them.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ResponseDocument {
@@ -39,26 +39,26 @@ pub struct ResponseDocument {
     pub method: MethodName,
     #[serde(default)]
     pub element: ElementName,
-    /// Over the materials of the case, field by field.
+    /// Overrides the materials of the case, by member.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false, value_type = Option<BTreeMap<String, MaterialDocument>>)]
     pub materials: Option<MaterialDocuments>,
-    /// Absent: the skin is tissue like the rest.
+    /// Absent: no membrane.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub membrane: Option<MembraneDocument>,
-    /// 1, the default: the skin is linear in the movements. 2: with the quadratic form of what linear elasticity leaves out,
+    /// 1, the default: the skin is linear in the movements. 2: with the quadratic form of the second order of finite strain,
     /// 78 columns for one segment and 300 for two.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false, minimum = 1, maximum = 2)]
     pub order: Option<u8>,
-    /// Names of segments of the case; default: all. The others stay where they are.
+    /// Names of segments of the case; default: all. The others are fixed.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub segments: Vec<String>,
-    /// Regions whose growth plans may state, a column each; `*`: that of all tissue. Default: none.
+    /// Regions whose growth plans may state, a column each; `*`: all tissue. Default: none.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub growth: Vec<String>,
-    /// Muscles that plans may activate, a column each. Default: all of the case in order 1, none in order 2.
+    /// Muscles that plans may activate, a column each. Default: all of the case for order 1, none for order 2.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub muscles: Option<Vec<String>>,
@@ -71,7 +71,7 @@ pub struct ResponseDocument {
 }
 
 impl ResponseDocument {
-    /// The prediction of the same tissue, with which it shares its checks.
+    /// The prediction of the same tissue, whose checks it shares.
     pub fn to_prediction(&self) -> PredictDocument {
         PredictDocument {
             method: self.method,
@@ -92,7 +92,7 @@ impl ResponseDocument {
         }
     }
 
-    /// What decides the numbers, for the key: no tags, segments in no order.
+    /// Everything that determines the numbers, for the key: no tags, segments unordered.
     pub fn content(&self) -> serde_json::Value {
         let mut plain = self.clone();
         plain.tags.clear();
@@ -103,7 +103,7 @@ impl ResponseDocument {
         canonical::to_value(&plain)
     }
 
-    /// Refuses methods without a response, names that are given twice, and more names than are allowed.
+    /// Refuses methods without a response, duplicate names, and too many names.
     pub fn check(&self, limits: &Limits, faults: &mut Faults) {
         let spec = Pointer::root().key("spec");
         methods::check_linear(self.method, &spec.key("method"), faults);
@@ -126,7 +126,7 @@ impl ResponseDocument {
         }
     }
 
-    /// The columns of growth and muscles that are asked for of a scene.
+    /// The requested columns of growth and muscles of a scene.
     pub fn inner_loads(&self, scene: &Scene) -> Result<Vec<InnerLoad>, ResponseError> {
         let usual = match self.response_order() {
             ResponseOrder::First => scene.muscles.iter().map(|own| own.name.clone()).collect(),

@@ -1,4 +1,4 @@
-//! Description of a response: how to read its columns, and what applying a plan needs.
+//! Description of a response: the layout of its columns, and the data to apply a plan.
 
 use std::collections::BTreeMap;
 
@@ -25,14 +25,14 @@ use mechanics::prediction::{RigidlyCarried, normal_turned, rigidly_carried};
 use mechanics::response::linearity::LINEAR_RANGE_MM;
 use mechanics::response::{Columns, InnerLoad, Linearity, ResponseSegment, SampledSecond};
 
-/// What a response knows: how to read its columns, and what applying a plan needs.
+/// Description of a response: the layout of its columns, and the data to apply a plan.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct ResponseDescription {
-    /// The job that built it; absent from results of the command line.
+    /// The job that built it; absent in results of the command line.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub job: Option<String>,
-    /// SHA-256 over everything that the columns depend on.
+    /// SHA-256 over everything that determines the columns.
     pub key: String,
     pub engine: EngineDocument,
     pub frame: FrameName,
@@ -41,7 +41,7 @@ pub struct ResponseDescription {
     /// Growth and muscles, a column each after those of the segments.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub inner_columns: Vec<InnerColumnDocument>,
-    /// Segments of the case that stay where they are.
+    /// Segments of the case that are fixed.
     pub staying: Vec<String>,
     /// Nodes of the volume mesh, ascending: the order within a column.
     pub node_ids: Vec<u32>,
@@ -51,18 +51,18 @@ pub struct ResponseDescription {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub second_order: Option<SecondOrderDocument>,
-    /// The centre of the bounding box of the mesh, whose displacement is limited.
+    /// The centre of the bounding box of the mesh; its displacement is limited.
     pub mesh_centre_mm: Triple,
-    /// From one corner of that box to the other: no segment goes farther. 0 where it is not known.
+    /// The diagonal of that box: no segment may move farther. 0 if unknown.
     #[serde(default)]
     pub mesh_diagonal_mm: f64,
-    /// Whether plans may carry the tissue along as one.
+    /// Whether plans may move tissue rigidly.
     #[serde(default)]
     pub allow_unfixed: bool,
-    /// What hangs together, and what holds it.
+    /// Connected parts of the mesh, and their constraints.
     #[serde(default)]
     pub parts: Vec<ResponsePartDocument>,
-    /// Of the case and its mesh, whatever the plan: each plan that is applied repeats them.
+    /// Of the case and its mesh, independent of the plan: each applied plan repeats them.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub warnings: Vec<WarningDocument>,
 }
@@ -71,11 +71,11 @@ pub struct ResponseDescription {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct ResponseSegmentDocument {
     pub name: String,
-    /// From where x is measured: the mean of the segment's nodes.
+    /// The origin of x: the mean of the segment's nodes.
     pub centre_mm: Triple,
     /// The box around the segment's nodes.
     pub box_mm: CornerPair,
-    /// Whether tissue slides on a wall that the segment carries.
+    /// Whether tissue slides on a wall that moves with the segment.
     #[serde(default)]
     pub carries_wall: bool,
 }
@@ -88,7 +88,7 @@ impl ResponseSegmentDocument {
     }
 }
 
-/// A plan as a response takes it.
+/// A plan as factors of the columns of a response.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlanAmounts {
     /// One for each segment.
@@ -97,7 +97,7 @@ pub struct PlanAmounts {
     pub inner: Vec<f64>,
 }
 
-/// What a response is the answer of.
+/// The origin of a response.
 pub struct ResponseOrigin {
     pub job: Option<String>,
     pub key: String,
@@ -157,7 +157,7 @@ impl ResponseDescription {
             .collect()
     }
 
-    /// What its columns of growth and muscles are of.
+    /// The subjects of its columns of growth and muscles.
     pub fn inner_loads(&self) -> Vec<InnerLoad> {
         self.inner_columns.iter().map(InnerColumnDocument::to_load).collect()
     }
@@ -176,8 +176,8 @@ impl ResponseDescription {
         }
     }
 
-    /// One movement for each segment of the response, and the amount of each of its other columns; what the plan does not
-    /// name stays. Pointers start at `/plan`.
+    /// One movement for each segment of the response, and the amount of each of its other columns; segments absent in the plan
+    /// stay. Pointers start at `/plan`.
     pub fn amounts(&self, plan: &PlanDocument, limits: &Limits) -> Result<PlanAmounts, Problem> {
         let mut faults = Faults::default();
         let at = Pointer::root().key("plan");
@@ -187,7 +187,7 @@ impl ResponseDescription {
             ("osteotomy", plan.osteotomy.is_none()),
         ] {
             if !is_empty {
-                let detail = format!("a response knows movements of segments and no `{name}`");
+                let detail = format!("a response takes movements of segments and no `{name}`");
                 faults.add(&at.key(name), ErrorCode::NotInResponse, detail);
             }
         }
@@ -218,7 +218,7 @@ impl ResponseDescription {
         Ok(PlanAmounts { movements, inner })
     }
 
-    /// Refuses what a prediction of the same plan refuses: segments that leave the face, and a face that goes as one.
+    /// Refuses what a prediction of the same plan refuses: segments that leave the face, and a face that moves rigidly.
     fn check_whole(&self, movements: &[RigidMovement], at: &Pointer) -> Result<(), Problem> {
         let beyond = beyond_face(&self.moved(movements), self.mesh_diagonal_mm);
         if let Some(beyond) = beyond.filter(|_| self.mesh_diagonal_mm > 0.0) {
@@ -231,7 +231,7 @@ impl ResponseDescription {
         }
     }
 
-    /// The parts that a plan would carry along as one, where that is not allowed.
+    /// The parts that a plan would move rigidly, if that is not allowed.
     fn rigidly_carried(&self, movements: &[RigidMovement]) -> RigidlyCarried {
         if self.allow_unfixed {
             return RigidlyCarried::default();
@@ -242,7 +242,7 @@ impl ResponseDescription {
         rigidly_carried(&parts, |segment| movements[segment as usize])
     }
 
-    /// What a reader of the skin of a plan must know of the plan, and after that of the case.
+    /// Warnings on the skin of a plan: of the plan, then of the case.
     pub fn warnings_of(&self, amounts: &PlanAmounts) -> Vec<WarningDocument> {
         let movements = &amounts.movements[..];
         let still = movements.iter().all(|movement| *movement == RigidMovement::default())
@@ -278,7 +278,7 @@ impl ResponseDescription {
             faults.add(at, ErrorCode::UnknownSegment, detail);
         } else if moves {
             let detail =
-                format!("the response was built without segment {name:?}, which has to stay");
+                format!("the response was built without segment {name:?}, which cannot move");
             faults.add(at, ErrorCode::NotInResponse, detail);
         }
     }

@@ -1,5 +1,5 @@
-//! Boundary conditions of each connected part of a case, as a response keeps it: enough to tell which plans would carry a part
-//! along as one.
+//! Boundary conditions of each connected part of a case, as stored in a response: enough to find plans that would move a part
+//! rigidly.
 
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
@@ -9,25 +9,25 @@ use mechanics::boundary::{ConnectedPart, Form, HeldRows, Holder};
 use mechanics::mesh::Vector;
 use mechanics::plan::NUMBERS;
 
-/// A part of the mesh that hangs together by nodes.
+/// A part of the mesh connected by nodes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct ResponsePartDocument {
     pub nodes: u64,
-    /// Its lowest node.
+    /// Its node with the lowest number.
     pub first_node: u32,
-    /// The share of the skin's nodes that are its, of those that are not held.
+    /// Its share of the skin's unconstrained nodes.
     pub skin_share: f64,
     /// The box around it.
     pub box_mm: CornerPair,
     pub held: Vec<HeldFormDocument>,
 }
 
-/// What one segment, or all that stays, holds of a part, as a quadratic form in the twelve numbers (rows of R - I, each
+/// Constraints of a part by one segment, or by all fixed nodes, as a quadratic form in the twelve numbers (rows of R - I, each
 /// followed by its t) of a movement: the mean over its nodes of the squared displacement along the directions in
-/// which they are held. Places from the middle of the part's box, lengths in units of half its diagonal.
+/// which they are constrained. Positions from the centre of the part's box, lengths in units of half its diagonal.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct HeldFormDocument {
-    /// Absent of what stays.
+    /// Absent for fixed nodes.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub segment: Option<String>,

@@ -1,4 +1,4 @@
-//! The binary columns of a response, of first order and of second order in sixteen bits, and what its estimates need.
+//! The binary columns of a response, of first order and of second order in sixteen bits, and the data of its estimates.
 
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
@@ -16,18 +16,18 @@ pub struct ColumnsDocument {
     pub sha256: String,
 }
 
-/// What the estimate of nonlinearity needs to know of the case.
+/// Data of the case for the estimate of nonlinearity.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct LinearityDocument {
-    /// The median distance from the skin to the nearest held node.
+    /// The median distance from the skin to the nearest constrained node.
     pub thickness_mm: f64,
-    /// Whether something is held that no segment of the response moves.
+    /// Whether nodes are constrained that no segment of the response moves.
     pub something_stays: bool,
-    /// For each segment the mean length on the skin of what the second order adds for 1 mm along x, y, z and for 1 rad about
-    /// x, y, z through its centre; grows with the square. Absent where a rule of thumb has to do.
+    /// For each segment the mean length on the skin of the second-order term for 1 mm along x, y, z and for 1 rad about
+    /// x, y, z through its centre; grows with the square. Absent if a rule of thumb is used.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub second_order_mm: Vec<[f64; 6]>,
-    /// The estimate above which an answer is outside the linear range.
+    /// The estimate above which a result is outside the linear range.
     pub range_mm: f64,
 }
 
@@ -35,11 +35,11 @@ pub struct LinearityDocument {
 /// u2 = sum over k <= l of a_k a_l scale_mm[p] column p, p counting (0,0), (0,1), ... (0,n-1), (1,1), ...
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct SecondOrderDocument {
-    /// `GET` hands it over with `order=2`.
+    /// `GET` with `order=2` returns it.
     pub columns: ColumnsDocument,
     /// One for each column.
     pub scale_mm: Vec<f32>,
-    /// For each segment the mean length on the skin of what the third order adds for 1 mm along x, y, z and for 1 rad about
+    /// For each segment the mean length on the skin of the third-order term for 1 mm along x, y, z and for 1 rad about
     /// x, y, z through its centre; grows with the cube.
     pub third_order_mm: Vec<[f64; 6]>,
 }

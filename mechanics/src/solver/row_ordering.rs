@@ -17,7 +17,7 @@ const PARTS_FROM: usize = 12_000;
 /// Free unknowns above which there are four parts and not two.
 const FOUR_PARTS_FROM: usize = 400_000;
 
-/// A numbering of rows by place.
+/// The order of rows in a matrix: a permutation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RowOrdering {
     /// The place of each row.

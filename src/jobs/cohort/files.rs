@@ -1,4 +1,4 @@
-//! The files of a cohort beside its result: `cohort.svg`, boxes with what tests say, and `cohort.csv`, a row for each subject.
+//! The files of a cohort beside its result: `cohort.svg`, box plots with tests, and `cohort.csv`, a row for each subject.
 
 use crate::schema::cohort::document::{CohortDistance, CohortStatistic};
 use crate::schema::cohort::result::{
@@ -11,7 +11,7 @@ use mechanics::format::csv::cell;
 pub(super) const PICTURE: (&str, &str) = ("cohort.svg", "image/svg+xml");
 pub(super) const TABLE: (&str, &str) = ("cohort.csv", "text/csv; charset=utf-8");
 
-/// More pairs than those of four groups stand below the boxes only.
+/// More pairs than those of four groups are listed below the boxes only.
 const MOST_BRACKETS: usize = 6;
 
 /// A row for each subject of each group; distances in mm, in full.

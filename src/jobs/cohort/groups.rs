@@ -6,13 +6,13 @@ use crate::schema::cohort::result::{CohortGroupDocument, CohortRowDocument};
 use crate::schema::compare::result::StatDocument;
 use mechanics::validation::{Statistics, StatisticsError};
 
-/// Groups of which every two are tested, and others that stand in the table with them.
+/// Groups that are tested in pairs, and others that are only in the table.
 pub(super) struct Groups {
     pub tested: Vec<CohortGroupDocument>,
     pub beside: Vec<CohortGroupDocument>,
 }
 
-/// A group of so many subjects with their distances.
+/// A group of subjects with their distances.
 pub(super) fn group(
     spec: &CohortDocument,
     name: &str,

@@ -18,18 +18,18 @@ pub struct CohortInput {
     /// From acceptance to start.
     pub queue_s: Option<f64>,
     pub spec: CohortDocument,
-    /// The stored cohort that the spec has its groups from.
+    /// The stored cohort of the groups.
     #[serde(default)]
     pub cohort: Option<CohortVersionDocument>,
     /// Result of each job, by its id.
     pub comparisons: BTreeMap<String, ComparisonDocument>,
-    /// The SHA-256 of the scan that each compared with, by its id: who the patient was.
+    /// The SHA-256 of the scan of each comparison, by its id: it identifies the patient.
     #[serde(default)]
     pub actuals: BTreeMap<String, String>,
 }
 
 impl CohortInput {
-    /// Takes up what a job found, if it compared.
+    /// Adds the result of a job, if it is a comparison.
     pub fn take(&mut self, job: &str, result: ResultDocument) -> bool {
         let inputs = result.provenance.inputs.into_iter();
         let actual = inputs.into_iter().find(|input| input.role == "actual");
@@ -40,7 +40,7 @@ impl CohortInput {
         has_compared
     }
 
-    /// The hash of everything that decides the numbers.
+    /// The hash of everything that determines the numbers.
     pub fn spec_hash(&self) -> String {
         cohort_hash(&self.spec, self.cohort.as_ref(), &self.comparisons)
     }

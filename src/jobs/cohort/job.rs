@@ -26,10 +26,10 @@ use mechanics::validation::Statistics;
 /// Time a cohort may take, in seconds.
 const WALL_S: f64 = 60.0;
 
-/// Differences in mm that are none: what solving to the usual residual leaves open, a hundred times.
+/// Negligible differences in mm: a hundred times those from the default solver residual.
 const EQUAL_WITHIN_MM: f64 = 1e-4;
 
-/// Makes the table, the boxes and the tests.
+/// Writes the table, the box plots and the tests.
 pub fn cohort_job(
     input: &CohortInput,
     place: &JobContext,
@@ -91,7 +91,7 @@ fn groups(input: &CohortInput) -> Result<Groups, JobError> {
                 Some(distances) => rows.push(CohortRowDocument { subject, distances }),
                 None => {
                     let at = Pointer::root().key("spec").key("groups").key(name).index(index);
-                    let detail = "this comparison has none of the distances that `distance` asks for; `node_wise` needs surfaces whose nodes correspond";
+                    let detail = "this comparison does not have the distances of `distance`; `node_wise` needs surfaces whose nodes correspond";
                     faults.add(&at, ErrorCode::NoSuchOutput, detail);
                 }
             }

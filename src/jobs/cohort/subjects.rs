@@ -6,12 +6,12 @@ use super::input::CohortInput;
 use mechanics::mesh::Warning;
 use mechanics::mesh::ignored::listed;
 
-/// The warnings of a cohort whose pairs are no pairs.
+/// The warnings of a cohort with inconsistent pairs.
 pub(super) fn doubts(input: &CohortInput) -> Vec<Warning> {
     differing(input).into_iter().chain(twice(input)).collect()
 }
 
-/// Places in which groups have different scans: a list in another order.
+/// Places at which groups have different scans: lists in different order.
 fn differing(input: &CohortInput) -> Option<Warning> {
     let most = input.spec.groups.values().map(Vec::len).max().unwrap_or(0);
     let scans_at = |place: usize| {
@@ -25,7 +25,7 @@ fn differing(input: &CohortInput) -> Option<Warning> {
     };
     let places: Vec<usize> = (0..most).filter(differs).collect();
     let detail = format!(
-        "groups are compared pair by pair, and in {} of {most} places their comparisons are with different scans (place {}): are the \
+        "groups are compared in pairs, and in {} of {most} places their comparisons are with different scans (place {}): are the \
          lists in the same order?",
         places.len(),
         listed(places.iter().map(|place| (place + 1).to_string()))
@@ -34,7 +34,7 @@ fn differing(input: &CohortInput) -> Option<Warning> {
     (!places.is_empty()).then_some(warning)
 }
 
-/// Groups in which one scan stands more than once.
+/// Groups with one scan more than once.
 fn twice(input: &CohortInput) -> Vec<Warning> {
     let of_group = |(name, jobs): (&String, &Vec<String>)| {
         let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
@@ -44,7 +44,7 @@ fn twice(input: &CohortInput) -> Vec<Warning> {
         }
         let most = counts.into_values().max().unwrap_or(0);
         let detail = format!(
-            "group {name:?} has {most} comparisons with the same scan: a patient counts once, and the test counts each as another"
+            "group {name:?} has {most} comparisons with the same scan: the test counts each as another patient"
         );
         (most > 1).then(|| Warning::new("subject-twice", detail).with("times", most as f64))
     };

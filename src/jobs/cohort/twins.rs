@@ -1,4 +1,4 @@
-//! Groups of a cohort of twins: the variants of the model, the measured outcome, and no movement at all.
+//! Groups of a cohort of twins: the variants of the model, the measured outcome, and no movement.
 
 use std::collections::BTreeMap;
 
@@ -12,7 +12,7 @@ use crate::schema::compare::result::StatDocument;
 use mechanics::learning::virtual_cohort::{Twin, VARIANTS, twins};
 use mechanics::validation::Statistics;
 
-/// How the table calls what happened, with the errors of measuring it, and a face that stays as it is.
+/// The names in the table of the outcome with measurement errors, and of a face without movement.
 const HAPPENED: &str = "what happened";
 const STILL: &str = "no movement";
 

@@ -21,7 +21,7 @@ pub struct CompareInput {
 }
 
 impl CompareInput {
-    /// The hash of everything that decides the numbers, from the hashes of all surfaces.
+    /// The hash of everything that determines the numbers, from the hashes of all surfaces.
     pub fn spec_hash(&self, prediction: &str, meshes: &ComparedMeshes) -> String {
         let spec = self.spec.to_compare_to();
         let content =
@@ -29,7 +29,7 @@ impl CompareInput {
         hashes::compare_hash(&self.spec, &content)
     }
 
-    /// Refuses what would fail for the number of its samples, which follows from the surfaces.
+    /// Refuses a comparison with too many samples, whose number follows from the surfaces.
     pub fn admit(&self, sources: &dyn MeshSource) -> Result<(), JobError> {
         let at = Pointer::root().key("spec");
         let prediction = self.fetch_prediction(sources, &at.key("prediction"))?;

@@ -28,7 +28,7 @@ use mechanics::progress::{Phase, Progress, Unobserved};
 /// Time a comparison may take, in seconds; a prediction that compares has its own budget.
 const WALL_S: f64 = 600.0;
 
-/// A comparison as a job of its own.
+/// A comparison as a separate job.
 pub fn compare_job(
     input: &CompareInput,
     place: &JobContext,
@@ -71,7 +71,7 @@ pub fn compare_job(
     Ok(JobOutput { result, files: folder.files, meshes: Vec::new() })
 }
 
-/// A surface that was held against another.
+/// A surface that was compared with another.
 struct Measured {
     surface: Arc<TriangleSurface>,
     frame: Option<Frame>,
@@ -111,7 +111,7 @@ impl CompareInput {
         Ok(Measured { surface, frame, prediction, meshes, compared })
     }
 
-    /// The report of a comparison that has ended: its surfaces are measured anew, its numbers are those of its result.
+    /// The report of a finished comparison: its surfaces are measured again, its numbers are those of its result.
     pub fn report(
         &self,
         result: &ResultDocument,
@@ -166,7 +166,7 @@ fn write_maps(
     folder.add(OutputName::SkinGlb, &glb::write(&output)?)
 }
 
-/// A surface where x' = R x + t brings it.
+/// A surface moved by x' = R x + t.
 fn registered(surface: &TriangleSurface, Matrix4x4(rows): &Matrix4x4) -> TriangleSurface {
     let moved = |point: &Vector| {
         Vector::from([0, 4, 8].map(|row| {

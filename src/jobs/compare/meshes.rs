@@ -9,7 +9,7 @@ use crate::schema::predict::result::InputDocument;
 use crate::schema::{Pointer, Problem};
 use mechanics::mesh::{Frame, TriangleSurface};
 
-/// The actual surface, and those that decide how it is aligned.
+/// The actual surface, and those of its alignment.
 pub struct ComparedMeshes {
     pub actual: StoredMesh,
     pub fixed: Option<StoredMesh>,
@@ -17,7 +17,7 @@ pub struct ComparedMeshes {
 }
 
 impl ComparedMeshes {
-    /// The meshes of a spec that stands at `at`.
+    /// The meshes of a spec at `at`.
     pub fn fetch(
         spec: &CompareToDocument,
         sources: &dyn MeshSource,
@@ -46,7 +46,7 @@ impl ComparedMeshes {
         found.map(|mesh| mesh.sha256.clone())
     }
 
-    /// How provenance names them.
+    /// Their names in provenance.
     pub fn to_inputs(&self) -> Vec<InputDocument> {
         let named = [("actual", Some(&self.actual))];
         let deciding = [("fixed", self.fixed.as_ref()), ("moving", self.moving.as_ref())];
@@ -54,7 +54,7 @@ impl ComparedMeshes {
         all.filter_map(|(role, mesh)| Some(mesh?.to_input(role))).collect()
     }
 
-    /// Surfaces in different frames cannot be compared: `fixed` lies as the prediction does, `moving` as the actual one.
+    /// Surfaces in different frames cannot be compared: `fixed` is registered with the prediction, `moving` with the actual one.
     pub fn check_frames(&self, prediction: Option<Frame>, at: &Pointer) -> Result<(), JobError> {
         let fixed = self.fixed.as_ref().and_then(|mesh| mesh.frame);
         let moving = self.moving.as_ref().and_then(|mesh| mesh.frame);
@@ -69,7 +69,7 @@ impl ComparedMeshes {
     }
 }
 
-/// A surface and the frame that marks it.
+/// A surface and its frame mark.
 struct Marked {
     what: &'static str,
     frame: Option<Frame>,
@@ -88,7 +88,7 @@ impl Marked {
     }
 }
 
-/// The surface of a mesh in mm, which stands at a place of the documents.
+/// The surface of a mesh in mm, at a place of the documents.
 pub fn surface_of(mesh: &StoredMesh, at: &Pointer) -> Result<TriangleSurface, JobError> {
     let surface = mesh.surface_in_mm().ok_or_else(|| no_surface(at))?;
     Ok((*surface).clone())

@@ -1,4 +1,4 @@
-//! Comparisons of two surfaces, as a job of their own or as a part of a prediction.
+//! Comparisons of two surfaces, as a separate job or as a part of a prediction.
 
 mod input;
 mod job;

@@ -1,4 +1,4 @@
-//! `distance.svg`: the prediction in colours of its signed distance, and how much of its area has which.
+//! `distance.svg`: the prediction coloured by signed distance, with a histogram by area.
 
 use crate::jobs::report::SIGNED_RANGE_MM;
 use crate::jobs::result::pictures::face_direction;

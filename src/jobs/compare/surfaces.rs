@@ -33,11 +33,11 @@ pub struct ComparisonFindings {
     pub warnings: Vec<Warning>,
 }
 
-/// The two surfaces of a comparison and where in the documents they stand.
+/// The two surfaces of a comparison and their places in the documents.
 pub struct Pair<'a> {
     pub prediction: &'a TriangleSurface,
     pub prediction_frame: Option<Frame>,
-    /// How far each point of the prediction was moved, in mm, where that is known.
+    /// The displacement of each point of the prediction, in mm, if known.
     pub displacement: Option<&'a [Vector]>,
     /// Named parts of the prediction as its points.
     pub skin_regions: &'a BTreeMap<String, Vec<u32>>,
@@ -62,7 +62,7 @@ impl Pair<'_> {
         Ok(ComparisonFindings { document, signed_distance, node_errors, landmark_map, warnings })
     }
 
-    /// The settings of a spec that was checked.
+    /// The settings of a checked spec.
     fn settings(&self, spec: &CompareToDocument) -> Result<ComparisonSettings, JobError> {
         let mut regions = BTreeMap::new();
         for (name, region) in &spec.regions {
@@ -105,7 +105,7 @@ impl Pair<'_> {
         Ok(Region::Points(points.clone()))
     }
 
-    /// What a document that was checked asks for.
+    /// The settings of a checked document.
     pub fn alignment(&self, align: &AlignDocument) -> Result<Alignment, JobError> {
         let mask = align.mask.as_ref().and_then(place_of);
         let pairs =
@@ -152,7 +152,7 @@ impl Pair<'_> {
     }
 }
 
-/// Refuses a surface of which more samples are wanted than can be measured; `at` is where its comparison stands.
+/// Refuses a surface with more samples than can be measured; `at` is the place of its comparison.
 pub fn admit(surface: &StoredMesh, samples_per_mm2: f64, at: &Pointer) -> Result<(), JobError> {
     // What is no surface is refused by the job, with its place.
     let Some(surface) = surface.surface_in_mm() else { return Ok(()) };
@@ -167,7 +167,7 @@ fn landmark_pair(landmark: &LandmarkDocument) -> LandmarkPair {
     LandmarkPair { prediction: landmark.prediction_mm.into(), actual: landmark.actual_mm.into() }
 }
 
-/// The movement that landmarks of both surfaces state.
+/// The movement defined by landmarks of both surfaces.
 pub fn by_landmarks(pairs: &[LandmarkPair]) -> Result<RigidTransform, JobError> {
     let (to, from): (Vec<Vector>, Vec<Vector>) =
         pairs.iter().map(|pair| (pair.prediction, pair.actual)).unzip();
@@ -175,13 +175,13 @@ pub fn by_landmarks(pairs: &[LandmarkPair]) -> Result<RigidTransform, JobError> 
     found.map(|found| found.transform).map_err(|error| JobError::Alignment(error.to_string()))
 }
 
-/// The matrix of a document that was checked.
+/// The matrix of a checked document.
 fn transform_of(align: &AlignDocument) -> RigidTransform {
     let Matrix4x4(matrix) = align.matrix4x4.unwrap_or_default();
     RigidTransform::from_matrix4(&matrix)
 }
 
-/// The part of space of a document that was checked.
+/// The part of space of a checked document.
 pub fn place_of(document: &PlaceDocument) -> Option<SphereOrBox> {
     if let Some(sphere) = document.sphere_mm {
         let [x, y, z, radius] = sphere.0;

@@ -25,7 +25,7 @@ pub struct ConformInput {
     pub spec: ConformDocument,
 }
 
-/// A conformation whose documents are sound; lengths in mm.
+/// A conformation with valid documents; lengths in mm.
 pub struct PreparedConformation {
     /// Each mesh with its role.
     pub meshes: Vec<(&'static str, StoredMesh)>,
@@ -114,7 +114,7 @@ impl ConformInput {
         Ok((nodes(&spec.skin).to_vec(), bone))
     }
 
-    /// Refuses regions, materials, muscles and sliding of which a case of the template's own mesh could not be made.
+    /// Refuses regions, materials, muscles and sliding that are invalid in a case of the template's mesh.
     fn check_template(
         &self,
         mesh: &StoredMesh,
@@ -152,7 +152,7 @@ impl ConformInput {
         Ok(faults.into_result()?)
     }
 
-    /// Refuses muscles that are to go by landmarks which give no map.
+    /// Refuses muscles to be mapped by landmarks that define no map.
     fn check_map_of_muscles(&self, landmarks: &[Landmark]) -> Result<(), JobError> {
         match (self.spec.muscles_by, spline_of(landmarks)) {
             (MuscleMapName::Landmarks, Err(error)) => {
@@ -164,7 +164,7 @@ impl ConformInput {
     }
 }
 
-/// The members of a template that a case has under the same names.
+/// The members that a template and a case have in common.
 const OF_TISSUE: [&str; 4] = ["regions", "materials", "muscles", "sliding"];
 
 fn volume_in_mm(stored: &StoredMesh, at: &Pointer) -> Result<VolumeMesh, JobError> {

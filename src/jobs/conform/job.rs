@@ -1,4 +1,4 @@
-//! The job of a conformation: the template brought to the patient, its cells repaired, its files written.
+//! The job of a conformation: the template conformed to the patient, its cells repaired, its files written.
 
 use std::sync::Arc;
 
@@ -35,7 +35,7 @@ use mechanics::repair::{Bounds, RepairReport, repair};
 /// Time a conformation may take, in seconds.
 const WALL_S: f64 = 600.0;
 
-/// Brings a template to a patient, as a job.
+/// Conforms a template to a patient.
 pub fn conform_job(
     input: &ConformInput,
     place: &JobContext,
@@ -125,7 +125,7 @@ impl PreparedConformation {
     }
 }
 
-/// The case of a template on a patient, and what its own check says of it.
+/// The case of a template on a patient, and its check.
 struct ConformedCase {
     case: CaseDocument,
     muscles: Vec<MappedMuscleDocument>,
@@ -161,11 +161,11 @@ fn refused_case(problem: &Problem) -> Warning {
     made_case_refused(&problem.detail)
 }
 
-/// A mesh whose cells no repair made valid is refused where it is read.
+/// The warning of a mesh with invalid cells, which is refused when it is read.
 fn with_inverted_cells(after: &QualityReport) -> Warning {
     let why = format!(
-        "{} of {} cells are turned inside out at some point, and no repair within its bounds mended them; look at the distances of \
-         skin and bone, state landmarks, leave out a bone surface that is open or not that of the template's nodes, or let \
+        "{} of {} cells are inverted at some point, and no repair within its bounds corrected them; look at the distances of \
+         skin and bone, state landmarks, omit a bone surface that is open or not that of the template's nodes, or let \
          nodes move farther with `repair`",
         after.inverted, after.cells
     );
@@ -173,13 +173,10 @@ fn with_inverted_cells(after: &QualityReport) -> Warning {
 }
 
 fn made_case_refused(why: &str) -> Warning {
-    Warning::new(
-        "made-case-refused",
-        format!("the case of the mesh is refused as it stands: {why}"),
-    )
+    Warning::new("made-case-refused", format!("the case of the mesh is refused: {why}"))
 }
 
-/// From nodes to a surface, where there is one, in mm.
+/// From nodes to a surface, if there is one, in mm.
 fn distances(
     surface: Option<&TriangleSurface>,
     mesh: &VolumeMesh,
@@ -215,7 +212,7 @@ impl Conformed {
     }
 }
 
-/// With the place of the spec that it is about.
+/// With its place in the spec.
 fn refused(error: &ConformationError, clock: &Observed) -> JobError {
     let at = Pointer::root().key("spec");
     let of_sheet = |sheet: &SheetName| match sheet {

@@ -13,21 +13,21 @@ use mechanics::conformation::{
 use mechanics::mesh::{Vector, VolumeMesh};
 use mechanics::registration::ThinPlateSpline;
 
-/// Places of lines are told to this many parts of a mm.
+/// Positions of lines are rounded to this fraction of a mm.
 const PARTS_OF_MM: f64 = 1e6;
 
 /// The maps between a template and a patient.
 pub(super) struct TissueMaps<'a> {
     template: &'a VolumeMesh,
     conformation: &'a Deformation,
-    /// Through all landmarks, where they give one.
+    /// Through all landmarks, if they define one.
     spline: Option<ThinPlateSpline>,
     by: MuscleMapName,
     most_points: usize,
 }
 
 impl<'a> TissueMaps<'a> {
-    /// That muscles can go by landmarks, where that is asked for, was checked with the document.
+    /// Whether muscles can be mapped by landmarks, if requested, was checked with the document.
     pub fn new(
         prepared: &'a PreparedConformation,
         conformation: &'a Deformation,
@@ -43,7 +43,7 @@ impl<'a> TissueMaps<'a> {
         }
     }
 
-    /// The map that was asked for, and the other one if there are both.
+    /// The requested map, and the other one if both exist.
     fn maps(&self) -> (&dyn Warp, Option<&dyn Warp>) {
         let conformation: &dyn Warp = self.conformation;
         match (self.by, &self.spline) {
@@ -112,7 +112,7 @@ impl<'a> TissueMaps<'a> {
     }
 }
 
-/// A name for an array of fibres that the mesh has not.
+/// A name for an array of fibres that is not in the mesh.
 fn unused(mesh: &VolumeMesh, of: &str) -> String {
     let of: String = of.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
     let has =

@@ -1,4 +1,4 @@
-//! The body that is meshed: a scan, a label map, or a skin with bones, with its bone parted.
+//! The body to be meshed: a scan, a label map, or a skin with bones, with its bone in segments.
 
 use std::sync::Arc;
 
@@ -30,7 +30,7 @@ impl Body {
     }
 }
 
-/// A CT, and where there is one the surface scan that is its skin.
+/// A CT, and optionally the surface scan that is its skin.
 pub struct ScannedHead {
     pub image: Arc<ImageVolume>,
     pub skin: Option<SkinScan>,
@@ -40,7 +40,7 @@ pub struct ScannedHead {
 pub struct Surfaces {
     pub skin: Arc<TriangleSurface>,
     pub bones: Vec<Arc<TriangleSurface>>,
-    /// Where they stand.
+    /// Their places.
     pub document: SurfacesDocument,
 }
 
@@ -54,7 +54,7 @@ pub struct PartedBody {
 }
 
 impl Surfaces {
-    /// The body between the surfaces, with its bone in segments and what was mended.
+    /// The body between the surfaces, with its bone in segments and the report of repairs.
     pub fn part(&self, rules: &AnatomyRules) -> Result<PartedBody, JobError> {
         let bones: Vec<&TriangleSurface> = self.bones.iter().map(AsRef::as_ref).collect();
         let domain =
@@ -68,7 +68,7 @@ impl Surfaces {
         Ok(PartedBody { domain: Box::new(domain), bone, warnings, skin: None })
     }
 
-    /// With the place of the surface that it is about.
+    /// With the place of its surface.
     fn refusal(&self, error: &SurfaceDomainError) -> JobError {
         let at = Pointer::root().key("spec").key("surfaces");
         let at = match error.surface() {

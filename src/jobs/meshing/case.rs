@@ -1,4 +1,4 @@
-//! The case that a mesh from a scan is made for.
+//! The case of a mesh from a scan.
 
 use crate::schema::CaseDocument;
 use crate::schema::case::document::{
@@ -16,7 +16,7 @@ pub fn bone_file(segment: usize) -> String {
     format!("bone-{}.vtp", segment + 1)
 }
 
-/// The case of a volume mesh: its segments, what is fixed, and its skin, all by node sets, and the names of its regions.
+/// The case of a volume mesh: its segments, fixed nodes and skin, all by node sets, and the names of its regions.
 pub fn case_of(anatomy: &Anatomy, volume: &str, frame: Frame, regions: &[&str]) -> CaseDocument {
     let mut case = CaseDocument::of_volume(volume, LengthUnit::Mm);
     case.frame = frame.into();

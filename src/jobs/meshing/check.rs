@@ -1,4 +1,4 @@
-//! Check of the case of a mesh from a scan, with what the scan told.
+//! Check of the case of a mesh from a scan, with the warnings of the scan.
 
 use std::sync::Arc;
 
@@ -12,14 +12,14 @@ use crate::schema::{CaseDocument, WarningDocument};
 use mechanics::anatomy::Anatomy;
 use mechanics::mesh::Frame;
 
-/// A mesh that was made, its frame, and what there is to say of it.
+/// A new mesh, its frame, and its warnings.
 pub(super) struct MadeAnatomy<'a> {
     pub anatomy: &'a Anatomy,
     pub frame: Frame,
     pub told: Vec<WarningDocument>,
 }
 
-/// Checks a case as it will be stored; `None` where only a plan can tell what holds it.
+/// Checks a case as it will be stored; `None` if its boundary conditions depend on a plan.
 pub(super) fn check_anatomy(
     case: &CaseDocument,
     made: &MadeAnatomy,

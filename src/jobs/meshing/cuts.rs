@@ -1,4 +1,4 @@
-//! Paths of cuts through the bone that was found, and how clear they keep of what must not be sawn.
+//! Paths of cuts through the segmented bone, and their clearance from structures at risk.
 
 use crate::schema::Triple;
 use crate::schema::meshing::cuts::{ClearanceDocument, CutPathDocument};
@@ -13,7 +13,7 @@ use mechanics::osteotomy::cut_face::{CutFace, cut_faces};
 pub const CUT_PATHS_FILE: &str = "cut-paths.csv";
 pub const CUT_PATHS_MEDIA_TYPE: &str = "text/csv; charset=utf-8";
 
-/// The cuts of a mesh that was made, and a warning for each structure that one comes too near to.
+/// The cuts of a new mesh, and a warning for each structure with too little clearance.
 pub fn cut_paths(rules: &AnatomyRules, anatomy: &Anatomy) -> (Vec<CutPathDocument>, Vec<Warning>) {
     let mut warnings = Vec::new();
     let osteotomy = &rules.osteotomy;
@@ -42,7 +42,7 @@ fn path(osteotomy: &Osteotomy, face: &CutFace, warnings: &mut Vec<Warning>) -> C
             let words = if is_crossed { "goes through" } else { "comes too near to" };
             let [x, y, z]: [f64; 3] = at.into();
             let detail = format!(
-                "cut `{}` of segment `{segment}` {words} {:?}: {distance:.2} mm at ({x:.1}, {y:.1}, {z:.1}) mm, {} mm are wanted",
+                "cut `{}` of segment `{segment}` {words} {:?}: {distance:.2} mm at ({x:.1}, {y:.1}, {z:.1}) mm, {} mm are needed",
                 cut.name, risk.name, risk.clearance
             );
             let warning = Warning::new("cut-near-risk", detail).with("distance_mm", distance);
@@ -66,7 +66,7 @@ fn path(osteotomy: &Osteotomy, face: &CutFace, warnings: &mut Vec<Warning>) -> C
     }
 }
 
-/// The paths as comma-separated values: a row for each point, numbers in full, so that the same bits are read again.
+/// The paths as comma-separated values: a row for each point, numbers in full, to be read back bit for bit.
 pub fn cut_paths_csv(cuts: &[CutPathDocument], frame: Frame) -> String {
     let mut text =
         "frame,cut,segment,path,x_mm,y_mm,z_mm,normal_x,normal_y,normal_z\r\n".to_owned();

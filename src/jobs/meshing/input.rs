@@ -25,7 +25,7 @@ pub struct MeshingInput {
     /// From acceptance to start.
     pub queue_s: Option<f64>,
     pub spec: MeshingDocument,
-    /// The stored case that waits for the mesh, if one does.
+    /// The stored case that waits for the mesh, if any.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub case: Option<WaitingCase>,
 }
@@ -37,7 +37,7 @@ pub struct WaitingCase {
     pub document: MeshedCaseDocument,
 }
 
-/// A meshing whose documents are sound.
+/// A meshing with valid documents.
 pub struct PreparedMeshing {
     /// The scan or the surfaces, each with its role.
     pub meshes: Vec<(String, StoredMesh)>,
@@ -48,7 +48,7 @@ pub struct PreparedMeshing {
     pub frame: Frame,
 }
 
-/// The meshes of a document, and the frame that they are in.
+/// The meshes of a document, and their frame.
 struct Fetched {
     meshes: Vec<(String, StoredMesh)>,
     body: Body,
@@ -144,7 +144,7 @@ fn fetch_labels(document: &LabelsDocument, sources: &dyn MeshSource) -> Result<F
     Ok(Fetched { meshes: vec![("labels".to_owned(), labels)], body, frame })
 }
 
-/// An image, turned to LPS if it is known how it lies, and its frame then.
+/// An image, converted to LPS if its orientation is known, and its frame then.
 fn fetch_image(
     id: &str,
     at: &Pointer,
@@ -172,7 +172,7 @@ fn roles_of_bones(document: &SurfacesDocument) -> impl Iterator<Item = String> {
     whole.chain(document.bones.iter().map(|bone| format!("bone {}", bone.name.trim())))
 }
 
-/// The frame that marks in the files of surfaces name; two that differ are refused.
+/// The frame mark of the files of surfaces; two that differ are refused.
 fn one_frame(
     places: &[(Pointer, &String)],
     fetched: &[StoredMesh],
@@ -189,7 +189,7 @@ fn one_frame(
     }
 }
 
-/// 3D Slicer takes a file of a volume mesh for LPS, so that all is turned to it that can be.
+/// 3D Slicer reads a file of a volume mesh as LPS, so that everything is converted to it if possible.
 fn lps_if_known(frame: Frame) -> Frame {
     match frame {
         Frame::Ras | Frame::Lps => Frame::Lps,

@@ -1,4 +1,4 @@
-//! The job of a meshing: the scan or the surfaces parted and meshed, the files written.
+//! The job of a meshing: the scan or the surfaces segmented and meshed, the files written.
 
 use std::sync::Arc;
 
@@ -35,7 +35,7 @@ use mechanics::progress::{Phase, Progress};
 /// The picture of slices through the mesh.
 pub const SLICES_FILE: &str = "slices.svg";
 
-/// Meshes a scan or what lies between surfaces, and writes its files.
+/// Meshes a scan or the space between surfaces, and writes its files.
 pub fn meshing_job(
     input: &MeshingInput,
     place: &JobContext,
@@ -85,7 +85,7 @@ pub fn meshing_job(
     Ok(JobOutput { result, files, meshes: meshes_of(anatomy, prepared.frame, told) })
 }
 
-/// The meshes that the case names: the volume and the segments.
+/// The meshes of the case: the volume and the segments.
 fn meshes_of(anatomy: Anatomy, frame: Frame, told: Vec<WarningDocument>) -> Vec<MadeMesh> {
     let volume = StoredShape::Volume(Arc::new(anatomy.volume));
     let bones = anatomy.bone.segments.into_iter().zip(anatomy.bones);
@@ -101,13 +101,13 @@ fn meshes_of(anatomy: Anatomy, frame: Frame, told: Vec<WarningDocument>) -> Vec<
 }
 
 impl PreparedMeshing {
-    /// Those that parted the scan.
+    /// The thresholds of the scan.
     fn thresholds_hu(&self) -> Option<HounsfieldThresholdsDocument> {
         let ImageOptions { skin_threshold: skin, bone_threshold: bone, .. } = self.rules.image;
         self.body.image().map(|_| HounsfieldThresholdsDocument { skin, bone })
     }
 
-    /// What there is to say of the scan or the surfaces, and of the mesh.
+    /// The warnings on the scan or the surfaces, and on the mesh.
     fn told(&self, anatomy: &Anatomy) -> Vec<WarningDocument> {
         let of_meshes = self.meshes.iter().flat_map(|(_, mesh)| &mesh.warnings);
         warning_documents(of_meshes.chain(&anatomy.warnings))
@@ -119,9 +119,9 @@ struct MeshingOutput<'a> {
     prepared: &'a PreparedMeshing,
     anatomy: &'a Anatomy,
     found: MeshingResultDocument,
-    /// Cuts that come too near to what must not be sawn.
+    /// Cuts too near to structures at risk.
     near: Vec<Warning>,
-    /// The surface scan where it lies in the CT.
+    /// The surface scan, registered with the CT.
     skin: Option<FittedScan>,
 }
 

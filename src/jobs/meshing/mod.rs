@@ -1,4 +1,4 @@
-//! Meshing: from an image or surfaces to a volume mesh with its node sets, and the case that it is made for.
+//! Meshing: from an image or surfaces to a volume mesh with its node sets, and its case.
 
 mod body;
 mod case;

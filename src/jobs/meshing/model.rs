@@ -23,7 +23,7 @@ use mechanics::meshing::MeshingError;
 const MM3_IN_ML: f64 = 1000.0;
 
 impl PreparedMeshing {
-    /// The body with its bone in segments; refused where it does not hold them, or a cut leaves a bridge.
+    /// The body with its bone in segments; refused if it does not contain them, or a cut leaves a bridge.
     pub fn part(&self, clock: &Observed) -> Result<PartedBody, JobError> {
         let osteotomy = &self.rules.osteotomy;
         let at = match &self.body {
@@ -45,7 +45,7 @@ impl PreparedMeshing {
         Ok(body)
     }
 
-    /// With all that is to be told of the scan: its report, bone that is loose, tissue that is left out.
+    /// With all warnings on the scan: its report, loose bone, omitted tissue.
     fn part_scan(&self, head: &ScannedHead, clock: &Observed) -> Result<PartedBody, JobError> {
         let scan: &ImageVolume = &head.image;
         let skin = head.skin.as_ref().map(|skin| skin.fit(scan, &self.rules.image, clock));
@@ -102,7 +102,7 @@ impl PreparedMeshing {
         Ok(PartedBody { domain: Box::new(domain), bone, warnings, skin: None })
     }
 
-    /// The mesh with its node sets, and all that is to be told of the body and of it.
+    /// The mesh with its node sets, and all warnings on it and the body.
     pub fn mesh(&self, body: PartedBody, clock: &Observed) -> Result<Anatomy, JobError> {
         let PartedBody { domain, bone, warnings, .. } = body;
         let mut anatomy =
@@ -115,7 +115,7 @@ impl PreparedMeshing {
     }
 }
 
-/// How much tissue the region of interest leaves out.
+/// The tissue outside the region of interest.
 fn cut_off(
     domain: &ImageDomain,
     options: &ImageOptions,
@@ -125,7 +125,7 @@ fn cut_off(
     }
     let volume_ml = domain.cut_off(&options.limits)? / MM3_IN_ML;
     let detail = format!(
-        "{volume_ml:.0} ml of soft tissue lie beyond the region and are left out; what remains ends there as where the \
+        "{volume_ml:.0} ml of soft tissue beyond the region are omitted; the boundary there is treated as where the \
          scan ends"
     );
     Ok(Some(Warning::new("tissue-cut-off", detail).with("volume_ml", volume_ml)))

@@ -1,4 +1,4 @@
-//! The surface scan of a face beside its CT: fetched, brought onto the skin of the CT, and put in its place.
+//! The surface scan of a face beside its CT: fetched, registered with the skin of the CT, and used instead of it.
 
 use std::sync::Arc;
 
@@ -16,10 +16,10 @@ use mechanics::image::ImageVolume;
 use mechanics::mesh::{Frame, TriangleSurface, Vector};
 use mechanics::registration::{AlignmentError, SphereOrBox};
 
-/// Its file, where it lies in the CT.
+/// Its file, registered with the CT.
 pub const SKIN_SCAN_FILE: &str = "skin-scan.vtp";
 
-/// A surface scan in mm, in LPS where its file names a frame.
+/// A surface scan in mm, in LPS if its file names a frame.
 pub struct SkinScan {
     surface: Arc<TriangleSurface>,
     rules: SkinScanRules,
@@ -29,7 +29,7 @@ fn place() -> Pointer {
     Pointer::root().key("spec").key("skin_scan")
 }
 
-/// Whether x and y of places change their sign, to be in LPS.
+/// Whether x and y of positions change sign, to be in LPS.
 fn turned(point: Vector, frame: Frame) -> Vector {
     match frame {
         Frame::Ras => Vector::new(-point.x, -point.y, point.z),
@@ -50,7 +50,7 @@ fn turned_place(place: SphereOrBox, frame: Frame) -> SphereOrBox {
 }
 
 impl SkinScan {
-    /// The stored scan, and how it is brought to the CT; places of the document are in `stated`, the frame of its osteotomy.
+    /// The stored scan, and its registration with the CT; positions of the document are in `stated`, the frame of its osteotomy.
     pub fn fetch(
         document: &SkinScanDocument,
         stated: Frame,
@@ -72,7 +72,7 @@ impl SkinScan {
         Ok((stored, SkinScan { surface: Arc::new(surface), rules }))
     }
 
-    /// Brings the scan onto the skin of the CT, or says at the place of the document why not.
+    /// Registers the scan with the skin of the CT, or returns the reason at its place in the document.
     pub fn fit(
         &self,
         image: &ImageVolume,
@@ -97,7 +97,7 @@ impl SkinScan {
     }
 }
 
-/// The skin of a body by a scan that lies where it belongs, of which a jaw was moved by so many mm.
+/// The skin of a body from a registered scan, with the movement of a jaw in mm.
 pub fn scanned_skin(found: &FittedScan, way: f64) -> ScannedSkin {
     ScannedSkin { surface: found.surface.clone(), reach: REACH_MM + way, blend: BLEND_MM }
 }

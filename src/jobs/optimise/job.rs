@@ -31,14 +31,14 @@ use mechanics::response::{
     BeyondLinear, COLUMNS_PER_SEGMENT, ColumnRequest, ResponseError, ResponseOrder, chosen,
 };
 
-/// A difference between full solution and response that is reported, in mm: stored in single precision and
-/// solved to the usual residual they agree to 1e-4 mm.
+/// Reported difference between full solution and response, in mm: stored in single precision and
+/// solved to the default residual they agree to 1e-4 mm.
 const NOTICEABLE: f64 = 0.01;
 
-/// Why an answer without a full solution does not estimate what linear elasticity leaves out.
-const NOT_VERIFIED: &str = "the plan was not solved in full: ask with `verify`";
+/// Why a result without a full solution has no estimate of the linearisation error.
+const NOT_VERIFIED: &str = "the plan was not solved in full: set `verify`";
 
-/// The plan that was found, and the skin that the response gives it.
+/// The resulting plan, and its skin from the response.
 struct OptimisedPlan {
     document: OptimisationDocument,
     displacement: Vec<Vector>,
@@ -47,7 +47,7 @@ struct OptimisedPlan {
     solver: SolverDocument,
 }
 
-/// Finds a plan and writes its skin as a prediction would.
+/// Finds a plan and writes its skin like a prediction.
 pub fn optimise_job(
     input: &OptimiseInput,
     place: &JobContext,
@@ -161,7 +161,7 @@ impl OptimiseInput {
 }
 
 impl OptimisedPlan {
-    /// The answer with the largest difference between the skin of the full solution and that of the response.
+    /// The result with the largest difference between the skin of the full solution and that of the response.
     fn verified(
         &self,
         planned: &Prepared,
@@ -189,7 +189,7 @@ impl OptimisedPlan {
         (document, (difference > most).then_some(warning))
     }
 
-    /// The skin of the response as files, without a full solution: no reactions, and nothing of the inside.
+    /// The skin of the response as files, without a full solution: no reactions, no volume.
     fn publish(
         self,
         input: &PredictInput,

@@ -16,23 +16,23 @@ use mechanics::optimisation::{Goal, InnerBounds, SkinPoint, Target};
 use mechanics::prediction::{LANDMARK_FAR, Skin};
 use mechanics::response::{InnerLoad, ResponseError, chosen};
 
-/// Inverse planning whose documents are sound.
+/// Inverse planning with valid documents.
 pub struct PreparedOptimisation {
     /// The scene in which nothing moves.
     pub rest: Prepared,
     pub targets: Vec<Target>,
-    /// How many segments move.
+    /// The number of moving segments.
     pub moving: usize,
-    /// Growth and muscles, and how much there may be of each.
+    /// Growth and muscles, with their bounds.
     pub inner: Vec<InnerLoad>,
     pub inner_bounds: Vec<InnerBounds>,
     pub constants: Vec<TissueConstant>,
-    /// Those that only inverse planning has.
+    /// Settings of inverse planning only.
     pub warnings: Vec<Warning>,
     pub spec_hash: String,
 }
 
-/// The name of the part of the skin that a target selects. A part of the case with the same name would be
+/// The name of the part of the skin of a target. A part of the case with the same name would be
 /// hidden while the targets are read, and is back in the prediction.
 fn part_of(target: usize) -> String {
     format!("target {target}")
@@ -40,7 +40,7 @@ fn part_of(target: usize) -> String {
 
 impl OptimiseInput {
     /// Fetches the meshes and checks the documents as those of a prediction in which nothing moves.
-    /// Everything wrong is reported; pointers start at `/case` and `/spec`.
+    /// All faults are reported; pointers start at `/case` and `/spec`.
     pub fn prepare(
         &self,
         sources: &dyn MeshSource,
@@ -89,7 +89,7 @@ impl OptimiseInput {
         PredictInput { job: None, queue_s: None, case, plan, spec }
     }
 
-    /// The places of the rest documents are places of the spec.
+    /// Maps places of the undeformed prediction's documents to places of the spec.
     fn in_spec(&self, error: JobError) -> JobError {
         let JobError::Refused(mut problem) = error else { return error };
         for index in 0..self.spec.targets.len() {
@@ -106,7 +106,7 @@ impl OptimiseInput {
         JobError::Refused(problem)
     }
 
-    /// What a response that cannot be built means for the job.
+    /// The job error of a response that cannot be built.
     pub(super) fn judge(&self, error: ResponseError) -> JobError {
         match error {
             ResponseError::Prediction(error) => error.into(),
@@ -116,7 +116,7 @@ impl OptimiseInput {
         }
     }
 
-    /// The places of the response's spec are places of this one.
+    /// Maps places of the response's spec to places of this one.
     fn in_optimise(&self, mut problem: Problem) -> Problem {
         for index in 0..self.spec.growth.len() {
             let own = format!("/spec/growth/{index}");
@@ -183,13 +183,13 @@ impl OptimiseInput {
     }
 }
 
-/// A single place that a target is about, and what it is called.
+/// A single point of a target, and its name.
 struct NamedPoint {
     at: Vector,
     name: String,
 }
 
-/// `None` of a target of nodes.
+/// `None` for a target of nodes.
 fn place_of(document: &TargetDocument, landmarks: &BTreeMap<String, Vector>) -> Option<NamedPoint> {
     let stated = document.point_mm.map(|Triple([x, y, z])| NamedPoint {
         at: Vector::new(x, y, z),
@@ -212,14 +212,14 @@ fn node_goals(document: &TargetDocument, part: &str, skin: &Skin) -> Vec<Goal> {
     points.iter().map(goal).collect()
 }
 
-/// Refuses positions that no movement within the limits comes near to.
+/// Refuses positions beyond all movements within the limits.
 fn check_reach(goals: &[Goal], at: &Pointer, limits: &Limits, faults: &mut Faults) {
     let wanted = goals.iter().flat_map(|goal| goal.displacement).flatten();
     let farthest = wanted.map(f64::abs).fold(0.0, f64::max);
     let limit = limits.translation_mm;
     if farthest > limit {
         let detail = format!(
-            "a component is {farthest:.3} mm from where it is at rest, at most {limit} mm are allowed"
+            "a component is {farthest:.3} mm from its start position, at most {limit} mm are allowed"
         );
         faults.add(at, ErrorCode::OutOfRange, detail);
     }

@@ -1,4 +1,4 @@
-//! Unknown growth and constants of regions, and the materials that follow from them.
+//! Unknown growth and constants of regions, and the resulting materials.
 
 use super::input::OptimiseInput;
 use crate::jobs::failure::JobError;
@@ -11,7 +11,7 @@ use mechanics::optimisation::{ConstantBounds, ConstantError, ConstantKind, Inner
 use mechanics::prediction::Scene;
 use mechanics::response::InnerLoad;
 
-/// A constant that is looked for, and the region that states it.
+/// An unknown constant, and its region.
 pub struct TissueConstant {
     pub region: String,
     pub bounds: ConstantBounds,
@@ -24,7 +24,7 @@ impl TissueConstant {
 }
 
 impl OptimiseInput {
-    /// How much there may be of each column of growth and muscles.
+    /// The bounds of each column of growth and muscles.
     pub(super) fn inner_bounds(&self, inner: &[InnerLoad]) -> Vec<InnerBounds> {
         let bounds = |load: &InnerLoad| match load {
             InnerLoad::Growth(region) => {
@@ -47,7 +47,7 @@ impl OptimiseInput {
         inner.iter().map(bounds).collect()
     }
 
-    /// The constants that are looked for; refuses those of regions that a case does not have, and of tissue that is not
+    /// The unknown constants; refuses those of regions that a case does not have, and of tissue that is not
     /// isotropic.
     pub(super) fn constants(&self, rest: &Prepared) -> Result<Vec<TissueConstant>, JobError> {
         let mut constants = Vec::new();
@@ -79,7 +79,7 @@ impl OptimiseInput {
         Ok(constants)
     }
 
-    /// The numbers of the regions that a name stands for: `*` for those whose material is stated by nothing else.
+    /// The numbers of the regions of a name: `*` for those without any other material.
     fn regions_of(&self, name: &str, rest: &Prepared) -> Option<Vec<usize>> {
         let regions = || rest.scene.regions.iter().enumerate();
         if name != "*" {
@@ -92,7 +92,7 @@ impl OptimiseInput {
         Some(regions().filter(|(_, own)| !is_stated(own)).map(|(number, _)| number).collect())
     }
 
-    /// The materials of the spec with the constants that a scene has now; none where none were looked for.
+    /// The materials of the spec with the present constants of a scene; none if none are unknown.
     pub(super) fn materials(
         &self,
         constants: &[TissueConstant],

@@ -16,14 +16,14 @@ use crate::schema::predict::check::{CheckDocument, ClassCounts, SkinSummary};
 use mechanics::mesh::Warning;
 use mechanics::prediction::{NodeClass, Scene};
 
-/// The counts of a check, and the picture on demand: drawing takes longer than counting.
+/// The counts of a check, and the picture on request: drawing takes longer than counting.
 pub struct CheckReport {
     pub document: CheckDocument,
     prepared: Prepared,
 }
 
 impl CheckReport {
-    /// `classes.svg`: the boundary coloured by what holds it.
+    /// `classes.svg`: the boundary coloured by node class.
     pub fn picture(&self) -> Result<String, JobError> {
         self.prepared.classes_picture()
     }
@@ -42,7 +42,7 @@ pub fn check(
 }
 
 impl Prepared {
-    /// The counts of everything that is held, and what solving is expected to take.
+    /// The counts of constrained nodes, and the expected cost of solving.
     pub fn summary(&self, input: &PredictInput) -> CheckDocument {
         let scene = &self.scene;
         let skin = &scene.skin;
@@ -91,13 +91,13 @@ impl Prepared {
         }
     }
 
-    /// The boundary coloured by what holds it.
+    /// The boundary coloured by node class.
     pub fn classes_picture(&self) -> Result<String, JobError> {
         let counts = class_counts(&self.scene);
         let joined: u64 = counts.joined.values().sum();
         let (fixed, sliding) = (counts.fixed, counts.sliding);
         let title = format!(
-            "What holds the tissue: {joined} joined, {fixed} fixed, {sliding} sliding nodes"
+            "Constraints of the tissue: {joined} joined, {fixed} fixed, {sliding} sliding nodes"
         );
         Ok(classes_picture(&self.scene, self.case.frame, &title)?)
     }

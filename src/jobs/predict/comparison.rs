@@ -8,7 +8,7 @@ use crate::jobs::result::skin::PredictedSkin;
 use crate::schema::Pointer;
 use mechanics::mesh::Frame;
 
-/// Compares the predicted skin with what the spec names, if it names something.
+/// Compares the predicted skin with the surface of the spec, if any.
 pub fn compare_skin(
     input: &PredictInput,
     prepared: &Prepared,

@@ -1,4 +1,4 @@
-//! Density of tissue that gravity pulls on, where no material states one.
+//! Density of tissue under gravity, if no material states one.
 
 use std::collections::BTreeSet;
 
@@ -6,10 +6,10 @@ use super::input::PredictInput;
 use mechanics::mesh::Warning;
 use mechanics::mesh::ignored::listed;
 
-/// Of water, in g/cm³: what a material without a density has.
+/// Of water, in g/cm³: the default of materials.
 const DEFAULT: f64 = 1.0;
 
-/// The warning where gravity acts on tissue without a stated density. Of a case without materials another warning tells
+/// The warning if gravity acts on tissue without a stated density. A case without materials has another warning for
 /// it.
 pub(super) fn default_density(input: &PredictInput) -> Option<Warning> {
     if !input.plan.loads.iter().any(|load| load.gravity_m_per_s2.is_some()) {
@@ -24,7 +24,7 @@ pub(super) fn default_density(input: &PredictInput) -> Option<Warning> {
     let without: BTreeSet<&String> =
         entries().map(|(name, _)| name).filter(|name| !stated.contains(name)).collect();
     let detail = format!(
-        "gravity pulls on tissue whose density is not stated, and {DEFAULT} g/cm3 is taken: `density_g_per_cm3` of {}",
+        "gravity acts on tissue without a stated density, and {DEFAULT} g/cm3 is used: `density_g_per_cm3` of {}",
         listed(&without)
     );
     let warning = Warning::new("default-density", detail).with("density_g_per_cm3", DEFAULT);

@@ -12,7 +12,7 @@ use crate::schema::predict::time_band::TimeBandDocument;
 use mechanics::prediction::{Accepted, Rung, SECOND_ORDER_TAKES};
 use mechanics::response::by_rule_of_thumb;
 
-/// The rule of thumb is made not to be too small; at most it was so many times too large (`docs/estimates.md`).
+/// The rule of thumb is conservative; it was too large by at most this factor (`docs/estimates.md`).
 const TOO_LARGE: f64 = 6.0;
 
 /// The third order of a plan is about so many times the square of the second over the largest movement, which is about twice the mean
@@ -20,7 +20,7 @@ const TOO_LARGE: f64 = 6.0;
 const THIRD: f64 = 3.0;
 
 impl Prepared {
-    /// The models of `auto` with what each is expected to take; none for a method that was asked for, nor of growth
+    /// The models of `auto` with the expected cost of each; none for other methods, nor of growth
     /// and muscles.
     pub fn expectation(&self, input: &PredictInput) -> Option<ExpectationDocument> {
         let accepted = input.spec.accepted()?;
@@ -69,7 +69,7 @@ impl Prepared {
     }
 }
 
-/// The cheapest model of a plan, as far as linearity tells.
+/// The cheapest model of a plan, by its linearisation error.
 fn needed(linearity_mm: f64, movement_mm: f64, accepted: &Accepted) -> Rung {
     let third_order_mm = THIRD * linearity_mm * linearity_mm / movement_mm;
     if linearity_mm <= accepted.skin_mm {

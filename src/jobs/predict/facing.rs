@@ -1,12 +1,12 @@
-//! Orientation of a face: whether it looks in the direction that its frame states.
+//! Orientation of a face: whether it faces the anterior direction of its frame.
 
 use mechanics::chart::{FaceDirection, clear_front};
 use mechanics::mesh::{Frame, TriangleSurface, Vector, Warning};
 
-/// A face may look this far beside its frame's front, in degrees: half a face looks 45 degrees to its side.
+/// Tolerated angle between a face and the anterior axis of its frame, in degrees: half a face looks 45 degrees to its side.
 const MOST_BESIDE_DEG: f64 = 65.0;
 
-/// A warning where the skin clearly looks elsewhere than the stated frame has the front: in LPS along -y, in RAS
+/// A warning if the skin clearly does not face the anterior direction of the stated frame: in LPS along -y, in RAS
 /// along +y, upright along +z in both.
 pub(super) fn frame_mismatch(frame: Frame, skin: &TriangleSurface) -> Option<Warning> {
     let stated = match frame {
@@ -18,7 +18,7 @@ pub(super) fn frame_mismatch(frame: Frame, skin: &TriangleSurface) -> Option<War
     let beside = stated.front.angle(&front).to_degrees();
     let detail = format!(
         "the frame is {frame}, where a face looks along {}, and this skin looks along {}, {beside:.0} degrees beside \
-         it: are the axes others?",
+         it: are the axes different?",
         shown(&stated.front),
         shown(&front)
     );

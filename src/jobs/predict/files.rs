@@ -1,4 +1,4 @@
-//! Files of a result that are made from a scene and its predicted skin.
+//! Files of a result that are written from a scene and its predicted skin.
 
 use super::input::Prepared;
 use super::overlap::{bones_file, gaps_picture};
@@ -10,8 +10,8 @@ use crate::schema::compare::result::StatDocument;
 use crate::schema::predict::document::OutputName;
 
 impl Prepared {
-    /// A file with this skin, whose displacement has these numbers; `None` where there is nothing to show. The moved volume and
-    /// reports are made from more than that.
+    /// A file with this skin, whose displacement has these statistics; `None` if there is nothing to show. The moved volume and
+    /// reports need more than that.
     pub fn encode(
         &self,
         name: OutputName,

@@ -43,29 +43,29 @@ pub struct PredictInput {
     pub spec: PredictDocument,
 }
 
-/// A prediction whose documents are sound: what the path takes, and where it came from.
+/// A prediction with valid documents: the input of the numerics, and its provenance.
 pub struct Prepared {
     pub case: Case,
     pub plan: Plan,
     pub scene: Scene,
     pub quality: QualityReport,
-    /// Of the volume, where the case asks for one.
+    /// Of the volume, if the case requests one.
     pub repair: Option<RepairReport>,
     pub spec_hash: String,
     pub inputs: Vec<InputDocument>,
     /// The SHA-256 of each mesh of the case by its id.
     pub contents: BTreeMap<String, String>,
-    /// The surface that the skin is to be compared with.
+    /// The surface to compare the skin with.
     pub compared: Option<ComparedMeshes>,
-    /// What the skin is corrected by.
+    /// The model that corrects the skin.
     pub model: Option<FittedModel>,
     /// Of the meshes and of the conversion; those of the scene are in the scene.
     pub warnings: Vec<Warning>,
-    /// What the meshing of the volume had to say.
+    /// The warnings of the meshing of the volume.
     pub told: Vec<WarningDocument>,
 }
 
-/// Documents in the types of the path.
+/// Documents in the types of the numerics.
 struct Converted {
     case: Case,
     plan: Plan,
@@ -75,7 +75,7 @@ struct Converted {
 }
 
 impl PredictInput {
-    /// Fetches the meshes, converts the documents and checks them together. Everything wrong is reported;
+    /// Fetches the meshes, converts the documents and checks them together. All faults are reported;
     /// pointers start at `/case`, `/plan` and `/spec`.
     pub fn prepare(&self, sources: &dyn MeshSource, limits: &Limits) -> Result<Prepared, JobError> {
         let stored = self.fetch(sources)?;
@@ -135,7 +135,7 @@ impl PredictInput {
         MechanicsDocument::new(&self.case, &self.spec, plan, scene)
     }
 
-    /// The files to write but for `result.json`: those asked for, or skin and moved bones. A case
+    /// The files to write except `result.json`: those requested, or skin and moved bones. A case
     /// without bones has no file of them.
     pub fn files(&self) -> Vec<OutputName> {
         let mut files = self.spec.files();
@@ -151,7 +151,7 @@ impl PredictInput {
         files
     }
 
-    /// The pictures of its job that are no files: on the command line nothing draws them later.
+    /// The pictures of its job that are no files: the command line cannot draw them later.
     pub fn pictures_beside(&self, files: &[FileDocument]) -> Vec<PictureName> {
         let has = |output: OutputName| files.iter().any(|file| file.name == output.file_name());
         if self.job.is_some() { PictureName::beside(has) } else { Vec::new() }
@@ -176,7 +176,7 @@ impl PredictInput {
             if !case.skin_regions.contains_key(name) {
                 let at = Pointer::root().key("spec").key("accept_regions_mm").key(name);
                 let known = listed(case.skin_regions.keys());
-                let detail = format!("the case has no part of the skin {name:?}; it has: {known}");
+                let detail = format!("the case has no skin region {name:?}; it has: {known}");
                 faults.add(&at, ErrorCode::UnknownRegion, detail);
             }
         }
@@ -185,7 +185,7 @@ impl PredictInput {
         Ok(Converted { case, plan, settings, warnings, repair })
     }
 
-    /// The meshes that the case and the plan ask for.
+    /// The meshes of the case and the plan.
     fn fetch(&self, sources: &dyn MeshSource) -> Result<BTreeMap<String, StoredMesh>, JobError> {
         let mut wanted: Vec<(Pointer, String)> = Vec::new();
         let (mut case, mut plan) = (self.case.clone(), self.plan.clone());
@@ -226,7 +226,7 @@ impl PredictInput {
     fn check_units(&self, at: &Pointer, mesh: &StoredMesh, faults: &mut Faults) {
         if let Some(units) = mesh.units.filter(|units| *units != self.case.units) {
             let (own, of_case) = (units.name(), self.case.units.name());
-            let detail = format!("the mesh was uploaded in {own}, and the case is in {of_case}");
+            let detail = format!("the mesh was uploaded in {own}, the case is in {of_case}");
             faults.add(at, ErrorCode::UnitsConflict, detail);
         }
     }
@@ -263,7 +263,7 @@ impl PredictInput {
         Ok(Some(compared))
     }
 
-    /// The hash of everything that decides the numbers.
+    /// The hash of everything that determines the numbers.
     fn spec_hash(
         &self,
         stored: &BTreeMap<String, StoredMesh>,
@@ -318,7 +318,7 @@ fn check_kind(at: &Pointer, mesh: &StoredMesh, faults: &mut Faults) {
 }
 
 impl StoredMesh {
-    /// How provenance names this mesh.
+    /// The name of this mesh in provenance.
     pub fn to_input(&self, role: &str) -> InputDocument {
         let count = |count: usize| Some(count as u64);
         let (nodes, cells, triangles, voxels) = match &self.shape {

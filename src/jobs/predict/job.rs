@@ -44,7 +44,7 @@ pub fn predict_job(
     predicted.publish(input, &clock, place.out)
 }
 
-/// By the cheapest model whose estimated error is accepted.
+/// Predicts by the cheapest model whose estimated error is accepted.
 fn adequately(
     mut prepared: Prepared,
     accepted: Accepted,
@@ -60,7 +60,7 @@ fn adequately(
     Ok(Predicted { adequacy, ..Predicted::of(prepared, adequate.prediction) })
 }
 
-/// On meshes that are refined until the estimated error of the skin is accepted.
+/// Predicts on meshes refined until the estimated error of the skin is accepted.
 fn refined(
     prepared: Prepared,
     refine: &RefineDocument,

@@ -1,4 +1,4 @@
-//! Check of a case whose meshes were just made: the boundary conditions of its nodes before any segment moves.
+//! Check of a case with new meshes: the boundary conditions of its nodes before any segment moves.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -13,7 +13,7 @@ use crate::schema::predict::check::CheckDocument;
 use crate::schema::{CaseDocument, ErrorCode, PlanDocument, PredictDocument};
 use mechanics::mesh::Frame;
 
-/// Meshes that were made, beside those that are stored.
+/// New meshes, beside stored ones.
 struct MadeBeside<'a> {
     made: BTreeMap<String, StoredMesh>,
     stored: &'a dyn MeshSource,
@@ -34,7 +34,7 @@ impl MeshSource for MadeBeside<'_> {
 }
 
 impl StoredMesh {
-    /// One in mm that is stored nowhere yet.
+    /// One in mm that is not stored yet.
     pub fn made(shape: StoredShape, frame: Frame) -> StoredMesh {
         StoredMesh {
             shape,
@@ -48,8 +48,8 @@ impl StoredMesh {
     }
 }
 
-/// Checks a case as it will be stored; `made` are its meshes by the names that it has for them. `None` where only a plan can
-/// tell what holds it.
+/// Checks a case as it will be stored; `made` are its meshes by their names in it. `None` if its boundary conditions
+/// depend on a plan.
 pub fn check_made(
     case: &CaseDocument,
     made: BTreeMap<String, StoredMesh>,

@@ -1,4 +1,4 @@
-//! Predictions: documents and meshes checked, the expected cost, and what a plan pushes into what.
+//! Predictions: checks of documents and meshes, the expected cost, and collisions under a plan.
 
 mod check;
 mod comparison;

@@ -1,4 +1,4 @@
-//! Overlap of surfaces under a plan: a warning, since nothing in the model prevents it.
+//! Overlap of surfaces under a plan: a warning, since the model does not prevent it.
 
 use crate::jobs::result::pictures::upright;
 use crate::jobs::result::tissue::encode_bones;
@@ -11,16 +11,16 @@ use mechanics::prediction::{Bone, Case, Prediction, Scene};
 use mechanics::validation::contact_map::{contact_regions, gaps};
 use mechanics::validation::penetration::{Side, overlap, reach};
 
-/// A plan has to push this much deeper than the scan had it, in mm: surfaces of one scan touch.
+/// Additional depth under a plan for a warning, in mm: surfaces of one scan already touch.
 const NOTICEABLE: f64 = 0.1;
 
-/// Surfaces nearer to each other than this, in mm, touch: what teeth of scans are known to.
+/// The distance of contact, in mm: the accuracy of teeth in scans.
 const CONTACT: f64 = 0.3;
 
-/// Bone farther from other bone than this, in mm, shows nothing of how both meet.
+/// The largest gap of interest between bones, in mm.
 const FARTHEST_GAP: f64 = 5.0;
 
-/// A bone where it was scanned, and how the plan moves it.
+/// A bone as scanned, and its planned movement.
 struct PlannedBone<'a> {
     name: &'a str,
     surface: &'a TriangleSurface,
@@ -28,26 +28,26 @@ struct PlannedBone<'a> {
     movement: RigidMovement,
 }
 
-/// How deep something reaches into or out of something else, in mm.
+/// The depth of penetration, in mm.
 #[derive(Clone, Copy)]
 struct Depth {
     before: f64,
     after: f64,
 }
 
-/// The bones that reach into each other, of those that the plan moves against each other.
+/// The bones that overlap, of those that the plan moves relative to each other.
 pub fn collisions(case: &Case, scene: &Scene) -> Vec<Collision> {
     let bones = planned_bones(case, scene);
     moved_pairs(&bones).filter_map(|(bone, other)| bone.collision(other)).collect()
 }
 
-/// Where bones that the plan moves against each other touch; pairs that touch nowhere are left out.
+/// Contact of bones that the plan moves relative to each other; pairs without contact are omitted.
 pub fn contacts(case: &Case, scene: &Scene) -> Vec<BoneContactDocument> {
     let bones = planned_bones(case, scene);
     moved_pairs(&bones).filter_map(|(bone, other)| bone.contact(other)).collect()
 }
 
-/// `bones.vtp`, with how near bones come to each other.
+/// `bones.vtp`, with the gaps between bones.
 pub fn bones_file(
     case: &Case,
     scene: &Scene,
@@ -56,7 +56,7 @@ pub fn bones_file(
     encode_bones(case, scene, planned_gaps(case, scene).as_deref(), field_data)
 }
 
-/// `gaps.svg`: bones that the plan moves against each other and that come near, before and as planned. `None` where there are
+/// `gaps.svg`: bones that the plan moves relative to each other and that come near, before and as planned. `None` if there are
 /// none.
 pub fn gaps_picture(case: &Case, scene: &Scene) -> Result<Option<String>, PngError> {
     let bones = planned_bones(case, scene);
@@ -97,7 +97,7 @@ pub fn gaps_picture(case: &Case, scene: &Scene) -> Result<Option<String>, PngErr
 }
 
 /// For each point of each bone that has a surface, as planned, the signed distance from the nearest bone that the plan
-/// moves against it, in mm, negative inside; [`FARTHEST_GAP`] where none is as near. `None` where no bone moves against
+/// moves against it, in mm, negative inside; [`FARTHEST_GAP`] if none is as near. `None` if no bone moves relative to
 /// another.
 fn planned_gaps(case: &Case, scene: &Scene) -> Option<Vec<f64>> {
     let bones = planned_bones(case, scene);
@@ -116,7 +116,7 @@ fn planned_gaps(case: &Case, scene: &Scene) -> Option<Vec<f64>> {
     has_pair.then_some(all)
 }
 
-/// A warning for each bone that the plan pushes through the predicted skin.
+/// A warning for each bone that penetrates the predicted skin under the plan.
 pub fn through_skin(case: &Case, scene: &Scene, prediction: &Prediction) -> Vec<Warning> {
     let bones = planned_bones(case, scene);
     let skin = &scene.skin;
@@ -131,16 +131,16 @@ pub fn through_skin(case: &Case, scene: &Scene, prediction: &Prediction) -> Vec<
     bones.iter().filter_map(warning).collect()
 }
 
-/// Two bones that reach into each other after the plan.
+/// Two bones that overlap after the plan.
 pub struct Collision {
     bones: [String; 2],
     depth: Depth,
-    /// Both where the plan takes them.
+    /// Both as planned.
     placed: [TriangleSurface; 2],
 }
 
 impl Collision {
-    /// Where the plan pushes them deeper than the scan had them.
+    /// The warning if they are deeper than in the scan.
     pub fn warning(&self) -> Option<Warning> {
         let [one, other] = &self.bones;
         let detail = format!("the plan pushes bones {one:?} and {other:?} into each other");
@@ -157,7 +157,7 @@ impl Collision {
     }
 }
 
-/// The bones of the case; one without any area touches nothing and is left out.
+/// The bones of the case; one without area is omitted.
 fn planned_bones<'a>(case: &'a Case, scene: &Scene) -> Vec<PlannedBone<'a>> {
     let planned = |bone: &'a Bone| {
         let surface = case.surfaces.get(&bone.surface)?;
@@ -169,7 +169,7 @@ fn planned_bones<'a>(case: &'a Case, scene: &Scene) -> Vec<PlannedBone<'a>> {
     case.bones.iter().filter_map(planned).collect()
 }
 
-/// Every two bones that the plan moves against each other.
+/// All pairs of bones that the plan moves relative to each other.
 fn moved_pairs<'b, 'a>(
     bones: &'b [PlannedBone<'a>],
 ) -> impl Iterator<Item = (&'b PlannedBone<'a>, &'b PlannedBone<'a>)> {
@@ -180,13 +180,13 @@ fn moved_pairs<'b, 'a>(
 }
 
 impl PlannedBone<'_> {
-    /// The gap of each of its points, moved so against the other bone, which stays where its search was prepared.
+    /// The gap of each of its points to the other bone, which stays where its search was prepared.
     fn gaps_to(&self, other: &PlannedBone, relative: &RigidMovement) -> Vec<f64> {
         let against = TriangleSurface { points: self.moved_by(relative), ..self.surface.clone() };
         gaps(&against, &other.search, FARTHEST_GAP)
     }
 
-    /// The least gap of each of its points to several others, [`FARTHEST_GAP`] where none is as near.
+    /// The least gap of each of its points to several others, [`FARTHEST_GAP`] if none is as near.
     fn nearest(
         &self,
         others: &[&PlannedBone],
@@ -236,7 +236,7 @@ impl PlannedBone<'_> {
         })
     }
 
-    /// How deep this bone reaches into another one. Only the movement of one against the other counts,
+    /// The depth of this bone in another one. Only the relative movement counts,
     /// so the other stays where its search was prepared.
     fn reach_into(&self, other: &PlannedBone) -> Depth {
         let relative = self.movement.then(&other.movement.inverse());
@@ -247,7 +247,7 @@ impl PlannedBone<'_> {
         }
     }
 
-    /// How far this bone reaches out of the skin.
+    /// The distance of this bone beyond the skin.
     fn through(&self, before: &SurfaceSearch, after: &SurfaceSearch) -> Depth {
         Depth {
             before: reach(&self.surface.points, Side::Outside, before),

@@ -9,7 +9,7 @@ use mechanics::cephalometry::Landmarks;
 use mechanics::mesh::{Frame, Vector, VolumeMesh, Warning};
 use mechanics::prediction::{Case, Scene};
 
-/// Landmarks of a head lie farther apart: what does not is in metres.
+/// The least extent of landmarks of a head: smaller ones are in metres.
 const CROWDED_MM: f64 = 1.0;
 
 type NamedPoints = BTreeMap<String, Vector>;
@@ -20,13 +20,13 @@ pub fn movements(scene: &Scene, frame: Frame) -> Vec<MovementReportDocument> {
     segments.filter_map(|segment| MovementReportDocument::new(segment, frame)).collect()
 }
 
-/// A head in numbers: every measure and every symmetry whose landmarks are there.
+/// Measures of a head: every measure and every symmetry whose landmarks are all given.
 pub struct InNumbers {
     pub measures: Vec<MeasureDocument>,
     pub symmetry: Vec<SymmetryDocument>,
 }
 
-/// `displacement` is that of the landmarks of skin, where it is predicted.
+/// `displacement` is that of the landmarks of skin, if predicted.
 pub fn in_numbers(
     document: &CaseDocument,
     case: &Case,
@@ -45,7 +45,7 @@ pub fn in_numbers(
     InNumbers { measures: head.measures(), symmetry: head.symmetry() }
 }
 
-/// Landmarks of bone that something speaks against: sides that look swapped, places and extents that no head has beside this mesh.
+/// Warnings on landmarks of bone: sides that look swapped, positions and extents that are implausible for this mesh.
 pub fn suspect_landmarks(document: &CaseDocument, case: &Case) -> Vec<Warning> {
     let landmarks = Bone::before(&document.bone_landmarks).before;
     let swapped = Landmarks(&landmarks).swapped_sides(case.frame).into_iter();
@@ -62,7 +62,7 @@ fn elsewhere(landmarks: &NamedPoints, mesh: &VolumeMesh) -> Vec<Warning> {
     let far = landmarks.iter().filter(|(_, at)| away(at) > 0.5 * (high - low).norm());
     far.map(|(name, at)| {
         let detail = format!(
-            "landmark {name:?} of bone lies {:.0} mm from the box of the mesh: is it in mm, in the frame of the case?",
+            "landmark {name:?} of bone is {:.0} mm from the box of the mesh: is it in mm, in the frame of the case?",
             away(at)
         );
         Warning::new("landmark-far", detail).with("distance_mm", away(at))
@@ -75,14 +75,14 @@ fn crowded(landmarks: &NamedPoints) -> Option<Warning> {
     let first = landmarks.values().next().filter(|_| landmarks.len() > 1)?;
     let extent = landmarks.values().map(|at| (at - first).norm()).fold(0.0, f64::max);
     let detail = format!(
-        "all {} landmarks of bone lie within {extent:.3} mm: positions are in mm",
+        "all {} landmarks of bone are within {extent:.3} mm: positions have to be in mm",
         landmarks.len()
     );
     (extent < CROWDED_MM)
         .then(|| Warning::new("landmarks-crowded", detail).with("extent_mm", extent))
 }
 
-/// Landmarks where they are predicted.
+/// Predicted landmarks.
 fn after(landmarks: &NamedPoints, displacement: &NamedPoints) -> NamedPoints {
     let moved = |(name, at): (&String, &Vector)| {
         displacement.get(name).map(|displacement| (name.clone(), at + displacement))

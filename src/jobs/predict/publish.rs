@@ -44,20 +44,20 @@ use mechanics::prediction::{PredictedStep, Prediction, Skin};
 use mechanics::progress::{Phase, Progress};
 use mechanics::validation::{Statistics, StatisticsError};
 
-/// A prediction that is to be measured, compared and written.
+/// A prediction to be measured, compared and written.
 pub struct Predicted {
     pub prepared: Prepared,
     pub prediction: Prediction,
-    /// How its plan was found, if it was not stated.
+    /// The inverse planning of its plan, if it was not stated.
     pub optimisation: Option<OptimisationDocument>,
-    /// How its model was chosen, if an accepted error was stated.
+    /// The choice of its model, if an accepted error was stated.
     pub adequacy: Option<AdequacyDocument>,
-    /// How its mesh was refined, if that was asked for.
+    /// The refinement of its mesh, if requested.
     pub refinement: Option<RefinementDocument>,
 }
 
 impl Predicted {
-    /// A prediction whose plan, model and mesh are those that were stated.
+    /// A prediction with the stated plan, model and mesh.
     pub fn of(prepared: Prepared, prediction: Prediction) -> Self {
         Predicted { prepared, prediction, optimisation: None, adequacy: None, refinement: None }
     }
@@ -139,7 +139,7 @@ impl Predicted {
     }
 }
 
-/// What a reader must know of the scene and the answer, before either is held against anything.
+/// Warnings on the scene and the result, before any comparison.
 fn warnings_of(input: &PredictInput, prepared: &Prepared, prediction: &Prediction) -> Vec<Warning> {
     let (case, scene) = (&prepared.case, &prepared.scene);
     let mut warnings = prepared.warnings.clone();
@@ -151,14 +151,14 @@ fn warnings_of(input: &PredictInput, prepared: &Prepared, prediction: &Predictio
     warnings
 }
 
-/// A prediction with everything that goes into its files.
+/// A prediction with the content of its files.
 struct Finished<'a> {
     origin: Origin,
     prepared: &'a Prepared,
     prediction: &'a Prediction,
     skin: &'a PredictedSkin,
     statistics: StatisticsDocument,
-    /// What is left out, or why that is not known.
+    /// The linearisation error, or why it is not known.
     nonlinearity: Result<NonlinearityDocument, String>,
     numerical_error: Option<NumericalErrorDocument>,
     stress: Option<StressDocument>,
@@ -176,7 +176,7 @@ impl Finished<'_> {
         MethodName::Named(self.prepared.scene.settings.method.kind())
     }
 
-    /// The model that `auto` took.
+    /// The model chosen by `auto`.
     fn model(&self) -> Option<&str> {
         self.adequacy.as_ref().map(|adequacy| adequacy.taken.as_str())
     }
@@ -299,7 +299,7 @@ impl Finished<'_> {
     }
 }
 
-/// How far the skin, its parts and the landmarks move.
+/// The displacement of the skin, its parts and the landmarks.
 pub fn statistics(
     skin: &Skin,
     predicted: &PredictedSkin,

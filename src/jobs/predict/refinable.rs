@@ -6,7 +6,7 @@ use crate::schema::{ErrorCode, Faults, Pointer};
 use mechanics::mesh::bisection::Bisection;
 use mechanics::prediction::Scene;
 
-/// Refuses cells that are not refined, and limits for parts of the skin that there are not.
+/// Refuses cells that cannot be refined, and limits for unknown parts of the skin.
 pub fn check_refinable(refine: &RefineDocument, scene: &Scene) -> Result<(), JobError> {
     let mut faults = Faults::default();
     let at = Pointer::from_text("/spec/refine");
@@ -16,7 +16,7 @@ pub fn check_refinable(refine: &RefineDocument, scene: &Scene) -> Result<(), Job
     for name in refine.regions.keys().filter(|&name| !scene.skin.regions.contains_key(name)) {
         let known: Vec<&str> = scene.skin.regions.keys().map(String::as_str).collect();
         let known = if known.is_empty() { "none".to_owned() } else { known.join(", ") };
-        let detail = format!("{name:?} is none of the parts of the skin that have a name: {known}");
+        let detail = format!("{name:?} is not one of the named parts of the skin: {known}");
         faults.add(&at.key("regions").key(name), ErrorCode::UnknownRegion, detail);
     }
     Ok(faults.into_result()?)

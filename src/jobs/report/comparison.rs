@@ -12,17 +12,17 @@ use crate::schema::Language;
 use crate::schema::compare::result::{ComparisonDocument, DistanceDocument};
 use crate::schema::predict::result::ResultDocument;
 
-/// Where colours of signed distances end, in mm, unless the spec says.
+/// The default end of the colour scale of signed distances, in mm.
 pub const SIGNED_RANGE_MM: f64 = 2.0;
 
-/// Two surfaces and how far one is from the other.
+/// Two surfaces and their distance.
 pub struct ComparisonFacts<'a> {
     pub surface: &'a TriangleSurface,
-    /// The actual surface where its registration puts it.
+    /// The registered actual surface.
     pub actual: &'a TriangleSurface,
-    /// At each of its points in mm, positive where it lies outside the actual surface.
+    /// At each of its points in mm, positive outside the actual surface.
     pub signed_distance: &'a [f64],
-    /// Where colours end, as the spec says.
+    /// The end of the colour scale in the spec.
     pub range_mm: Option<f64>,
     pub frame: Frame,
     pub comparison: &'a ComparisonDocument,
@@ -72,7 +72,7 @@ fn views(facts: &ComparisonFacts, words: &Words) -> Result<Section, PngError> {
     Ok(Section::new(words.comparison, vec![Block::Figure(figure)]))
 }
 
-/// Both directions, what both have in common, and each region.
+/// Both directions, the common part, and each region.
 pub fn distance_table(comparison: &ComparisonDocument, words: &Words) -> Table {
     let row = |name: &str, own: &DistanceDocument| {
         let lengths = [own.mean, own.rms, own.median, own.p95, own.max].map(mm);

@@ -1,4 +1,4 @@
-//! Content of a report: headings, tables, pictures and sentences, before they are HTML or pages.
+//! Content of a report: headings, tables, pictures and sentences, independent of HTML and PDF.
 
 use mechanics::chart::drawing::Document;
 
@@ -8,7 +8,7 @@ use crate::schema::Language;
 pub struct Report {
     pub language: Language,
     pub title: String,
-    /// Under the title: what of, when.
+    /// Under the title: subject and date.
     pub subtitle: String,
     /// At the head and at the foot of everything.
     pub notice: String,
@@ -27,16 +27,16 @@ pub enum Block {
     List(Vec<String>),
     Table(Table),
     Figure(Figure),
-    /// Lines to be written on by hand, each with what it is for.
+    /// Lines to be filled in by hand, each with a label.
     Signature(Vec<String>),
 }
 
 /// Rows of words under their columns; the first column names the row.
 pub struct Table {
-    /// Empty for rows that say all themselves.
+    /// Empty for rows without column heads.
     pub columns: Vec<String>,
     pub rows: Vec<Vec<String>>,
-    /// So many are shown however little room there is.
+    /// The number always shown, for any available space.
     pub least: usize,
 }
 
@@ -49,7 +49,7 @@ pub struct Figure {
 }
 
 impl Figure {
-    /// As large as its page lets it be.
+    /// As large as its page permits.
     pub fn new(drawing: Document, title: &str, caption: String) -> Self {
         Figure { drawing, title: title.to_owned(), caption, height: f64::INFINITY }
     }

@@ -1,8 +1,8 @@
-//! Directions of the head in the frame of a case, and movements in a surgeon's words.
+//! Directions of the head in the frame of a case, and movements in a surgeon's terms.
 //!
 //! LPS: x to the patient's left, y to the back, z up. RAS: x to the right, y to the front, z up. Angles are those of
 //! R = Rz Ry Rx about fixed axes. Pitch lifts the front, roll lifts the left side, yaw turns the front to the left, as the
-//! page has it (`web/src/frame.ts`). Where the frame is not stated the numbers are those of its axes.
+//! page (`web/src/frame.ts`) does. If the frame is not stated the numbers are those of its axes.
 
 use mechanics::mesh::{Frame, Vector};
 use mechanics::plan::RigidMovement;

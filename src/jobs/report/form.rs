@@ -5,7 +5,7 @@ use super::html::html;
 use super::pages::pdf;
 use crate::schema::predict::output::OutputName;
 
-/// How a report is written.
+/// The form of a report.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ReportForm {
     Html,
@@ -13,7 +13,7 @@ pub enum ReportForm {
 }
 
 impl ReportForm {
-    /// Of a file that is a report.
+    /// That of a report file.
     pub fn of(output: OutputName) -> Option<Self> {
         match output {
             OutputName::ReportHtml => Some(ReportForm::Html),

@@ -1,4 +1,4 @@
-//! A report as one HTML file, which asks for nothing else and prints on A4.
+//! A report as one self-contained HTML file, which prints on A4.
 
 use mechanics::chart::svg::{escaped, svg};
 
@@ -7,10 +7,10 @@ use super::content::{Block, Figure, Report, Section, Table};
 /// No scripts, nothing from elsewhere.
 const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; img-src data:";
 
-/// The height of a page, which no figure is larger than, in points.
+/// The height of a page, the largest of a figure, in points.
 const LARGEST: f64 = 760.0;
 
-/// The colours of the page, of which a report has the light ones: it is paper.
+/// The light colours of the page, since a report is for paper.
 const PALETTE: &str = include_str!("../../../web/dist/assets/palette.css");
 
 const STYLE: &str = "

@@ -7,13 +7,13 @@ use crate::schema::PlanDocument;
 use crate::schema::predict::result::ResultDocument;
 use mechanics::prediction::{MethodKind, Rung};
 
-/// The model behind the numbers.
+/// The model of the numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Model {
     Linear,
     SecondOrder,
     FiniteStrain,
-    /// Of another method, which its name tells.
+    /// Another method, by its name.
     Other,
 }
 

@@ -1,4 +1,4 @@
-//! A report as pages of A4, which are written as PDF.
+//! A report as A4 pages, written as PDF.
 
 use mechanics::chart::colour::{GRID, INK, WARN_INK};
 use mechanics::chart::drawing::{Document, Rectangle, Run, Style};
@@ -12,11 +12,11 @@ const WIDTH: f64 = 595.28;
 const HEIGHT: f64 = 841.89;
 const MARGIN: f64 = 40.0;
 pub const ROOM: f64 = WIDTH - 2.0 * MARGIN;
-/// Where a page ends for all but its foot.
+/// The end of a page above its foot.
 const END: f64 = HEIGHT - 46.0;
 pub const SIZE: f64 = 8.6;
 pub const LINE: f64 = 11.2;
-/// Room of a table's first column, and of that of facts, of all.
+/// Share of a table's first column, and of that of facts.
 const FIRST: f64 = 0.26;
 
 pub fn pdf(report: Report) -> Vec<u8> {
@@ -41,7 +41,7 @@ pub fn pdf(report: Report) -> Vec<u8> {
     written(&all, &about)
 }
 
-/// Pages that are full, and how far the last one is.
+/// Full pages, and the position on the last one.
 struct Pages {
     done: Vec<Document>,
     page: Document,
@@ -55,7 +55,7 @@ impl Pages {
         self.y = MARGIN + 6.0;
     }
 
-    /// Turns the page where so much does not fit on it.
+    /// Begins a new page if this height does not fit.
     fn need(&mut self, height: f64) {
         if self.y + height > END {
             self.turn();
@@ -97,7 +97,7 @@ impl Pages {
         }
     }
 
-    /// Lines side by side, each over what is to be written on it.
+    /// Lines side by side, each above its label.
     fn signature(&mut self, names: &[String]) {
         self.need(4.0 * LINE);
         self.y += 2.0 * LINE;
@@ -156,14 +156,14 @@ impl Pages {
     }
 }
 
-/// Where the columns of a table stand, in points.
+/// The positions of the columns of a table, in points.
 struct Columns {
     first: f64,
     other: f64,
     are_words: bool,
 }
 
-/// How wide words of each column of a table may be, in points.
+/// The text width of each column of a table, in points.
 pub fn column_rooms(table: &Table) -> impl Fn(usize) -> f64 {
     let layout = Columns::of(table);
     move |column| layout.room(column)

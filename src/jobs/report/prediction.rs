@@ -1,4 +1,4 @@
-//! The report of a prediction: the plan in a surgeon's words, the face before and after, numbers with their errors.
+//! The report of a prediction: the plan in a surgeon's terms, the face before and after, numbers with their errors.
 
 use std::collections::BTreeMap;
 
@@ -25,10 +25,10 @@ use crate::schema::predict::planned::MeasureDocument;
 use crate::schema::predict::result::{DisplacementDocument, ResultDocument};
 use crate::schema::{CaseDocument, Language, PlanDocument};
 
-/// Of the name of a case so many letters stand under the title.
+/// The most letters of the name of a case under the title.
 const LONGEST_NAME: usize = 120;
 
-/// Most loads and muscles of a plan that its sentence names.
+/// The most loads and muscles of a plan named in its sentence.
 const MOST_BESIDE: usize = 18;
 const LONGEST_PART: usize = 40;
 
@@ -39,7 +39,7 @@ pub struct PredictionFacts<'a> {
     pub scene: &'a Scene,
     pub frame: Frame,
     pub after: &'a TriangleSurface,
-    /// At which colours end, in mm.
+    /// The end of the colour scale, in mm.
     pub range_mm: f64,
     pub result: &'a ResultDocument,
 }
@@ -103,7 +103,7 @@ fn plan(facts: &PredictionFacts, words: &Words) -> Section {
     Section::new(words.plan, blocks)
 }
 
-/// A segment that moves, its six movements in words.
+/// A moving segment, its six movements in words.
 fn movement(
     facts: &PredictionFacts,
     index: usize,
@@ -125,7 +125,7 @@ fn movement(
     row
 }
 
-/// The mean of the nodes that a segment holds; the mean of all where it holds none.
+/// The mean of the nodes of a segment; the mean of all if it has none.
 fn centre(scene: &Scene, segment: u32) -> Vector {
     let nodes = scene.mesh.nodes.iter().zip(&scene.conditions.classes);
     let held = nodes.filter(|(_, class)| **class == NodeClass::Joined(segment));

@@ -1,6 +1,6 @@
-//! Page budget of a report: tables and lists of a page share its lines, and a figure has what is left.
+//! Page budget of a report: tables and lists of a page share its lines, and a figure has the remainder.
 //!
-//! Heights are in points, each the larger one of a browser that prints the HTML on A4 and of the PDF.
+//! Heights are in points, each the larger one of the HTML printed on A4 by a browser and of the PDF.
 
 use mechanics::chart::helvetica::lines;
 
@@ -16,12 +16,12 @@ const BESIDE_ROW: f64 = 2.0;
 const BESIDE_BLOCK: f64 = 4.0;
 const AROUND_FIGURE: f64 = 16.0;
 const SIGNATURE: f64 = 44.0;
-/// A figure is never smaller than this, unless it is by itself.
+/// The least height of a figure, unless it is alone.
 const FIGURE: f64 = 300.0;
-/// A list's entry that is longer is cut.
+/// Longer entries of a list are cut.
 const LONGEST: usize = 600;
 
-/// The sections with as many rows, entries and as large figures as there is room for, and how many are left out.
+/// The sections with as many rows, entries and as large figures as fit, and the numbers of omitted ones.
 pub fn fitted(mut sections: Vec<Section>, words: &Words) -> Vec<Section> {
     let mut first = 0;
     while first < sections.len() {
@@ -76,7 +76,7 @@ fn shorten<Row>(rows: &mut Vec<Row>, shown: usize, words: &Words, told: impl Fn(
     }
 }
 
-/// A table or list: heights of its rows, and how many of them are shown.
+/// A table or list: heights of its rows, and the number of shown ones.
 #[derive(Default)]
 struct Part {
     heights: Vec<f64>,
@@ -98,15 +98,15 @@ impl Part {
         }
     }
 
-    /// What showing one row more takes: the last one needs no line that says how many are left.
+    /// The height of one row more: the last one needs no line with the number of omitted ones.
     fn next(&self, more: f64) -> Option<f64> {
         let height = self.heights.get(self.shown)?;
         Some(if self.shown + 1 == self.heights.len() { height - more } else { *height })
     }
 }
 
-/// Shows one row more of that part which shows the fewest, for as long as there is room; the room that is left. Where there is not
-/// even room for the rows that each part should show, the tallest ones go.
+/// Shows one row more of the part with the fewest, as long as there is space; returns the remaining space. If there is not
+/// even space for the least rows of each part, the tallest ones are dropped.
 fn share(parts: &mut [Part], room: f64, more: f64) -> f64 {
     let taken = parts.iter().map(|part| {
         let is_cut = part.shown < part.heights.len();
@@ -132,7 +132,7 @@ fn share(parts: &mut [Part], room: f64, more: f64) -> f64 {
     }
 }
 
-/// What a block needs however little of it is shown.
+/// The least height of a block.
 fn fixed(block: &Block) -> f64 {
     BESIDE_BLOCK
         + match block {
@@ -165,7 +165,7 @@ fn row_height(table: &Table, row: &[String], bold: bool) -> f64 {
     cells.fold(LINE, f64::max) + BESIDE_ROW
 }
 
-/// Words of at most so many letters.
+/// A text of at most this many letters.
 pub fn clipped(words: &str, most: usize) -> String {
     match words.char_indices().nth(most) {
         Some((end, _)) => format!("{}…", &words[..end]),

@@ -10,7 +10,7 @@ use crate::schema::Language;
 use crate::schema::predict::result::ResultDocument;
 use crate::schema::study::report::{OutcomeName, ReportDocument, RowDocument, RowStatus};
 
-/// A study, the chart over all of its scenes, and the manifest of its job.
+/// A study, the chart over all its scenes, and the manifest of its job.
 pub struct StudyFacts<'a> {
     pub report: &'a ReportDocument,
     pub chart: Document,

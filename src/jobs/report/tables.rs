@@ -25,7 +25,7 @@ pub fn signed(value: f64) -> String {
     if value >= 5e-4 { format!("+{text}") } else { text }
 }
 
-/// Versions, hashes, the plan and when it was made.
+/// Versions, hashes, the plan and its date.
 pub fn provenance(result: &ResultDocument, words: &Words) -> Section {
     let ProvenanceDocument { spec_hash, inputs, plan, plan_id, created, .. } = &result.provenance;
     let mut facts = vec![[words.program.to_owned(), engine_words(result)]];
@@ -54,7 +54,7 @@ fn engine_words(result: &ResultDocument) -> String {
     )
 }
 
-/// A report of a result, which is no medical device, with a line for whoever has read it.
+/// A report of a result, with the disclaimer and lines for the reader's signature.
 pub fn report(
     language: Language,
     title: &str,

@@ -1,11 +1,11 @@
-//! Warnings as a report lists them: the gravest first, and each kind once, so that many of one hide no other.
+//! Warnings in a report: the most serious first, and each kind once, so that many of one hide no other.
 
 use super::content::{Block, Section};
 use super::words::{Words, filled};
 use crate::schema::WarningDocument;
 
-/// Codes that stand before all others, in this order: those that speak against what was asked or measured, those of an answer that
-/// is off by more than is told elsewhere, and those of one that is not possible.
+/// Codes that precede all others, in this order: those of doubtful input or measurements, those of a result that
+/// has larger errors than reported elsewhere, and those of an impossible one.
 const GRAVE: [&str; 43] = [
     "nothing-moves",
     "nothing-performed",
@@ -63,7 +63,7 @@ impl Kind<'_> {
         GRAVE.iter().position(|code| *code == self.code).unwrap_or(GRAVE.len())
     }
 
-    /// The worst of them, and how many there are.
+    /// The worst of them, and their number.
     fn told(&self, words: &Words) -> Option<String> {
         // Of several as bad the first.
         let worst = self
@@ -79,7 +79,7 @@ impl Kind<'_> {
     }
 }
 
-/// The first length among the numbers of a warning, in mm: distances, depths and errors, of which more is worse.
+/// The first length among the numbers of a warning, in mm: distances, depths and errors, the larger the worse.
 fn severity_mm(warning: &WarningDocument) -> f64 {
     let lengths = warning.numbers.iter().filter(|(name, _)| name.ends_with("_mm"));
     lengths.filter_map(|(_, value)| value.as_f64()).next().map_or(0.0, f64::abs)

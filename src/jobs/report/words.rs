@@ -2,7 +2,7 @@
 
 use crate::schema::Language;
 
-/// Everything that a report says by itself. `{}` stands for a number.
+/// All texts of a report. `{}` is a placeholder for a number.
 pub struct Words {
     pub notice: &'static str,
     pub prediction: &'static str,
@@ -14,7 +14,7 @@ pub struct Words {
     pub segment: &'static str,
     /// The six movements as columns.
     pub movements: [&'static str; 6],
-    /// What each is called where it is positive and where it is negative.
+    /// Their names if positive and if negative.
     pub ways: [[&'static str; 2]; 6],
     pub axes: [&'static str; 6],
     pub of_centre: &'static str,
@@ -106,7 +106,7 @@ pub struct Words {
     /// Of a row: solved, failed, not run.
     pub states: [&'static str; 3],
     pub read: &'static str,
-    /// What is to be written: name, date, signature.
+    /// To be filled in: name, date, signature.
     pub signature: [&'static str; 3],
 }
 
@@ -196,9 +196,9 @@ const EN: Words = Words {
     other_method: "Soft tissue by the method",
     on_mesh: "on {} nodes and {} cells.",
     with_growth: "Tissue that gains or loses volume strains freely as it does, and what holds it strains it back.",
-    with_muscles: "Muscles pull along their fibres with the stress that the plan states.",
-    with_contact: "What touches presses, without friction.",
-    with_refinement: "Cells were divided where the error of the skin comes from; results stand at the nodes of the case.",
+    with_muscles: "Muscles contract along their fibres with the stress stated by the plan.",
+    with_contact: "Contact is unilateral, without friction.",
+    with_refinement: "Cells were refined at the sources of the error of the skin; results are at the nodes of the case.",
     with_correction: "What the mesh leaves out, as estimated, was added to the displacement.",
     provenance: "Provenance",
     program: "Program",
@@ -206,7 +206,7 @@ const EN: Words = Words {
     plan_id: "Stored plan",
     not_stored: "none: the plan was sent with the job",
     made: "Made",
-    hash: "Hash of all that decides the numbers",
+    hash: "Hash of all input that determines the numbers",
     frame: "Frame",
     input: "SHA-256",
     more: "and {} more, in result.json",
@@ -216,9 +216,9 @@ const EN: Words = Words {
     both: "both",
     below: "below {} mm",
     registration: "Registration",
-    turned: "The actual skin was turned by {}° and shifted by {} mm",
-    covered: "{} % of the prediction and {} % of the actual skin have the other opposite.",
-    outside: "Positive, orange: the prediction lies outside the actual skin. Fixed range of ±{} mm. Green line: outline of the actual skin where its registration puts it.",
+    turned: "The actual skin was rotated by {}° and translated by {} mm",
+    covered: "{} % of the prediction and {} % of the actual skin are covered by the other.",
+    outside: "Positive, orange: the prediction is outside the actual skin. Fixed range of ±{} mm. Green line: outline of the registered actual skin.",
     outcome: "Outcome",
     rows: "Rows",
     chart: "Time against error",
@@ -310,7 +310,7 @@ const DE: Words = Words {
     on_mesh: "auf {} Knoten und {} Zellen.",
     with_growth: "Gewebe, das an Volumen gewinnt oder verliert, dehnt sich frei danach, und was es hält, dehnt es zurück.",
     with_muscles: "Muskeln ziehen entlang ihrer Fasern mit der Spannung, die der Plan angibt.",
-    with_contact: "Was sich berührt, drückt ohne Reibung.",
+    with_contact: "Kontakt ist einseitig und reibungsfrei.",
     with_refinement: "Zellen wurden dort geteilt, woher der Fehler der Haut kommt; Ergebnisse stehen an den Knoten des Falls.",
     with_correction: "Was das Netz nach der Schätzung auslässt, wurde zur Verschiebung addiert.",
     provenance: "Herkunft",
@@ -330,8 +330,8 @@ const DE: Words = Words {
     below: "unter {} mm",
     registration: "Registrierung",
     turned: "Die tatsächliche Haut wurde um {}° gedreht und um {} mm verschoben",
-    covered: "{} % der Vorhersage und {} % der tatsächlichen Haut haben die andere gegenüber.",
-    outside: "Positiv, orange: die Vorhersage liegt außerhalb der tatsächlichen Haut. Fester Bereich von ±{} mm. Grüne Linie: Umriss der tatsächlichen Haut, wo ihre Registrierung sie hinlegt.",
+    covered: "{} % der Vorhersage und {} % der tatsächlichen Haut sind von der anderen abgedeckt.",
+    outside: "Positiv, orange: die Vorhersage liegt außerhalb der tatsächlichen Haut. Fester Bereich von ±{} mm. Grüne Linie: Umriss der registrierten tatsächlichen Haut.",
     outcome: "Ergebnis",
     rows: "Zeilen",
     chart: "Zeit gegen Fehler",
@@ -343,7 +343,7 @@ const DE: Words = Words {
     signature: ["Name", "Datum", "Unterschrift"],
 };
 
-/// A sentence with its numbers in place of `{}`.
+/// A sentence with its numbers instead of `{}`.
 pub fn filled(sentence: &str, numbers: &[String]) -> String {
     let mut parts = sentence.split("{}");
     let first = parts.next().unwrap_or_default().to_owned();

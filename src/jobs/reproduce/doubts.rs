@@ -1,4 +1,4 @@
-//! Plausibility of a reproduction: both scans are of one person, the right way round, in the order of time.
+//! Plausibility of a reproduction: both scans are of one person, not mirrored, in chronological order.
 
 use crate::schema::reproduce::document::{ReproduceDocument, ReproducedSegmentDocument};
 use mechanics::mesh::{TriangleSurface, Warning};
@@ -13,21 +13,21 @@ pub(super) const BEFORE_OPERATION: &str = "before-operation-suspect";
 /// Bone that was not operated on fits to 0.1 to 0.25 mm, 0.5 % of it beyond 1 mm (Zachow et al. 2006, section 3.2).
 const MISFIT: f64 = 0.25;
 
-/// More of it than that is left where bone was moved.
+/// The share beyond which bone was moved.
 const MOVED: f64 = 0.02;
 
-/// In mm: bone nearer than that lies on a surface.
+/// In mm: bone nearer than that is on a surface.
 const LIES: f64 = 0.25;
 
-/// A segment that goes and turns by less was not moved: a hundredth of what planned movements are, and a tenth of what a registration
-/// of bone leaves.
+/// A segment that moves and rotates by less was not moved: a hundredth of planned movements, a tenth of the error of a registration
+/// of bone.
 const STAYS_MM: f64 = 0.02;
 const STAYS_DEG: f64 = 0.02;
 
-/// Farther than that from one scan, as a multiple of how far from the other, it lies on the other only.
+/// The ratio of the distances from both scans above which it is on one scan only.
 const FARTHER: f64 = 3.0;
 
-/// Doubts that both scans are of one person, the right way round.
+/// Doubts that both scans are of one person, and not mirrored.
 pub(super) fn base_warnings(
     bone: &BoneBefore,
     after: &TriangleSurface,
@@ -36,7 +36,7 @@ pub(super) fn base_warnings(
     let mut warnings = Vec::new();
     if found.share_far > MISFIT {
         let detail = format!(
-            "{:.0} % of the base is left more than 1 mm from the bone after the operation, rms {:.2} mm: is it of another person, or was the base moved?",
+            "{:.0} % of the base remains more than 1 mm from the bone after the operation, rms {:.2} mm: another person, or was the base moved?",
             100.0 * found.share_far,
             found.rms
         );
@@ -55,15 +55,15 @@ pub(super) fn base_warnings(
     warnings
 }
 
-/// A base that may hold the bone that was moved: it lies between where both say that the head is.
+/// A base that may contain moved bone: its registration is then between those of head and moved bone.
 pub(super) fn unmasked(spec: &ReproduceDocument, found: &SurfaceAlignment) -> Option<Warning> {
     let holds_segments = spec.segments.iter().any(|segment| segment.before.is_none());
     if spec.base.mask.is_some() || !(holds_segments || found.share_far > MOVED) {
         return None;
     }
     let detail = format!(
-        "the base has no `mask`, so that bone which was moved decides too where the head is: {:.1} % of it is left more than 1 mm from \
-         the bone after the operation. State a `mask` that holds only bone that nothing was done to",
+        "the base has no `mask`, so that moved bone affects the registration of the head: {:.1} % of it remains more than 1 mm from \
+         the bone after the operation. State a `mask` with only bone that was not operated on",
         100.0 * found.share_far
     );
     let warning = Warning::new("base-unmasked", detail);
@@ -74,7 +74,7 @@ pub(super) fn misfit(segment: &ReproducedSegmentDocument, found: &Performed) -> 
     let share = found.fit.share_far;
     (share > MISFIT).then(|| {
         let detail = format!(
-            "{:.0} % of segment `{}` is left more than 1 mm from the bone after the operation: its movement is not to be trusted without landmarks to start from",
+            "{:.0} % of segment `{}` remains more than 1 mm from the bone after the operation: its movement is unreliable without landmarks to start from",
             100.0 * share,
             segment.name.trim()
         );
@@ -83,8 +83,8 @@ pub(super) fn misfit(segment: &ReproducedSegmentDocument, found: &Performed) -> 
     })
 }
 
-/// A segment with a surface of its own, which is of the scan before the operation, lies on the other scan only: where that
-/// is as it stands, or where the base takes it. `scans` are those before and after the operation, as they are called.
+/// A segment with a separate surface, of the scan before the operation, is on the other scan only: as scanned
+/// or as registered by the base. `scans` are those before and after the operation, by name.
 pub(super) fn lies_on_the_other_scan(
     segment: &ReproducedSegmentDocument,
     bone: &BoneBefore,
@@ -101,7 +101,7 @@ pub(super) fn lies_on_the_other_scan(
         return None;
     }
     let detail = format!(
-        "the surface of segment `{}` before the operation lies {to_before:.2} mm (median) from the bone of `before`, and {to_after:.2} mm \
+        "the surface of segment `{}` before the operation is {to_before:.2} mm (median) from the bone of `before`, and {to_after:.2} mm \
          from that of `after`: are the two scans swapped?",
         segment.name.trim()
     );
@@ -109,7 +109,7 @@ pub(super) fn lies_on_the_other_scan(
     Some(warning.with("to_before_mm", to_before).with("to_after_mm", to_after))
 }
 
-/// Both scans are the same surface, or no segment goes anywhere: something that an operation never does.
+/// Both scans are the same surface, or no segment moves: never so after an operation.
 pub(super) fn same_scan(
     before: &TriangleSurface,
     after: &TriangleSurface,
@@ -123,7 +123,7 @@ pub(super) fn same_scan(
     (is_same || stays).then(|| {
         let told = if is_same { "the scans before and after the operation are one surface" } else { "no segment was moved" };
         let detail = format!(
-            "{told}: the segment that goes farthest goes {farthest:.3} mm, and the one that turns most turns {turned:.3} degrees; is `after` \
+            "{told}: the largest displacement of a segment is {farthest:.3} mm, the largest rotation {turned:.3} degrees; is `after` \
              the scan before the operation?"
         );
         let warning = Warning::new("nothing-performed", detail).with("farthest_mm", farthest);
@@ -131,7 +131,7 @@ pub(super) fn same_scan(
     })
 }
 
-/// A movement that is nearer to the plan backwards than to the plan, by how far the middle of the segment goes.
+/// A movement that is nearer to the reversed plan than to the plan, by the displacement of the segment's centroid.
 pub(super) fn reversed_plan(
     segment: &ReproducedSegmentDocument,
     found: &Performed,
@@ -146,7 +146,7 @@ pub(super) fn reversed_plan(
         return None;
     }
     let detail = format!(
-        "segment `{}` went {to_plan:.2} mm from where it was planned, and {to_undone:.2} mm from where the plan backwards takes it: are the \
+        "segment `{}` is {to_plan:.2} mm from its planned position, and {to_undone:.2} mm from that of the reversed plan: are the \
          scans before and after the operation swapped?",
         segment.name.trim()
     );

@@ -22,7 +22,7 @@ pub struct ReproduceInput {
 }
 
 impl ReproduceInput {
-    /// The meshes by the ids of the spec. Those before the operation lie in one frame, and so do those after it.
+    /// The meshes by the ids of the spec. Those before the operation are in one frame, and so are those after it.
     pub fn fetch(
         &self,
         sources: &dyn MeshSource,
@@ -49,7 +49,7 @@ impl ReproduceInput {
         Ok(stored)
     }
 
-    /// The hash of everything that decides the numbers.
+    /// The hash of everything that determines the numbers.
     pub fn spec_hash(&self, stored: &BTreeMap<String, StoredMesh>) -> String {
         let content = |id: &str| stored.get(id).map(|mesh| mesh.sha256.clone());
         hashes::reproduce_hash(&self.spec, &content)

@@ -36,10 +36,10 @@ use mechanics::validation::LandmarkPair;
 /// Time a reproduction may take, in seconds.
 const WALL_S: f64 = 600.0;
 
-/// Below this angle in radians a turn has no axis.
+/// Below this angle in radians a rotation has no axis.
 const NO_TURN: f64 = 1e-9;
 
-/// Finds what an operation did, as a job.
+/// Finds the movements of an operation.
 pub fn reproduce_job(
     input: &ReproduceInput,
     place: &JobContext,
@@ -87,7 +87,7 @@ pub fn reproduce_job(
     Ok(JobOutput { result, files: folder.files, meshes: Vec::new() })
 }
 
-/// The head before the operation, as planned and as it was performed.
+/// The head before the operation, as planned and as performed.
 fn head(input: &ReproduceInput, planned: &[PlannedSegment], found: &ReproductionDocument) -> Head {
     let landmarks = &input.spec.bone_landmarks;
     let as_planned = |name: &str, at: &Vector| {
@@ -110,7 +110,7 @@ fn head(input: &ReproduceInput, planned: &[PlannedSegment], found: &Reproduction
     Head { bone, skin: Skin::default(), norms: input.spec.norms.clone() }
 }
 
-/// The movements that had been planned, in the frame before the operation.
+/// The planned movements, in the frame before the operation.
 fn planned(
     input: &ReproduceInput,
     frame: Frame,
@@ -253,7 +253,7 @@ fn start(
     })
 }
 
-/// The direction about which a movement turns, right-handed.
+/// The axis of the rotation of a movement, right-handed.
 fn axis(movement: &RigidTransform) -> Vector {
     let r = &movement.rotation;
     let twice_sine =

@@ -24,14 +24,14 @@ fn earlier(folder: &Path) -> Vec<String> {
     std::iter::once(MANIFEST).chain(own).map(str::to_owned).collect()
 }
 
-/// Writes files and keeps the list of them.
+/// Writes files and lists them.
 pub struct ResultFolder<'a> {
     folder: &'a Path,
     pub files: Vec<FileDocument>,
 }
 
 impl<'a> ResultFolder<'a> {
-    /// Makes the folder if it is not there, and removes the files of a result that it holds: they would look like this one's.
+    /// Creates the folder if missing, and removes the files of an earlier result in it, which could be mistaken for this one's.
     pub fn open(folder: &'a Path) -> Result<Self, JobError> {
         let failed = |source| JobError::Write { file: folder.display().to_string(), source };
         std::fs::create_dir_all(folder).map_err(failed)?;
@@ -49,7 +49,7 @@ impl<'a> ResultFolder<'a> {
         self.add_file(name.file_name(), name.media_type(), bytes)
     }
 
-    /// A file that no client asks for by name in a spec.
+    /// A file that no spec names.
     pub fn add_file(&mut self, file: &str, media_type: &str, bytes: &[u8]) -> Result<(), JobError> {
         std::fs::write(self.folder.join(file), bytes)
             .map_err(|source| JobError::Write { file: file.to_owned(), source })?;

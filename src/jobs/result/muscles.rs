@@ -1,4 +1,4 @@
-//! Muscles of a scene in files: a picture of the cells that they lie in, and cell arrays of `volume.vtu`.
+//! Muscles of a scene in files: a picture of their cells, and cell arrays of `volume.vtu`.
 
 use std::collections::BTreeMap;
 
@@ -10,7 +10,7 @@ use mechanics::prediction::{Case, Scene};
 
 const MM3_IN_ML: f64 = 1000.0;
 
-/// For each cell the number of the muscle that has the largest share of it, -1 where none has any, and the share of all muscles.
+/// For each cell the number of the muscle with the largest share of it, -1 without any, and the share of all muscles.
 pub struct CellMuscles<'a> {
     pub names: Vec<&'a str>,
     muscle: Vec<i64>,
@@ -69,7 +69,7 @@ pub fn muscles_picture(case: &Case, scene: &Scene) -> Result<Option<String>, Png
     let bones: Vec<_> = bones.map(|bone| (&bone.points[..], &bone.triangles[..])).collect();
     let share = cells.share.iter().filter(|share| **share > 0.0).count();
     let subtitle = format!(
-        "{} muscles in {share} of {} cells, each cell in the colour of the largest share; skin and other tissue left out",
+        "{} muscles in {share} of {} cells, each cell in the colour of the largest share; skin and other tissue omitted",
         scene.muscles.len(),
         cells.share.len()
     );

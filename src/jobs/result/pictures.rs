@@ -9,8 +9,8 @@ use mechanics::chart::{
 use mechanics::mesh::{Frame, TriangleSurface, Vector};
 use mechanics::prediction::{NodeClass, Scene};
 
-/// Every class of a scene with its number of nodes, segments first; classes without a node are left out,
-/// but not segments, because an empty one is a mistake worth seeing.
+/// Every class of a scene with its number of nodes, segments first; classes without a node are omitted,
+/// but not segments, because an empty one is a mistake to be seen.
 fn classes_of(scene: &Scene) -> Vec<(NodeClass, NodeClasses)> {
     let segments = (0..scene.segments.len() as u32).map(NodeClass::Joined);
     let others = [NodeClass::Prescribed, NodeClass::Fixed, NodeClass::Sliding, NodeClass::Free];
@@ -33,7 +33,7 @@ fn classes_of(scene: &Scene) -> Vec<(NodeClass, NodeClasses)> {
         .collect()
 }
 
-/// `classes.svg`: the boundary of the volume mesh coloured by what holds its nodes.
+/// `classes.svg`: the boundary of the volume mesh coloured by node class.
 pub fn classes_picture(scene: &Scene, frame: Frame, title: &str) -> Result<String, PngError> {
     let boundary = scene.mesh.surface_of(&scene.boundary);
     let (order, classes): (Vec<NodeClass>, Vec<NodeClasses>) =
@@ -57,7 +57,7 @@ pub fn classes_picture(scene: &Scene, frame: Frame, title: &str) -> Result<Strin
     .to_svg()
 }
 
-/// `displacement.svg`: the skin before, after, and coloured by how far it moves, from 0 to a range in mm.
+/// `displacement.svg`: the skin before, after, and coloured by displacement, from 0 to a range in mm.
 pub fn displacement_picture(
     scene: &Scene,
     moved: &TriangleSurface,
@@ -123,12 +123,12 @@ pub fn slices_picture(anatomy: &Anatomy, frame: Frame) -> Result<String, PngErro
     .to_svg()
 }
 
-/// From where the face is seen; without a known frame its front is found from its skin.
+/// The view direction of a face; without a known frame its front is found from its skin.
 pub fn face_direction(frame: Frame, skin: &TriangleSurface) -> FaceDirection {
     upright(frame, skin).facing(&skin.points, &skin.triangles)
 }
 
-/// The same of a head, which is upright in its frame however its skin looks.
+/// The same for a head, which is upright in its frame, whatever its skin.
 pub fn upright(frame: Frame, skin: &TriangleSurface) -> FaceDirection {
     match frame {
         Frame::Lps => FaceDirection::lps(),

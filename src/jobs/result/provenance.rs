@@ -25,7 +25,7 @@ use mechanics::mesh::quality::QualityReport;
 use mechanics::mesh::{Frame, VolumeMesh};
 use mechanics::prediction::{Case, Laws, NewtonReport, RestOnTheWay, Scene, SolveReport};
 
-/// What a job knows of its origin before it starts.
+/// The origin of a job, known before it starts.
 pub struct Origin {
     pub spec_hash: String,
     pub inputs: Vec<InputDocument>,
@@ -85,7 +85,7 @@ impl Origin {
     }
 }
 
-/// Adds what only a prediction knows.
+/// Adds the members of a prediction.
 pub fn add_method(
     provenance: &mut ProvenanceDocument,
     method: MethodName,
@@ -98,7 +98,7 @@ pub fn add_method(
     provenance.mesh = Some(mesh);
 }
 
-/// The laws that a scene follows at finite strain, by region and by tissue of its image.
+/// The hyperelastic laws of a scene, by region and by tissue of its image.
 pub fn laws(case: &Case, scene: &Scene) -> BTreeMap<String, TissueLawDocument> {
     let followed = |tissue: &LinearElastic| match scene.settings.method.properties().laws {
         Laws::AtRest => None,
@@ -115,7 +115,7 @@ pub fn laws(case: &Case, scene: &Scene) -> BTreeMap<String, TissueLawDocument> {
     of.filter_map(|(name, law)| Some((name, (&law?).into()))).collect()
 }
 
-/// The materials of the literature that a case has, with those of a spec over its own.
+/// The materials of the literature in a case, with those of a spec over its own.
 pub fn presets(
     case: &CaseDocument,
     spec: Option<&MaterialDocuments>,
@@ -126,7 +126,7 @@ pub fn presets(
     used_presets(regions.iter().chain(&tissues).chain(&muscles))
 }
 
-/// How provenance names the mesh that was computed on.
+/// The mesh of the computation, in provenance.
 pub fn mesh_summary(mesh: &VolumeMesh, quality: &QualityReport) -> MeshSummaryDocument {
     MeshSummaryDocument {
         nodes: mesh.nodes.len() as u64,
@@ -136,7 +136,7 @@ pub fn mesh_summary(mesh: &VolumeMesh, quality: &QualityReport) -> MeshSummaryDo
     }
 }
 
-/// How a solver reports itself.
+/// The report of a solver.
 pub fn solver_document(solver: &SolveReport, elements: &[String]) -> SolverDocument {
     SolverDocument {
         name: solver.method.to_owned(),
@@ -168,13 +168,13 @@ fn newton_document(newton: &NewtonReport) -> NewtonDocument {
     }
 }
 
-/// Rest before the end.
+/// Equilibria before the last one.
 pub fn rest_on_the_way(rest: &RestOnTheWay) -> RestOnTheWayDocument {
     let RestOnTheWay { share, energy, least_det_f, steps } = *rest;
     RestOnTheWayDocument { share, energy_mn_mm: energy, least_det_f, steps: steps as u64 }
 }
 
-/// The bytes of `result.json`. JSON has no word for a number that is not finite and would write null:
+/// The bytes of `result.json`. JSON cannot represent a number that is not finite and would write null:
 /// such a result is refused.
 pub fn encode_result(result: &ResultDocument) -> Result<Vec<u8>, JobError> {
     let value = serde_json::to_value(result)
@@ -185,18 +185,18 @@ pub fn encode_result(result: &ResultDocument) -> Result<Vec<u8>, JobError> {
     Ok(manifest_bytes(&value))
 }
 
-/// How a manifest is written.
+/// The format of a manifest.
 pub fn manifest_bytes(manifest: &Value) -> Vec<u8> {
     format!("{manifest:#}\n").into_bytes()
 }
 
-/// What may be null in a result: estimates that are not known.
+/// Members of a result that may be null: unknown estimates.
 const UNKNOWN: [&str; 2] = ["/numerical_error_mm", "/nonlinearity_mm"];
 
-/// What a client stated, where null says that a direction is left free.
+/// Members stated by a client, where null is a free direction.
 const STATED: &str = "/provenance/plan";
 
-/// The place of the first null that does not belong into a result.
+/// The place of the first null that is not permitted in a result.
 pub(in crate::jobs) fn first_null(value: &Value, at: String) -> Option<String> {
     match value {
         Value::Null if !UNKNOWN.contains(&at.as_str()) => Some(at),

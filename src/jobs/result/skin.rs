@@ -9,7 +9,7 @@ use mechanics::format::{
 use mechanics::mesh::{Frame, TriangleSurface, Vector};
 use mechanics::prediction::{NumericalError, Prediction, Skin};
 
-/// The gap in mm of a node that faces nothing near.
+/// The gap in mm of a node without any surface near.
 const NOTHING_FACED: f64 = 1000.0;
 
 /// Contact at the points of a skin or the nodes of a mesh: pressure in kPa, gap in mm.
@@ -44,16 +44,16 @@ pub struct PredictedSkin {
     pub magnitude: Vec<f64>,
     /// To the surface it was compared with, in mm, positive outside.
     pub signed_distance: Option<Vec<f64>>,
-    /// What linear elasticity leaves out, in mm, where it is known.
+    /// The linearisation error, in mm, if known.
     pub nonlinearity: Option<Vec<f64>>,
-    /// What the mesh leaves out, in mm, where it is estimated: vectors and their lengths.
+    /// The discretisation error, in mm, if estimated: vectors and their lengths.
     pub missing: Option<Vec<Vector>>,
     pub numerical_error: Option<Vec<f64>>,
-    /// Where anything presses.
+    /// If there is contact.
     pub contact: Option<ContactArrays>,
-    /// Named parts as arrays `set_NAME`, 1 where a point belongs to one.
+    /// Named parts as arrays `set_NAME`, 1 at their points.
     pub sets: Vec<(String, Vec<i64>)>,
-    /// The displacement in mm at which colours end: the same for every plan, so that plans can be held side by side.
+    /// The displacement in mm at the end of the colour scale: the same for every plan, so that plans can be compared.
     pub range_mm: f64,
 }
 
@@ -152,13 +152,13 @@ impl PredictedSkin {
         }
     }
 
-    /// Colours by the length of the displacement, from none to the end of the range.
+    /// Colours by the length of the displacement, from 0 to the end of the range.
     fn colours(&self) -> Vec<Rgb> {
         self.magnitude.iter().map(|length| sequential(length / self.range_mm)).collect()
     }
 }
 
-/// A part of the skin as an array, by the name that a reader takes for a set.
+/// A part of the skin as an array, by the name of a set.
 fn set(name: &str, points: &[u32], skin: &Skin) -> (String, Vec<i64>) {
     let mut belongs = vec![0; skin.surface.points.len()];
     points.iter().for_each(|&point| belongs[point as usize] = 1);

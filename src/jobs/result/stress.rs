@@ -1,4 +1,4 @@
-//! Stress and strain of an answer, as arrays of `volume.vtu` and in numbers by region.
+//! Stress and strain of a result, as arrays of `volume.vtu` and in numbers by region.
 
 use std::collections::BTreeMap;
 
@@ -10,7 +10,7 @@ use mechanics::mesh::jacobian::signed_volume;
 use mechanics::prediction::{CellState, Prediction, Scene, node_states};
 use mechanics::validation::{Statistics, StatisticsError};
 
-/// Of the cells of a mesh, and of its nodes by the cells around them.
+/// Stress of the cells of a mesh, and of its nodes from adjacent cells.
 pub struct StressArrays {
     cells: Components,
     nodes: Components,
@@ -25,7 +25,7 @@ struct Components {
 }
 
 impl StressArrays {
-    /// In the frame that the mesh is written in; none where no stress is known.
+    /// In the frame of the written mesh; none without stress.
     pub fn new(scene: &Scene, prediction: &Prediction, written: &VolumeInLps) -> Option<Self> {
         let states = &prediction.states.cells;
         let of = |states: &[CellState]| Components::new(states, written);
@@ -64,7 +64,7 @@ impl Components {
     }
 }
 
-/// The strain that an answer has.
+/// The strain measure of a result.
 pub fn strain_measure(prediction: &Prediction) -> StrainMeasure {
     match prediction.states.is_green {
         true => StrainMeasure::Green,
@@ -72,7 +72,7 @@ pub fn strain_measure(prediction: &Prediction) -> StrainMeasure {
     }
 }
 
-/// Stress by the regions of a case, weighted by the volumes of cells; none where no stress is known.
+/// Stress by the regions of a case, weighted by the volumes of cells; none without stress.
 pub fn stress_by_region(
     scene: &Scene,
     prediction: &Prediction,

@@ -10,14 +10,14 @@ use mechanics::format::{
 use mechanics::mesh::{Frame, TriangleSurface, Vector};
 use mechanics::prediction::{Case, ImagedTissue, Prediction, Scene};
 
-/// `segment` of a point of a bone that moves with no segment.
+/// `segment` of a point of a fixed bone.
 const NO_SEGMENT: i64 = -1;
 
-/// `hounsfield_mean` of a cell that reaches beyond the image.
+/// `hounsfield_mean` of a cell that extends beyond the image.
 const NO_IMAGE: f64 = -32768.0;
 
-/// `volume.vtu`: predicted positions, and how each cell is deformed. In LPS where the case is in RAS: 3D Slicer reads a
-/// frame from a string array only, which meshio refuses, and takes a file without for LPS.
+/// `volume.vtu`: predicted positions, and the deformation of each cell. In LPS if the case is in RAS: 3D Slicer reads a
+/// frame from a string array only, which meshio refuses, and assumes LPS without one.
 pub fn encode_volume(
     scene: &Scene,
     prediction: &Prediction,
@@ -85,13 +85,13 @@ pub fn encode_volume(
     })
 }
 
-/// Vectors in the frame that is written.
+/// Vectors in the written frame.
 fn turned(written: &VolumeInLps, vectors: &[Vector]) -> Vec<Vector> {
     vectors.iter().map(|vector| written.turned(vector)).collect()
 }
 
-/// What an image says about each cell: its mean, -32768 where the cell reaches beyond the image; the number of
-/// its tissue in `tissue_names`, -1 where it keeps the material of its region; and the stiffness that follows.
+/// Image data of each cell: its mean, -32768 if the cell extends beyond the image; the number of
+/// its tissue in `tissue_names`, -1 if it keeps the material of its region; and the resulting stiffness.
 struct ImagedArrays {
     names: Vec<String>,
     mean: Vec<f64>,
@@ -120,7 +120,7 @@ impl ImagedArrays {
     }
 }
 
-/// `bones.vtp`: every bone of the case where its segment takes it. `segment` counts the segments named in
+/// `bones.vtp`: every bone of the case as moved by its segment. `segment` counts the segments named in
 /// the field data; it is -1 on bones that stay.
 pub fn encode_bones(
     case: &Case,

@@ -3,12 +3,12 @@
 use crate::schema::WarningDocument;
 use mechanics::mesh::Warning;
 
-/// Warnings as documents, without repeats.
+/// Warnings as documents, without duplicates.
 pub fn warning_documents<'a>(warnings: impl Iterator<Item = &'a Warning>) -> Vec<WarningDocument> {
     warnings_after(&[], warnings)
 }
 
-/// The same after those that the meshing of a volume told.
+/// The same after those of the meshing of a volume.
 pub fn warnings_after<'a>(
     told: &[WarningDocument],
     warnings: impl Iterator<Item = &'a Warning>,

@@ -16,7 +16,7 @@ use mechanics::study::Variant;
 pub(super) struct StudyItems {
     pub scenes: Scenes,
     pub variants: Vec<Variant>,
-    /// Scenes and variants that belong together, by their places; all with all where there is none.
+    /// Scenes and variants that belong together, by their places; all combinations if there is none.
     pub pairs: BTreeSet<(usize, usize)>,
 }
 
@@ -37,7 +37,7 @@ impl Documents<'_> {
                     let is_taken = parts.variants.iter().any(|other| other.label == variant.label);
                     if is_taken {
                         let detail = format!(
-                            "another model is called {:?}; give one a `label`",
+                            "another model has the name {:?}; give one a `label`",
                             variant.label
                         );
                         faults.add(&at.key("label"), ErrorCode::DuplicateName, detail);

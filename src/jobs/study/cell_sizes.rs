@@ -39,7 +39,7 @@ pub fn cell_sizes_csv(report: &ReportDocument) -> String {
     text
 }
 
-/// Every series and plan once, in the order of the report: each has a picture with all its models.
+/// Every series and plan once, in the order of the report, each for a picture with all its models.
 pub fn cell_size_groups(report: &ReportDocument) -> Vec<[&str; 3]> {
     let mut groups: Vec<[&str; 3]> = Vec::new();
     for of in &report.cell_sizes {
@@ -51,7 +51,7 @@ pub fn cell_size_groups(report: &ReportDocument) -> Vec<[&str; 3]> {
     groups
 }
 
-/// An SVG of a series on one plan and material.
+/// The SVG of a series on one plan and material.
 pub fn cell_sizes_chart(report: &ReportDocument, group: [&str; 3]) -> String {
     let [series, plan, material] = group;
     let is_own = |of: &&CellSizesDocument| {

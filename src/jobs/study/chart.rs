@@ -9,27 +9,24 @@ use mechanics::chart::{
 };
 use mechanics::study::{LINEAR_TRUTH, TRUTH_WITHOUT_CONTACT, WITHIN_TRUTH_ERROR, pareto};
 
-/// The longest reason that a chart tells; the report has it in full.
+/// The longest reason in a chart; the report has it in full.
 const REASON: usize = 110;
 
-/// What rows with these warnings are not: as near to the truth, or as far from it, as they are drawn.
+/// Warnings on rows whose true error differs from the drawn one.
 pub const MARKED: [(&str, &str); 3] = [
     (
         LINEAR_TRUTH,
-        "Answers of finite strain are compared with a linear truth: what linearity leaves out of it counts as their error.",
+        "Results of finite strain are compared with a linear truth: its linearisation error counts as their error.",
     ),
     (
         TRUTH_WITHOUT_CONTACT,
-        "answers with contact are held against a truth without: what contact changes counts as their error, which cannot be compared \
+        "results with contact are compared with a truth without: the effect of contact counts as their error, not comparable \
          with that of the other rows.",
     ),
-    (
-        WITHIN_TRUTH_ERROR,
-        "nearer to the truth than the truth is known: their error says that it is small, and not how small.",
-    ),
+    (WITHIN_TRUTH_ERROR, "errors below that of the truth: these are small, but not known exactly."),
 ];
 
-/// The chart of one scene, or of all where none is named, as SVG.
+/// The chart of one scene, or of all if none is named, as SVG.
 pub fn chart(report: &ReportDocument, scene: Option<&str>) -> String {
     svg(&chart_drawing(report, scene), &title(report, scene))
 }
@@ -63,7 +60,7 @@ pub fn chart_drawing(report: &ReportDocument, scene: Option<&str>) -> Document {
     picture.to_drawing()
 }
 
-/// Estimated against true errors of all rows that have both, as SVG; none where no row has.
+/// Estimated against true errors of all rows with both, as SVG; none without such rows.
 pub fn estimates_chart(report: &ReportDocument) -> Option<String> {
     let known = |row: &&RowDocument| row.numbers.as_ref().is_some_and(|n| n.effectivity.is_some());
     let rows: Vec<&RowDocument> = report.rows.iter().filter(known).collect();
@@ -82,16 +79,16 @@ pub fn estimates_chart(report: &ReportDocument) -> Option<String> {
     let picture = EstimatesPicture {
         title,
         subtitle: &format!(
-            "{} of {} answers are within a factor of two of the truth",
+            "{} of {} results are within a factor of two of the truth",
             within.count(),
             marks.len()
         ),
         series: &methods,
         marks: &marks,
         notes: &[
-            "Estimated without the truth: what the mesh leaves out, and what linearity does where the truth is one of finite \
-             strain. A mark is a row: a plan, a material and a mesh. What is chosen by its error estimates it over the skin that \
-             moves, and is drawn by the ratio to the true error there."
+            "Estimated without the truth: the discretisation error, and that of linearity if the truth is one of finite \
+             strain. A mark is a row: a plan, a material and a mesh. Methods chosen by error estimate it over the skin that \
+             moves, and are drawn by the ratio to the true error there."
                 .to_owned(),
             engine_words(report),
         ],
@@ -99,8 +96,8 @@ pub fn estimates_chart(report: &ReportDocument) -> Option<String> {
     (!marks.is_empty()).then(|| svg(&picture.to_drawing(), title))
 }
 
-/// The models of a report in the order of its rows, each once: every chart of it gives each the same symbol, whichever
-/// of them it shows.
+/// The models of a report in the order of its rows, each once: each has the same symbol in all charts of it, whichever
+/// of them these show.
 fn series(report: &ReportDocument) -> Vec<MethodSeries> {
     let mut series: Vec<MethodSeries> = Vec::new();
     for row in &report.rows {
@@ -126,7 +123,7 @@ fn levels(rows: &[&RowDocument], label: &str) -> Vec<u32> {
     levels
 }
 
-/// The medians over the rows that have numbers.
+/// The medians over the rows with numbers.
 fn mark(rows: &[&RowDocument], series: usize, level: u32) -> Option<LadderMark> {
     let numbers = rows.iter().filter_map(|row| row.numbers.as_ref());
     let runs: Vec<[f64; 2]> = numbers.map(|numbers| [numbers.wall_s, numbers.p95_mm]).collect();
@@ -206,7 +203,7 @@ fn counted(names: &[&str], what: &str) -> String {
 
 fn notes(report: &ReportDocument, rows: &[&RowDocument], scene: Option<&str>) -> Vec<String> {
     let mut notes = vec![
-        "Error: how far a skin node is from where the truth has it; 95 % of the skin's area lie below the value drawn. \
+        "Error: distance of a skin node from its true position; 95 % of the skin's area are below the value drawn. \
          Time: median of the repeats of a row, mesh in memory to displacement in memory, one thread. A mark is the \
          median over plans, materials and scenes; small dots are the single rows."
             .to_owned(),

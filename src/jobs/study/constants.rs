@@ -60,7 +60,7 @@ pub fn constants_chart(
     Ok(picture.to_svg()?)
 }
 
-/// Values ascending, however the sweep names them.
+/// Values ascending, in any order of the sweep.
 fn drawn(axis: &SweptAxisDocument) -> ContourAxis {
     let mut values = axis.values.clone();
     values.sort_by(f64::total_cmp);
@@ -86,9 +86,9 @@ fn notes(report: &ReportDocument, map: &ConstantMapDocument, held: &[usize]) -> 
     }
     notes.push(match map.noise_mm {
         Some(noise) => format!(
-            "Registration left {noise:.4} mm (root of the mean square): values within that of the least are as good."
+            "Registration error {noise:.4} mm (root mean square): values within that of the least are equally good."
         ),
-        None => "What registration left is not known.".to_owned(),
+        None => "The registration error is not known.".to_owned(),
     });
     notes.extend(
         map.warnings

@@ -14,7 +14,7 @@ use crate::schema::{CaseDocument, Limits, PlanDocument, Pointer};
 use mechanics::mesh::Warning;
 use mechanics::study::StudyScene;
 
-/// Where the documents of a study stand.
+/// The places of the documents of a study.
 pub(super) struct Documents<'a> {
     pub spec: &'a StudyDocument,
     /// The cases of the spec by their ids.
@@ -23,21 +23,21 @@ pub(super) struct Documents<'a> {
     pub limits: &'a Limits,
 }
 
-/// Scenes, and where they came from.
+/// Scenes, and their origins.
 #[derive(Default)]
 pub(super) struct Scenes {
     pub scenes: Vec<StudyScene>,
     pub inputs: Vec<InputDocument>,
     /// The SHA-256 of each mesh and of the skin of the truth's job, by its id.
     pub contents: BTreeMap<String, String>,
-    /// Of each case what it was stated as, by the name of its scene.
+    /// Of each case its hashes as stated, by the name of its scene.
     pub stated: BTreeMap<String, StatedHashes>,
-    /// The series of each scene that belongs to one, by its name.
+    /// The series of each scene in one, by its name.
     pub series: BTreeMap<String, String>,
     pub warnings: Vec<Warning>,
 }
 
-/// SHA-256 of what a case states and of each of its plans, by their names.
+/// SHA-256 of a case's document and of each of its plans, by their names.
 #[derive(Clone, Debug, Default)]
 pub struct StatedHashes {
     pub case: String,
@@ -45,7 +45,7 @@ pub struct StatedHashes {
 }
 
 impl StatedHashes {
-    /// Of a case and its plans, as they are called by their numbers.
+    /// Of a case and its plans, named by their numbers.
     pub(super) fn of<'a>(
         case: &CaseDocument,
         plans: impl Iterator<Item = &'a PlanDocument>,

@@ -17,7 +17,7 @@ pub const CSV_MEDIA_TYPE: &str = "text/csv; charset=utf-8";
 pub const JUNIT_MEDIA_TYPE: &str = "application/xml";
 pub const SVG_MEDIA_TYPE: &str = "image/svg+xml";
 
-/// The columns of `report.csv`; further ones are added at the end. Errors that are estimated are means over the skin.
+/// The columns of `report.csv`; further ones are added at the end. Estimated errors are means over the skin.
 pub const COLUMNS: [&str; 28] = [
     "scene",
     "plan",
@@ -98,7 +98,7 @@ fn csv_cells(row: &RowDocument) -> [String; COLUMNS.len()] {
     ]
 }
 
-/// A text that a spreadsheet takes for a text: one that begins like a formula gets an apostrophe before it.
+/// A text safe in spreadsheets: one that begins like a formula gets an apostrophe before it.
 pub fn cell(text: &str) -> String {
     let guarded = match text.starts_with(['=', '+', '-', '@', '\t', '\r']) {
         true => format!("'{text}"),
@@ -110,7 +110,7 @@ pub fn cell(text: &str) -> String {
     }
 }
 
-/// The rows as test cases, a suite for each scene. Something is a failure or an error exactly where the outcome is not
+/// The rows as test cases, a suite for each scene. There is a failure or an error exactly if the outcome is not
 /// `pass`.
 pub fn junit(report: &ReportDocument) -> String {
     let mut suites = Counts::default();
@@ -148,7 +148,7 @@ pub fn junit(report: &ReportDocument) -> String {
     )
 }
 
-/// Scenes in the order of their rows, then those of which everything is skipped.
+/// Scenes in the order of their rows, then those with all variants skipped.
 fn scenes(report: &ReportDocument) -> Vec<&str> {
     let mut names: Vec<&str> = Vec::new();
     let skipped = report.skipped.iter().map(|skipped| skipped.scene.as_str());
@@ -230,7 +230,7 @@ fn test_case(cases: &mut String, row: &RowDocument) {
     cases.push_str("</testcase>\n");
 }
 
-/// A variant that does not serve a scene.
+/// A variant that does not support a scene.
 fn skipped_case(cases: &mut String, skipped: &SkippedDocument) {
     let class = escaped(&format!("study.{}", skipped.scene));
     let (name, reason) = (escaped(&skipped.label), escaped(&skipped.reason));
@@ -244,7 +244,7 @@ fn problem(cases: &mut String, what: &str, kind: &str, words: &str) {
     *cases += &format!("<{what} type=\"{kind}\" message=\"{words}\">{words}</{what}>");
 }
 
-/// Text for XML: markup written out, and what XML 1.0 does not allow replaced.
+/// Text for XML: markup escaped, and characters that XML 1.0 does not allow replaced.
 fn escaped(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for letter in text.chars() {

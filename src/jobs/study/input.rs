@@ -44,13 +44,13 @@ impl StudyInput {
         ids
     }
 
-    /// The earlier report, where it has all rows of this key.
+    /// The earlier report, if it has all rows of this key.
     pub fn rows_of(&self, rows_key: &str) -> Option<&ReportDocument> {
         let earlier = self.earlier.as_deref();
         earlier.filter(|earlier| earlier.rows_key == rows_key && earlier.is_complete())
     }
 
-    /// What its outcome is judged against.
+    /// The baseline of its outcome.
     pub fn to_baseline(&self) -> Baseline<'_> {
         match (&self.baseline, &self.spec.baseline) {
             (Some(report), _) => Baseline::Report(report),

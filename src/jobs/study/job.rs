@@ -31,18 +31,18 @@ use mechanics::study::constant_map::constant_maps;
 use mechanics::study::sweep::axes;
 use mechanics::study::{Stopwatch, StudyError, run};
 
-/// What a study may take in all: its budget once for rows, once for truths, and a minute for the rest, in s.
+/// The total time limit of a study: its budget once for rows, once for references, and a minute for the rest, in s.
 fn whole_budget(rows_s: f64) -> f64 {
     2.0 * rows_s + 60.0
 }
 
-/// Measures rows and tells which one is solved, but nothing of the iterations inside: they begin anew with every
+/// Measures rows and reports which one is solved, but not the iterations inside: they restart with every
 /// row.
 struct Rows<'a> {
     clock: &'a Observed<'a>,
     stopwatch: MachineStopwatch,
     begun: AtomicUsize,
-    /// Rows, and meshes that truths are solved on.
+    /// Rows, and meshes of reference solutions.
     most: usize,
 }
 
@@ -51,7 +51,7 @@ impl Stopwatch for Rows<'_> {
         self.stopwatch.seconds()
     }
 
-    /// A study does so where a row begins.
+    /// A study does so when a row begins.
     fn reset_peak(&self) {
         self.begin();
         self.stopwatch.reset_peak();
@@ -73,7 +73,7 @@ impl Progress for Rows<'_> {
 
     fn iteration(&self, _iteration: usize, _relative_residual: f64, _wanted: f64) {}
 
-    /// A truth does so where it is solved on a mesh, after all rows of its scene.
+    /// A reference does so when it is solved on a mesh, after all rows of its scene.
     fn step(&self, _done: usize, _of: usize) {
         self.begin();
     }
@@ -125,7 +125,7 @@ pub fn study_job(
     Ok(JobOutput { result, files: folder.files, meshes: Vec::new() })
 }
 
-/// The report before it is judged: rows of an earlier one where it has the same key, else solved.
+/// The report before its outcome: rows of an earlier one with the same key, else solved.
 fn rows_of(
     input: &StudyInput,
     prepared: &PreparedStudy,
@@ -160,7 +160,7 @@ fn rows_of(
     Ok(ReportDocument { constant_maps, ..report_document(&found, spec, variants, origin()) })
 }
 
-/// The report in every form, a chart over all scenes, one for each where there are several, one for each map of
+/// The report in every form, a chart over all scenes, one for each of several, one for each map of
 /// swept constants, and table and charts of cell sizes.
 fn write_report(report: &ReportDocument, folder: &mut ResultFolder) -> Result<(), JobError> {
     folder.add_file(REPORT_JSON, JSON_MEDIA_TYPE, &encode_report(report)?)?;

@@ -19,7 +19,7 @@ use mechanics::study::{Study, StudyScene, truth_cost};
 /// The code of the warning of a study that names no method.
 pub const ALL_METHODS: &str = "all-methods";
 
-/// A study whose documents are sound.
+/// A study with valid documents.
 pub struct PreparedStudy {
     pub study: Study,
     pub spec_hash: String,
@@ -90,20 +90,20 @@ impl StudyInput {
     }
 }
 
-/// Warning of a study that names no method: the costliest takes minutes where the cheapest takes a second.
+/// Warning of a study without named methods: the most expensive takes minutes, the cheapest a second.
 fn all_methods(study: &Study) -> Warning {
     let methods: BTreeSet<&str> =
         study.variants.iter().map(|variant| variant.method.as_str()).collect();
     let (methods, variants, rows) = (methods.len(), study.variants.len(), most_rows(study));
     let detail = format!(
-        "no method is named, and all {methods} are solved in {variants} variants, {rows} rows at most: `methods` names those that \
-         are wanted, and is much faster with few"
+        "no method is named, and all {methods} are solved in {variants} variants, {rows} rows at most: name methods in `methods`, \
+         a few of which are much faster"
     );
     let warning = Warning::new(ALL_METHODS, detail).with("variants", variants as f64);
     warning.with("rows", rows as f64)
 }
 
-/// How often truths are solved on a mesh with one set of materials.
+/// The number of reference solutions on a mesh with one set of materials.
 pub fn truth_meshes(study: &Study) -> usize {
     let of = |(place, scene): (usize, &StudyScene)| {
         let cost = truth_cost(scene, study.variants_of(place));
@@ -112,7 +112,7 @@ pub fn truth_meshes(study: &Study) -> usize {
     study.scenes.iter().enumerate().map(of).sum()
 }
 
-/// How many rows a study has, with those that turn out to be the truth itself.
+/// The number of rows of a study, including those that are the reference itself.
 pub fn most_rows(study: &Study) -> usize {
     let of_scene = |(place, scene): (usize, &StudyScene)| {
         scene.plans.len() * scene.materials.len() * study.variants_of(place).count()

@@ -1,4 +1,4 @@
-//! Report of a study as the document that clients read.
+//! Report of a study as a document for clients.
 
 use std::collections::BTreeMap;
 
@@ -21,14 +21,14 @@ use mechanics::study::{
     Errors, NOT_RUN, Outcome, Report, Row, SceneReport, Skipped, Solved, Variant, pareto,
 };
 
-/// What a report tells of its origin.
+/// The origin of a report.
 pub struct ReportOrigin {
     pub job: Option<String>,
     pub spec_hash: String,
     pub rows_key: String,
-    /// Of each case what it was stated as, by the name of its scene.
+    /// Of each case its hashes as stated, by the name of its scene.
     pub stated: BTreeMap<String, StatedHashes>,
-    /// The series of each scene that belongs to one, by its name.
+    /// The series of each scene in one, by its name.
     pub series: BTreeMap<String, String>,
     /// RFC 3339, UTC.
     pub created: String,
@@ -107,7 +107,7 @@ pub fn encode_report(report: &ReportDocument) -> Result<Vec<u8>, JobError> {
     Ok(format!("{value:#}\n").into_bytes())
 }
 
-/// Marks the rows that nothing beats among those of the same plan, material and kind of truth of a scene.
+/// Marks the Pareto-optimal rows among those of the same plan, material and kind of reference of a scene.
 fn mark_front(rows: &mut [RowDocument], scene: &str) {
     let truth_contact = |row: &RowDocument| row.numbers.as_ref().is_some_and(|n| n.truth_contact);
     let mut groups: Vec<(String, String, bool)> = Vec::new();

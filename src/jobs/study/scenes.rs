@@ -1,4 +1,4 @@
-//! The documents of a study as scenes, variants and truths; everything that is wrong is told with its place.
+//! The documents of a study as scenes, variants and references; all faults are reported with their places.
 
 use std::collections::BTreeMap;
 
@@ -22,7 +22,7 @@ use mechanics::study::scenes::{default_truth, scene_of};
 use mechanics::study::sweep::{self, SweepError};
 use mechanics::study::{Materials, StudyScene, Variant, methods};
 
-/// Fields of a `predict` spec that have their own place in a study.
+/// Fields of a `predict` spec with another place in a study.
 const OF_THE_STUDY: [&str; 10] = [
     "kind",
     "case",
@@ -36,19 +36,16 @@ const OF_THE_STUDY: [&str; 10] = [
     "tags",
 ];
 
-/// Fields of a `predict` spec that rows do without, and why.
+/// Fields of a `predict` spec not supported in rows, and why.
 const NOT_OF_ROWS: [(&str, &str); 4] = [
     ("accept_regions_mm", "rows are judged over the whole skin: state `accept_mm`"),
-    ("refine", "a row is the answer on the mesh of its level: state `levels`"),
-    (
-        "corrected",
-        "a row is the answer of a model as it is, without what its mesh is estimated to leave out",
-    ),
+    ("refine", "a row is the result on the mesh of its level: state `levels`"),
+    ("corrected", "a row is the result of a model itself, without a correction of its mesh error"),
     ("range_mm", "a row has no file with colours"),
 ];
 
 impl Documents<'_> {
-    /// The variants of all methods, each with a label of its own.
+    /// The variants of all methods, each with a unique label.
     pub fn variants(&self, faults: &mut Faults) -> Vec<Variant> {
         let at = spec_at().key("methods");
         let mut variants: Vec<Variant> = match &self.spec.methods {
@@ -66,7 +63,7 @@ impl Documents<'_> {
         for (index, variant) in variants.iter().enumerate() {
             if variants[..index].iter().any(|other| other.label == variant.label) {
                 let detail =
-                    format!("two variants are called {:?}; give one a `label`", variant.label);
+                    format!("two variants have the name {:?}; give one a `label`", variant.label);
                 faults.add(&at, ErrorCode::DuplicateName, detail);
             }
         }
@@ -94,7 +91,7 @@ impl Documents<'_> {
         ];
         for (place, names) in named {
             for (index, name) in names.into_iter().enumerate().filter(|(_, name)| !labels(name)) {
-                let detail = format!("no variant is called {name:?}; there are {known}");
+                let detail = format!("there is no variant {name:?}; there are {known}");
                 faults.add(&place.index(index), ErrorCode::UnknownLabel, detail);
             }
         }
@@ -134,7 +131,7 @@ impl Documents<'_> {
         }
     }
 
-    /// A variant that says itself what it is: a `predict` spec without what belongs to the study.
+    /// A variant with its own spec: a `predict` spec without members that belong to the study.
     pub(super) fn stated(
         &self,
         mut entry: Value,
@@ -202,7 +199,7 @@ impl Documents<'_> {
             let names = found.scenes.iter().map(|scene| &scene.name);
             let last = found.scenes.last().map(|scene| scene.name.clone()).unwrap_or_default();
             if names.filter(|name| **name == last).count() > 1 {
-                let detail = format!("two scenes are called {last:?}; give one a `name`");
+                let detail = format!("two scenes have the name {last:?}; give one a `name`");
                 faults.add(&at.index(index), ErrorCode::DuplicateName, detail);
             }
         }
@@ -248,7 +245,7 @@ impl Documents<'_> {
         for (index, name) in self.spec.plan_names().into_iter().filter(|(_, name)| !named(name)) {
             let known =
                 listed(scenes.iter().flat_map(|scene| scene.plans.iter().map(|(plan, _)| plan)));
-            let detail = format!("no scene by name has a plan called {name:?}; there are: {known}");
+            let detail = format!("no scene by name has a plan {name:?}; there are: {known}");
             faults.add(&spec_at().key("plans").index(index), ErrorCode::UnknownPlan, detail);
         }
     }
@@ -267,7 +264,7 @@ impl Documents<'_> {
         self.placed_scene(reference, &documents, &given, found)
     }
 
-    /// The same with plans and materials that have a place each.
+    /// The same with plans and materials with their places.
     pub(super) fn placed_scene(
         &self,
         reference: &CaseReference,
@@ -352,7 +349,7 @@ impl Documents<'_> {
         JobError::Refused(problem.moved("/case", case.as_str()))
     }
 
-    /// Every combination of the swept values in place of the materials of the scene.
+    /// Every combination of the swept values, instead of the materials of the scene.
     fn sweep(&self, scene: &mut StudyScene, faults: &mut Faults) {
         if self.spec.sweep.is_empty() {
             return;

@@ -19,8 +19,8 @@ impl Stopwatch for MachineStopwatch {
         self.0.elapsed().as_secs_f64()
     }
 
-    /// Linux forgets the peak of a process that writes 5 here (proc(5), since 4.0). Where it may not, the peak
-    /// stays that of everything before.
+    /// Linux resets the peak of a process that writes 5 here (proc(5), since 4.0). If not permitted, the peak
+    /// remains that of all earlier work.
     fn reset_peak(&self) {
         let _ = std::fs::write("/proc/self/clear_refs", "5");
     }

@@ -18,7 +18,7 @@ use mechanics::study::{MOST_CELLS, Scan, ScanMetric, Strain, StudyScene, Truth, 
 use mechanics::validation::LandmarkPair;
 
 impl Documents<'_> {
-    /// What the spec holds for true, if it says so.
+    /// The reference of the spec, if stated.
     pub(super) fn truth(&self, scene: &mut StudyScene, faults: &mut Faults) {
         let at = spec_at().key("truth");
         match &self.spec.truth {
@@ -44,16 +44,16 @@ impl Documents<'_> {
     }
 }
 
-/// Landmarks of a spline are at least so thick, as a share of their length: where they are thinner, the millimetre by which one is
-/// placed wrong is several on skin that lies off their plane.
+/// The least thickness of landmarks of a spline, as a share of their length: if they are thinner, the millimetre by which one is
+/// misplaced is several on skin off their plane.
 const LEAST_THICKNESS: f64 = 0.05;
 
-/// Skin counts that some answer moves by more than this, in mm, where nothing else is stated: more than registration
-/// leaves of bone that nothing was done to.
+/// Skin counts that some result moves by more than this, in mm, by default: more than the registration error
+/// of bone that was not operated on.
 const USUAL_MOVED_MM: f64 = 0.5;
 
 impl Documents<'_> {
-    /// A truth that is stored: the skin of a job, or a scan.
+    /// A stored reference: the skin of a job, or a scan.
     pub(super) fn stored_truth(
         &self,
         scene: &mut StudyScene,
@@ -119,7 +119,7 @@ impl Documents<'_> {
     }
 }
 
-/// How answers are measured to a scan that has the points or the landmarks which that needs.
+/// The metric from results to a scan, which has the required points or landmarks.
 fn metric(
     truth: &TruthDocument,
     first: &Prepared,
@@ -137,14 +137,14 @@ fn metric(
                 return Ok(ScanMetric::NodeWise);
             }
             let detail = format!(
-                "the scan has {other} points and the skin of the case {own}, and they have to be the same ones"
+                "the scan has {other} points and the skin of the case {own}; they have to be the same"
             );
             Err(refused(at.key("metric"), ErrorCode::NotCorresponding, detail).into())
         }
         TruthMetric::TpsCp => {
             let pair = |(name, actual): (&String, &Triple)| {
                 let missing = || {
-                    let detail = format!("the case has no landmark called {name:?}");
+                    let detail = format!("the case has no landmark {name:?}");
                     refused(at.key("landmarks_mm").key(name), ErrorCode::UnknownField, detail)
                 };
                 let prediction = first.scene.landmarks.get(name).copied().ok_or_else(missing)?;
@@ -159,7 +159,7 @@ fn metric(
                 require_thickness(&points, LEAST_THICKNESS).map_err(|error| {
                     let count = points.len();
                     let detail = format!(
-                        "the {count} landmarks of the {whose} do not tell where a thin-plate spline takes what lies off their plane: {error}; \
+                        "the {count} landmarks of the {whose} do not determine a thin-plate spline off their plane: {error}; \
                          {LEAST_THICKNESS} of the length is the least thickness"
                     );
                     refused(at.key("landmarks_mm"), ErrorCode::AlignmentFailed, detail)
@@ -170,7 +170,7 @@ fn metric(
     }
 }
 
-/// A truth that cannot be solved would be found out after all rows.
+/// Checks the reference now: it is solved only after all rows.
 fn check_element(
     (element, strain): (ElementChoice, Strain),
     scene: &StudyScene,
@@ -187,7 +187,7 @@ fn check_element(
     let shapes = element.shapes();
     if let Some((shape, _)) = cells.find(|(shape, _)| !shapes.contains(shape)) {
         let detail = format!(
-            "scene {} has {} cells, which cannot be {}: `auto` serves every cell",
+            "scene {} has {} cells, which cannot be {}: `auto` supports every cell",
             scene.name,
             shape.name(),
             element.name()
@@ -207,22 +207,25 @@ fn check_cells(times: u32, scene: &StudyScene, at: &Pointer, faults: &mut Faults
     }
 }
 
-/// The displacement of each skin node to where a predicted skin has it.
+/// The displacement of each skin node to its position in a predicted skin.
 pub(super) fn known_displacement(
     skin: &StoredMesh,
     prepared: &Prepared,
     at: &Pointer,
 ) -> Result<Vec<Vector>, JobError> {
     let Some(predicted) = skin.surface_in_mm() else {
-        return Err(
-            Problem::at(at, ErrorCode::WrongMesh, "the result of that job is no surface").into()
-        );
+        return Err(Problem::at(
+            at,
+            ErrorCode::WrongMesh,
+            "the result of that job is not a surface",
+        )
+        .into());
     };
     let rest = &prepared.scene.skin;
     let numbers = predicted.node_ids.as_deref().unwrap_or_default();
     if numbers != rest.nodes() || predicted.points.len() != rest.surface.points.len() {
         let detail = format!(
-            "the skin of that job has {} nodes, that of the case {}, and their numbers have to be the same",
+            "the skin of that job has {} nodes, that of the case {}; the numbers have to be the same",
             predicted.points.len(),
             rest.nodes().len()
         );

@@ -9,22 +9,22 @@ use crate::schema::study::report::{
 };
 use mechanics::plan::doubt::NOTHING_MOVES;
 
-/// Differences that are none, whatever the ratios say: errors in mm to which solutions agree, iterations by which the
+/// Negligible differences, independent of the ratios: errors in mm to which solutions agree, iterations by which the
 /// rounding of another processor's factorisation may change their number, and the jitter of clocks in s.
 const NO_ERROR_MM: f64 = 1e-4;
 const NO_ITERATIONS: f64 = 5.0;
 const NO_TIME_S: f64 = 0.02;
 
-/// Measures as rows have them.
+/// Measures of rows.
 const MEAN: &str = "mean_mm";
 const P95: &str = "p95_mm";
 const WALL: &str = "wall_s";
 
-/// An earlier study to hold rows against.
+/// An earlier study to compare rows with.
 pub enum Baseline<'a> {
-    /// None was asked for.
+    /// None was requested.
     NotAsked,
-    /// One was asked for, and it is not there: why, in words.
+    /// One was requested, and is missing: why, in words.
     Missing(String),
     Report(&'a ReportDocument),
 }
@@ -67,12 +67,12 @@ pub fn judge(report: &mut ReportDocument, baseline: &Baseline) {
     report.verdict = VerdictDocument { failing, ..whole(report, baseline, (common, lost)) };
 }
 
-/// Whether the variant of a row is told to serve its scene not.
+/// Whether the variant of a row is reported not to support its scene.
 fn is_skipped(report: &ReportDocument, row: &RowDocument) -> bool {
     report.skipped.iter().any(|skipped| skipped.scene == row.scene && skipped.label == row.label)
 }
 
-/// The labels that thresholds name and that have no row, because nothing that they name applies.
+/// The labels of thresholds without any row, because nothing that they name applies.
 fn unheld(report: &ReportDocument) -> Vec<&str> {
     let bounds = report.rules.thresholds.iter().flat_map(|bounds| &bounds.labels);
     let has_row = |label: &str| report.rows.iter().any(|row| row.label == label);
@@ -81,7 +81,7 @@ fn unheld(report: &ReportDocument) -> Vec<&str> {
     labels.filter(|label| !has_row(label) && is_left_out(label)).collect()
 }
 
-/// Why a row is no pass: in a sentence, and what it has of a measure and may have, where it has it.
+/// Why a row does not pass: in a sentence, with the value and the limit of a measure, if any.
 #[derive(Default)]
 struct Reason {
     measure: Option<&'static str>,
@@ -124,7 +124,7 @@ fn judge_row(
         _ => return failed(row, before, rules),
     };
     if row.warnings.iter().any(|code| code == NOTHING_MOVES) {
-        let why = "its plan moves nothing, and every method answers that without error".to_owned();
+        let why = "its plan moves nothing, and every method solves that without error".to_owned();
         return (RowVerdict::Failed, vec![why.into()]);
     }
     let mut reasons = Vec::new();
@@ -204,22 +204,22 @@ fn grown(
 
 /// A number of a row that may grow.
 struct Growth {
-    /// As documents call it.
+    /// Its name in documents.
     measure: &'static str,
     name: &'static str,
     unit: &'static str,
     digits: usize,
-    /// A difference that is none.
+    /// A negligible difference.
     slack: f64,
 }
 
 impl Growth {
-    /// The sentence where it grew by more than is allowed; without a ratio it is not judged.
+    /// The sentence if it grew by more than is allowed; without a ratio it is not judged.
     fn beyond(&self, now: f64, before: f64, ratio: Option<f64>) -> Option<Reason> {
         let Growth { measure, name, unit, digits, slack } = *self;
         let of = |limit, words| Reason { measure: Some(measure), value: Some(now), limit, words };
         if ratio.is_some() && !before.is_finite() {
-            return Some(of(None, format!("{name} of the baseline is no number")));
+            return Some(of(None, format!("{name} of the baseline is not a number")));
         }
         let ratio = ratio.filter(|ratio| now > before * ratio && now > before + slack)?;
         let times = now / before;
@@ -236,7 +236,7 @@ fn question(scene: &StudySceneDocument) -> String {
     format!("{nodes} nodes, {cells} cells and the truth {truth:?}")
 }
 
-/// Whether a row is about the same mesh, case, truth and movement as the row of the same names in the baseline.
+/// Whether a row has the same mesh, case, reference and movement as the row of the same names in the baseline.
 fn is_same_question<'a>(
     row: &RowDocument,
     scenes: &'a [StudySceneDocument],
@@ -251,12 +251,12 @@ fn is_same_question<'a>(
         && is_alike(plan(now), plan(then))
 }
 
-/// Whether two hashes are one, as far as both are known: earlier versions wrote fewer.
+/// Whether two hashes are equal, as far as both are known: earlier versions wrote fewer.
 fn is_alike(now: Option<&String>, then: Option<&String>) -> bool {
     now == then || now.is_none() || then.is_none()
 }
 
-/// Scenes of one name that are not the same in the baseline: their rows answer other questions.
+/// Scenes of one name that differ in the baseline: their rows are not comparable.
 fn other_questions(report: &ReportDocument, earlier: &ReportDocument) -> Vec<String> {
     let pair = |scene: &StudySceneDocument| {
         let before = earlier.scenes.iter().find(|other| other.name == scene.name)?;
@@ -268,7 +268,7 @@ fn other_questions(report: &ReportDocument, earlier: &ReportDocument) -> Vec<Str
             ));
         }
         let words = format!(
-            "the case of the scene {name:?} states something else than in the baseline, or has another mesh: their rows cannot be \
+            "the case of the scene {name:?} has another document or mesh than in the baseline: their rows cannot be \
              compared"
         );
         (!is_alike(scene.case.as_ref(), before.case.as_ref())).then_some(words)
@@ -277,7 +277,7 @@ fn other_questions(report: &ReportDocument, earlier: &ReportDocument) -> Vec<Str
     scenes.chain(other_plans(report, earlier)).collect()
 }
 
-/// Plans of one name that move a scene otherwise in the baseline.
+/// Plans of one name with another movement in the baseline.
 fn other_plans(report: &ReportDocument, earlier: &ReportDocument) -> Vec<String> {
     let of_scene = |scene: &StudySceneDocument| {
         let before = earlier.scenes.iter().find(|other| other.name == scene.name)?;
@@ -287,7 +287,7 @@ fn other_plans(report: &ReportDocument, earlier: &ReportDocument) -> Vec<String>
         let names: Vec<&str> =
             scene.plans.iter().filter(is_other).map(|(name, _)| name.as_str()).collect();
         let words = format!(
-            "{} of the scene {:?} moves it otherwise than in the baseline: the rows cannot be compared",
+            "{} of the scene {:?} has another movement in the baseline: the rows cannot be compared",
             names.join(", "),
             scene.name
         );
@@ -316,7 +316,7 @@ fn whole(
     tell(OutcomeName::Worse, failed > 0, format!("of {rows} rows {failed} failed"));
     tell(OutcomeName::Incomplete, solved == 0, "no row was solved".to_owned());
     let unheld = unheld(report);
-    let words = format!("the thresholds hold for {}, which applies nowhere", unheld.join(", "));
+    let words = format!("the thresholds are for {}, which applies nowhere", unheld.join(", "));
     tell(OutcomeName::Incomplete, !unheld.is_empty(), words);
     tell(OutcomeName::Incomplete, not_run > 0, format!("{not_run} of {rows} rows did not run"));
     let words = format!("{lost} rows of the baseline are not in this study");

@@ -1,4 +1,4 @@
-//! Words for the names in documents, as pictures show them.
+//! Words for the names in documents, as shown in pictures.
 
 /// Methods by their names.
 const METHODS: [(&str, &str); 9] = [
@@ -13,7 +13,7 @@ const METHODS: [(&str, &str); 9] = [
     ("thickness_warp", "warp that keeps thickness"),
 ];
 
-/// What tells variants of a method from each other, where the name is no word.
+/// Words for variants of a method whose name is no word.
 const VARIANTS: [(&str, &str); 7] = [
     ("gauss_seidel", "Gauss-Seidel"),
     ("damped_jacobi", "damped Jacobi"),

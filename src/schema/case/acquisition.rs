@@ -1,4 +1,4 @@
-//! Acquisition of a scan: what a comparison needs to know of it, and nothing that identifies the patient.
+//! Acquisition of a scan, as comparisons need it; nothing that identifies the patient.
 
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
@@ -10,11 +10,11 @@ use crate::schema::wire::limits::Limits;
 /// A century.
 const MOST_DAYS: u32 = 36_525;
 
-/// How a scan was taken, as far as it is known; results repeat it. No dates and no names of patients belong here.
+/// How a scan was taken, all members optional; results repeat it. No dates, no patient names.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct AcquisitionDocument {
-    /// The kind of device, such as its model.
+    /// The device, such as its model.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub scanner: Option<String>,
@@ -34,7 +34,7 @@ pub struct AcquisitionDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub teeth: Option<ApartName>,
-    /// From the operation to the scan; absent before it. Swelling takes half a year to go.
+    /// From the operation to the scan; absent before it. Swelling takes half a year to subside.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false, maximum = 36525)]
     pub days_after_operation: Option<u32>,
@@ -56,7 +56,7 @@ pub enum ApartName {
 }
 
 impl AcquisitionDocument {
-    /// Adds what is wrong with it.
+    /// Adds its faults.
     pub fn check(&self, at: &Pointer, limits: &Limits, faults: &mut Faults) {
         if let Some(scanner) = &self.scanner {
             faults.check_name(&at.key("scanner"), scanner, limits.name_characters as usize);

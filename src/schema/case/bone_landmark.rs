@@ -10,21 +10,21 @@ use crate::schema::code::ErrorCode;
 use crate::schema::wire::fault::{Faults, Pointer};
 use crate::schema::wire::limits::Limits;
 
-/// Beyond any scanner's origin in use.
+/// Beyond the origin of any scanner in use.
 const FARTHEST_MM: f64 = 1e8;
 
-/// A named point of bone, which goes with its segment.
+/// A named point of bone, which moves with its segment.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct BoneLandmarkOfCaseDocument {
     pub position_mm: Triple,
-    /// The segment of the case that carries it; absent: it stays.
+    /// The segment of the case it moves with; absent: it stays.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub segment: Option<String>,
 }
 
-/// Adds what is wrong with the landmarks of bone at a place, of a document with these segments.
+/// Adds the faults of the landmarks of bone at a place, of a document with these segments.
 pub fn check_bone_landmarks(
     landmarks: &BTreeMap<String, BoneLandmarkOfCaseDocument>,
     segments: &BTreeSet<&str>,

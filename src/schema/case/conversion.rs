@@ -27,15 +27,15 @@ const FARTHEST_LANDMARK_MM: f64 = 1e8;
 /// Diagonals of the bounding boxes of heads and their parts, in mm.
 const USUAL_DIAGONAL_MM: (f64, f64) = (50.0, 600.0);
 
-/// A case as the path takes it.
+/// A case as the numerics take it.
 pub struct ConvertedCase {
     pub case: Case,
     pub warnings: Vec<Warning>,
-    /// Of its volume, where the document asks for one.
+    /// Of its volume, if the document requests one.
     pub repair: Option<RepairReport>,
 }
 
-/// Classes of nodes that segments may not be called after.
+/// Classes of nodes, reserved: no segment may have these names.
 const OF_CLASSES: [NodeClass; 4] =
     [NodeClass::Prescribed, NodeClass::Fixed, NodeClass::Sliding, NodeClass::Free];
 
@@ -112,7 +112,7 @@ impl CaseDocument {
         }
     }
 
-    /// Marks in files must agree with the case and with each other.
+    /// Frame marks in files must agree with the case and with each other.
     fn check_frames(
         &self,
         at: &Pointer,
@@ -141,7 +141,7 @@ impl CaseDocument {
         (!stated).then(|| {
             Warning::new(
                 "frame-unstated",
-                format!("a mesh is marked {first}, the case states no frame; coordinates are taken as they stand"),
+                format!("a mesh is marked {first}, the case states no frame; coordinates are used unchanged"),
             )
         })
     }
@@ -161,20 +161,20 @@ impl CaseDocument {
         Some(document.to_hounsfield(Arc::new(image.mesh.turned(from, to)), tissues))
     }
 
-    /// How muscles are mixed into cells.
+    /// Mixing of muscles into cells.
     fn to_muscle_mixing(&self, at: &Pointer, faults: &mut Faults) -> MuscleMixing {
         let Some(own) = self.muscle_mixing else { return MuscleMixing::default() };
         own.to_mixing(at, faults)
     }
 
-    /// The frame of the case, or else the first that a mesh is marked with.
+    /// The frame of the case, or else the first frame mark of a mesh.
     fn frame_of_meshes(&self, meshes: &CaseMeshes) -> Frame {
         let surfaces = meshes.surfaces.values().map(|surface| surface.frame);
         let frames = [Some(self.frame.into()), meshes.volume.frame].into_iter().chain(surfaces);
         frames.flatten().find(|frame| *frame != Frame::Unspecified).unwrap_or_default()
     }
 
-    /// Each surface under its id and under the name of the bone that has it.
+    /// Each surface by its id and by the name of its bone.
     fn to_surfaces(&self, meshes: &CaseMeshes) -> BTreeMap<String, Arc<TriangleSurface>> {
         let mut surfaces: BTreeMap<String, Arc<TriangleSurface>> = meshes
             .surfaces
@@ -195,7 +195,7 @@ impl CaseDocument {
         let mut bones = Vec::new();
         for (index, bone) in self.bones.iter().enumerate() {
             if !meshes.surfaces.contains_key(&bone.mesh) {
-                let detail = format!("mesh `{}` is not a surface that is there", bone.mesh);
+                let detail = format!("mesh `{}` is not a surface", bone.mesh);
                 faults.add(&at.index(index).key("mesh"), ErrorCode::UnknownMesh, detail);
             }
             bones.push(Bone { name: bone.name.trim().to_owned(), surface: bone.mesh.clone() });
@@ -274,7 +274,7 @@ impl CaseDocument {
             let name = segment.name.trim().to_owned();
             if OF_CLASSES.iter().any(|class| class.name() == name) {
                 let detail = format!(
-                    "{name:?} is what nodes are called that no segment moves, in counts and reactions: give the segment another name"
+                    "{name:?} is reserved for nodes that no segment moves, in counts and reactions: rename the segment"
                 );
                 faults.add(&at.key("name"), ErrorCode::BadName, detail);
             }
@@ -304,7 +304,7 @@ impl CaseDocument {
                     match Vector::from(direction).try_normalize(1e-12) {
                         Some(unit) => SlidingNormal::Direction(unit),
                         None => {
-                            let detail = "a direction has a length above 0";
+                            let detail = "a direction needs a length above 0";
                             faults.add(&at.key("normal"), ErrorCode::OutOfRange, detail);
                             continue;
                         }
@@ -329,7 +329,7 @@ fn bounding_box(volume: &VolumeMesh) -> Option<(Vector, Vector)> {
     Some(nodes.fold((first, first), |(low, high), node| (low.inf(node), high.sup(node))))
 }
 
-/// The regions of a mesh by name. None where their array is missing: that is refused, with the arrays there are, where the scene
+/// The regions of a mesh by name. None if their array is missing: that is refused, with the existing arrays, when the scene
 /// is built.
 fn region_names(regions: &Option<RegionNames>, volume: &VolumeMesh) -> Option<BTreeSet<String>> {
     let Some(regions) = regions else { return Some(BTreeSet::from(["tissue".to_owned()])) };

@@ -1,4 +1,4 @@
-//! Case document: the meshes of a patient, their meaning, and their boundary conditions.
+//! Case document: the meshes of a patient, their anatomical meaning, and their boundary conditions.
 
 use std::collections::BTreeMap;
 
@@ -39,7 +39,7 @@ pub struct CaseDocument {
     pub frame: FrameName,
     /// The volume mesh: its id.
     pub volume: String,
-    /// How the scan was taken that the meshes were made of; results repeat it.
+    /// How the scan of the meshes was taken; results repeat it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub acquisition: Option<AcquisitionDocument>,
@@ -48,10 +48,10 @@ pub struct CaseDocument {
     /// Named points in mm; each moves with the closest point of the surface.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub landmarks: BTreeMap<String, Triple>,
-    /// Named points of bone, for cephalometric measures; each goes with its segment.
+    /// Named points of bone, for cephalometric measures; each moves with its segment.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub bone_landmarks: BTreeMap<String, BoneLandmarkOfCaseDocument>,
-    /// What is usual of cephalometric measures, by their names, in place of what is built in.
+    /// Norms of cephalometric measures, by their names; they replace built-in ones.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     #[schema(value_type = BTreeMap<String, NormDocument>)]
     pub norms: NormDocuments,
@@ -69,29 +69,29 @@ pub struct CaseDocument {
     pub segments: Vec<SegmentDocument>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub fixed: Vec<SelectionDocument>,
-    /// Permits plans that move all bones alike while nothing stays, so that the whole tissue goes with them as one.
+    /// Permits plans that move all bones alike while nothing is fixed, so that all tissue moves rigidly.
     #[serde(default, skip_serializing_if = "is_false")]
     #[schema(default = false)]
     pub allow_unfixed: bool,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub sliding: Vec<SlidingDocument>,
-    /// By region name; `*` serves every region without an entry of its own.
+    /// By region name; `*` is for every region without an entry.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false, value_type = Option<BTreeMap<String, MaterialDocument>>)]
     pub materials: Option<MaterialDocuments>,
     /// Muscles that plans may activate.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub muscles: Vec<MuscleDocument>,
-    /// How muscles with a `material` become the tissue of cells that they fill in part. Absent: `voigt`, 64 samples.
+    /// How muscles with a `material` are mixed into cells that they fill in part. Absent: `voigt`, 64 samples.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub muscle_mixing: Option<MuscleMixingDocument>,
-    /// Materials by what an image shows, over those of the regions.
+    /// Materials by image values; they override those of the regions.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub hounsfield: Option<HounsfieldDocument>,
-    /// Moves nodes within bounds until every cell of the volume is proven valid in every point, or named. Absent: the mesh stays
-    /// as it is.
+    /// Moves nodes within bounds until every cell of the volume is proven valid at every point, or reported. Absent: the mesh is
+    /// unchanged.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub repair: Option<RepairDocument>,
@@ -117,7 +117,7 @@ pub enum LengthUnit {
 }
 
 impl LengthUnit {
-    /// How many mm one unit is.
+    /// Length of the unit in mm.
     pub fn in_mm(self) -> f64 {
         match self {
             LengthUnit::Mm => 1.0,
@@ -176,18 +176,18 @@ pub struct BoneDocument {
     pub mesh: String,
 }
 
-/// The integer cell array that divides the mesh into regions, and names for its values.
+/// The integer cell array that divides the mesh into regions, and names of its values.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RegionsDocument {
-    /// `label_values` of the limits says how many distinct values it may have.
+    /// At most `label_values` of the limits distinct values.
     pub array: String,
-    /// A value without a name is called by its number.
+    /// A value without a name is named by its number.
     #[serde(default)]
     pub names: BTreeMap<String, String>,
 }
 
-/// The nodes that a bone segment carries with it.
+/// The nodes that move with a bone segment.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SegmentDocument {
@@ -195,21 +195,21 @@ pub struct SegmentDocument {
     pub nodes: SelectionDocument,
 }
 
-/// Nodes held across a direction and free along it.
+/// Nodes constrained along a normal, free tangentially.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SlidingDocument {
     pub nodes: SelectionDocument,
     #[serde(default)]
     pub normal: NormalDocument,
-    /// The segment of the case that carries the wall, such as the jaw its teeth: the nodes follow the wall across
-    /// it and stay free along it. Absent: the wall stays.
+    /// The segment that moves the wall, such as the jaw its teeth: the nodes follow the wall along
+    /// its normal and stay free tangentially. Absent: the wall stays.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub segment: Option<String>,
 }
 
-/// The direction across which sliding nodes are held.
+/// The direction in which sliding nodes are constrained.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, ToSchema)]
 #[serde(untagged)]
 pub enum NormalDocument {
@@ -231,7 +231,7 @@ pub enum NormalWord {
 }
 
 impl CaseDocument {
-    /// A case of a volume mesh and nothing else.
+    /// A case of a volume mesh only.
     pub fn of_volume(volume: &str, units: LengthUnit) -> Self {
         CaseDocument {
             schema: one(),
@@ -260,9 +260,9 @@ impl CaseDocument {
         }
     }
 
-    /// Every mesh and image the case asks for, with its place: the volume, the bones, the image, the surfaces of muscles, and
+    /// Every mesh and image the case refers to, with its place: the volume, the bones, the image, the surfaces of muscles, and
     /// those of selections.
-    /// A selection may also name a bone; the names of bones are left out.
+    /// A selection may also name a bone; the names of bones are omitted.
     pub fn mesh_references_mut(&mut self) -> Vec<(Pointer, &mut String)> {
         let root = Pointer::root();
         let bone_names: Vec<String> = self.bones.iter().map(|bone| bone.name.clone()).collect();
@@ -300,7 +300,7 @@ impl CaseDocument {
         found
     }
 
-    /// The ids of all meshes and images the case asks for, each once, the volume first.
+    /// The ids of all meshes and images the case refers to, each once, the volume first.
     pub fn mesh_ids(&self) -> Vec<String> {
         let mut copy = self.clone();
         let mut ids: Vec<String> = Vec::new();

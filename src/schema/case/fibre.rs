@@ -12,21 +12,21 @@ use mechanics::material::{Fibre, FibreLaw, LinearElastic, MaterialError};
 use mechanics::mesh::Vector;
 use mechanics::prediction::FibreDirection;
 
-/// Fibres of a material, whose own Young's modulus and Poisson's ratio are then those across them. In a spec,
-/// what is not given stays what the case says.
+/// Fibres of a material, whose Young's modulus and Poisson's ratio are then transverse. In a spec,
+/// omitted members are those of the case.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FibreDocument {
-    /// Along the fibre, for methods of small strain; in [1e-9, 1e9]. May be left out where `k1_kpa` and `k2` are stated.
+    /// Along the fibre, for methods of small strain; in [1e-9, 1e9]. Optional beside `k1_kpa` and `k2`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false, minimum = 1e-9, maximum = 1e9)]
     pub young_modulus_kpa: Option<f64>,
-    /// Between the fibre and what lies across it; in [1e-9, 1e9]. Default E / (2 (1 + nu)) of the material. The
+    /// Between the fibre and a transverse direction; in [1e-9, 1e9]. Default E / (2 (1 + nu)) of the material. The
     /// law of Kim et al. 2012 has none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false, minimum = 1e-9, maximum = 1e9)]
     pub shear_modulus_kpa: Option<f64>,
-    /// The same in the whole region. Exactly one of `direction` and `array`; neither length nor sign matters.
+    /// Uniform in the region. Exactly one of `direction` and `array`; neither length nor sign matters.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub direction: Option<Triple>,
@@ -34,8 +34,8 @@ pub struct FibreDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub array: Option<String>,
-    /// Of fibres at finite strain, which only pull: W = k1/(2 k2) (exp(k2 (I4 - 1)^2) - 1) where they are stretched, I4 their
-    /// squared stretch, beside any law of the tissue between them. `k1_kpa` and `k2` go together.
+    /// Of tension-only fibres at finite strain: W = k1/(2 k2) (exp(k2 (I4 - 1)^2) - 1) if they are stretched, I4 their
+    /// squared stretch, added to any law of the tissue between them. `k1_kpa` and `k2` go together.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false, minimum = 1e-9, maximum = 1e9)]
     pub k1_kpa: Option<f64>,
@@ -48,22 +48,22 @@ pub struct FibreDocument {
     pub law: Option<FibreLawName>,
 }
 
-/// How the moduli become a stiffness.
+/// How moduli give a stiffness.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum FibreLawName {
-    /// Moduli along and across are what a strip pulled along and across shows.
+    /// Longitudinal and transverse moduli are those of tensile tests of a strip.
     #[default]
     Engineering,
     /// Lamé constants from each modulus with the same Poisson's ratio nu (Kim et al. 2012, eq. 33, corrected:
-    /// docs/methods.md#fibres); only where the ratio of moduli along
+    /// docs/methods.md#fibres); only if the ratio of moduli along
     /// and across is below (1 - nu) / (2 nu^2).
     #[serde(rename = "kim_2012", alias = "paper_002")]
     Kim2012,
 }
 
 impl FibreDocument {
-    /// What is given here, and for the rest what `base` gives; a course given here replaces the other.
+    /// The members given here, the others from `base`; a direction given here replaces the other.
     pub(super) fn over(&self, base: &FibreDocument) -> FibreDocument {
         let course = match (self.direction, &self.array) {
             (None, None) => base,
@@ -80,7 +80,7 @@ impl FibreDocument {
         }
     }
 
-    /// The material with these fibres, and where they run.
+    /// The material with these fibres, and their directions.
     pub(super) fn to_fibred(
         &self,
         across: LinearElastic,
@@ -92,7 +92,7 @@ impl FibreDocument {
         Some((material?, course?))
     }
 
-    /// The material with these fibres, wherever they run.
+    /// The material with these fibres, in any direction.
     pub(super) fn to_stiffened(
         &self,
         across: LinearElastic,
@@ -138,7 +138,7 @@ impl FibreDocument {
 }
 
 impl FibreDocument {
-    /// Its constants at small strain, where there are some.
+    /// Its constants at small strain, if any.
     pub(super) fn to_fibre(&self) -> Option<Fibre> {
         let law = match self.law.unwrap_or_default() {
             FibreLawName::Engineering => FibreLaw::Engineering,
@@ -148,7 +148,7 @@ impl FibreDocument {
         Some(Fibre { young_modulus, shear_modulus, law })
     }
 
-    /// The fibres that only pull, where both of their constants are stated.
+    /// The tension-only fibres, if both constants are given.
     fn pulling(&self, at: &Pointer, faults: &mut Faults) -> Option<Fibres> {
         if self.k1_kpa.is_none() && self.k2.is_none() {
             return None;
@@ -167,7 +167,7 @@ impl FibreDocument {
     }
 }
 
-/// The one course that is given.
+/// The one direction or array that is given.
 pub(super) fn to_course(
     direction: Option<Triple>,
     array: Option<&str>,

@@ -1,4 +1,4 @@
-//! Materials by Hounsfield unit: the image, the windows of the tissues, and what was found in the cells.
+//! Materials by Hounsfield unit: the image, the windows of the tissues, and the tissues found in the cells.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -17,22 +17,22 @@ use mechanics::image::{ImageVolume, MOST_SAMPLES, Windows};
 use mechanics::mesh::Warning;
 use mechanics::prediction::{Hounsfield, ImagedTissue, Mixing, TissueShare, TissueWindow};
 
-/// Ends of windows lie within this.
+/// Valid ends of windows.
 const FARTHEST_HU: f64 = 1e6;
 
-/// Materials by what an image shows of each cell. A cell that reaches beyond the image, or lies in no window,
+/// Materials by the image values in each cell. A cell that extends beyond the image, or is in no window,
 /// keeps the material of its region.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct HounsfieldDocument {
-    /// The image: the id of an uploaded scan (NRRD, NIfTI, MetaImage, DICOM). It is in mm, and is turned to the
-    /// frame of the case where both are stated.
+    /// The image: the id of an uploaded scan (NRRD, NIfTI, MetaImage, DICOM). It is in mm, and is converted to the
+    /// frame of the case if both are stated.
     pub image: String,
-    /// Points in each cell, the same in every cell of a shape.
+    /// Sample points in each cell, the same in all cells of a shape.
     #[serde(default = "default_samples")]
     #[schema(default = 512, minimum = 1, maximum = 512)]
     pub samples: u32,
-    /// Windows of values that do not overlap.
+    /// Windows of values, without overlap.
     #[schema(min_items = 1)]
     pub tissues: Vec<TissueDocument>,
     #[serde(default)]
@@ -53,32 +53,32 @@ pub struct TissueDocument {
     pub material: MaterialDocument,
 }
 
-/// What becomes of a cell with several tissues in it.
+/// The material of a cell with several tissues.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum MixingName {
-    /// It is the tissue of its mean value.
+    /// The tissue of its mean value.
     #[default]
     Mean,
-    /// Its bulk and shear modulus are those of its tissues, each by the share of points in its window; points in
+    /// Bulk and shear modulus are those of its tissues, weighted by the share of points in each window; points in
     /// no window count as its region.
     Fraction,
 }
 
-/// What an image showed of the mesh.
+/// Tissues of the mesh by an image.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct ImagedTissueDocument {
     pub tissues: BTreeMap<String, TissueShareDocument>,
-    /// What kept the material of its region.
+    /// The part that kept the material of its region.
     pub region: TissueShareDocument,
-    /// Cells that reach beyond the image.
+    /// Cells that extend beyond the image.
     pub outside_cells: u64,
 }
 
-/// How much of the mesh a tissue is.
+/// The share of a tissue in the mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct TissueShareDocument {
-    /// Cells that are of it, with `fraction` be it in part.
+    /// Cells of it, with `fraction` also in part.
     pub cells: u64,
     /// Of the volume of the mesh.
     pub volume_share: f64,
@@ -102,18 +102,18 @@ impl From<&ImagedTissue> for ImagedTissueDocument {
 }
 
 impl HounsfieldDocument {
-    /// What speaks against the presets of its tissues.
+    /// Objections to the presets of its tissues.
     pub(super) fn doubts(&self) -> impl Iterator<Item = Warning> + '_ {
         self.tissues.iter().filter_map(|tissue| doubt(&tissue.name, tissue.material.preset))
     }
 
-    /// The materials of its tissues by name, with presets written out.
+    /// The materials of its tissues by name, with presets in full.
     pub fn expanded(&self) -> MaterialDocuments {
         let tissues = self.tissues.iter();
         tissues.map(|tissue| (tissue.name.clone(), expanded(&tissue.material))).collect()
     }
 
-    /// The image with these windows; an image that is not there was refused where it was looked for.
+    /// The image with these windows; a missing image was refused earlier.
     pub(super) fn to_hounsfield(
         &self,
         image: Arc<ImageVolume>,
@@ -126,7 +126,7 @@ impl HounsfieldDocument {
         Hounsfield { image, samples: self.samples as usize, tissues, mixing }
     }
 
-    /// The windows of its tissues; adds what is wrong with them and with the samples.
+    /// The windows of its tissues; adds their faults and those of the samples.
     pub(super) fn to_tissues(
         &self,
         at: &Pointer,
@@ -150,14 +150,14 @@ impl HounsfieldDocument {
                 faults.check_range(&at.key(end), value, -FARTHEST_HU..=FARTHEST_HU, "HU");
             }
             if from_hu >= to_hu {
-                let detail = format!("a window from {from_hu} to {to_hu} HU holds nothing");
+                let detail = format!("a window from {from_hu} to {to_hu} HU is empty");
                 faults.add(&at, ErrorCode::OutOfRange, detail);
             }
             let name = tissue.name.trim().to_owned();
             let place = at.key("material");
             let material = expanded(&tissue.material);
             if material.fibre.is_some() {
-                let detail = "an image does not show where fibres run: give them to a region";
+                let detail = "an image does not show fibre directions: give fibres to a region";
                 faults.add(&place.key("fibre"), ErrorCode::MethodNotAvailable, detail);
             }
             let material = material.to_isotropic(&place, faults);

@@ -1,4 +1,4 @@
-//! Laws of tissue at finite strain: kinds, their constants in kPa, and the ranges of these.
+//! Hyperelastic laws of tissue: kinds, their constants in kPa, and valid ranges.
 
 use std::ops::RangeInclusive;
 
@@ -19,21 +19,21 @@ pub(super) const EXPONENT: RangeInclusive<f64> = 1e-6..=1e3;
 const FACTOR: RangeInclusive<f64> = 1e-9..=1e9;
 const POWER: RangeInclusive<f64> = -30.0..=30.0;
 
-/// The law of a tissue at finite strain, for methods that know any: `fem_nonlinear`. `neo_hookean`, `neo_hookean_isochoric`,
+/// The hyperelastic law of a tissue, for `fem_nonlinear`. `neo_hookean`, `neo_hookean_isochoric`,
 /// `saint_venant_kirchhoff`, `fung`, `fung_anisotropic` and `polyconvex_barrier` take their moduli from Young's modulus and
-/// Poisson's ratio where these are stated and theirs are not. In a spec a law stands for itself, whole.
+/// Poisson's ratio if these are given and theirs are not. A law of a spec replaces that of the case entirely.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LawDocument {
     pub kind: LawKind,
-    /// The shear modulus at rest.
+    /// The shear modulus at zero strain.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false, minimum = 1e-9, maximum = 1e9)]
     pub mu_kpa: Option<f64>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false, minimum = 0.0, maximum = 1e9)]
     pub lambda_kpa: Option<f64>,
-    /// K of U(J), of laws that separate shape and volume.
+    /// K of U(J), of laws with an isochoric-volumetric split.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false, minimum = 1e-9, maximum = 1e9)]
     pub bulk_modulus_kpa: Option<f64>,
@@ -80,11 +80,11 @@ pub struct LawDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false, minimum = 1e-6, maximum = 1e3)]
     pub p: Option<f64>,
-    /// Of volume: the bulk modulus at rest is eps0 eta1.
+    /// Volumetric: the bulk modulus at zero strain is eps0 eta1.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false, minimum = 1e-9, maximum = 1e9)]
     pub eta1: Option<f64>,
-    /// Of shape: the shear modulus at rest is theta eps0 eta2.
+    /// Isochoric: the shear modulus at zero strain is theta eps0 eta2.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false, minimum = 1e-9, maximum = 1e9)]
     pub eta2: Option<f64>,
@@ -94,7 +94,7 @@ pub struct LawDocument {
     pub theta: Option<f64>,
 }
 
-/// The equations stand in docs/finite-strain.md.
+/// The equations are in docs/finite-strain.md.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum LawKind {
@@ -104,14 +104,14 @@ pub enum LawKind {
     MooneyRivlin,
     VerondaWestmann,
     Fung,
-    /// Neo-Hookean tissue, or Fung's where `b` is stated, whose fibres pull: `k1_kpa` and `k2` of `fibre` are needed.
+    /// Neo-Hookean, or Fung's if `b` is given, with tension-only fibres: `k1_kpa` and `k2` of `fibre` are required.
     FungAnisotropic,
     Ogden,
     PolyconvexBarrier,
     RubinBodner,
 }
 
-/// The energy of a change of volume.
+/// The volumetric energy.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum VolumetricName {
@@ -122,25 +122,25 @@ pub enum VolumetricName {
     Logarithmic,
 }
 
-/// mu/alpha (l1^alpha + l2^alpha + l3^alpha - 3) of the stretches of shape.
+/// mu/alpha (l1^alpha + l2^alpha + l3^alpha - 3) of the isochoric stretches.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct OgdenTermDocument {
-    /// Of the sign of alpha, or the term softens what the others stiffen.
+    /// Of the sign of alpha, else the term softens the tissue.
     #[schema(minimum = -1e9, maximum = 1e9)]
     pub mu_kpa: f64,
     #[schema(minimum = -30, maximum = 30)]
     pub alpha: f64,
 }
 
-/// A constant of a law: its name, what is stated, and where it has to lie.
+/// A constant of a law: its name, its value, and its range.
 struct Constant {
     name: &'static str,
     value: Option<f64>,
     range: RangeInclusive<f64>,
 }
 
-/// The constants that a kind needs, and those that it may have.
+/// The required and the optional constants of a kind.
 struct ConstantNames {
     needed: &'static [&'static str],
     other: &'static [&'static str],
@@ -190,7 +190,7 @@ impl LawKind {
 }
 
 impl LawDocument {
-    /// A law of which nothing but its kind is stated.
+    /// A law given by its kind only.
     pub fn of_kind(kind: LawKind) -> Self {
         LawDocument {
             kind,
@@ -215,7 +215,7 @@ impl LawDocument {
         }
     }
 
-    /// Whether it states how stiff tissue is at rest, and does not take that from elsewhere.
+    /// Whether it has its own moduli at zero strain.
     pub(super) fn has_moduli(&self) -> bool {
         [self.mu_kpa, self.lambda_kpa, self.bulk_modulus_kpa, self.eps0_kpa]
             .iter()
@@ -244,7 +244,7 @@ impl LawDocument {
         ]
     }
 
-    /// Whether the law has what its kind needs, nothing else, and all of it in range.
+    /// Whether the law has the constants of its kind, no others, and all in range.
     pub(super) fn check(&self, at: &Pointer, faults: &mut Faults) -> bool {
         let ConstantNames { needed, other } = self.kind.takes();
         let constants = self.constants();

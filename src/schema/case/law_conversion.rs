@@ -10,7 +10,7 @@ use mechanics::material::hyperelastic::{
 };
 
 impl LawDocument {
-    /// The law, with moduli from the linear constants where they are stated instead of its own.
+    /// The law, with moduli from the linear constants if its own are not given.
     pub(super) fn to_law(
         &self,
         linear: Option<&LinearElastic>,
@@ -103,7 +103,7 @@ impl LawDocument {
     }
 }
 
-/// Two moduli of a law: both as stated, or both of the linear constants.
+/// Two moduli of a law: both given, or both from the linear constants.
 fn both(
     own: [(&str, Option<f64>); 2],
     of_linear: Option<[f64; 2]>,

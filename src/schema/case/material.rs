@@ -13,18 +13,18 @@ use crate::schema::wire::fault::{Faults, Pointer};
 use mechanics::material::{LinearElastic, MaterialError};
 use mechanics::prediction::FibreDirection;
 
-/// Soft tissue where a case says nothing: Young's modulus in kPa, Poisson's ratio, density in g/cm³.
+/// Default soft tissue: Young's modulus in kPa, Poisson's ratio, density in g/cm³.
 pub(super) const DEFAULT_TISSUE: (f64, f64, f64) = (15.0, 0.46, 1.0);
 
-/// By how much linear constants may differ from those of a law at rest.
+/// Tolerated difference between linear constants and those of a law at zero strain.
 const AGREEMENT: f64 = 0.01;
 
-/// The material of a region. In a spec, what is not given stays what the case says.
+/// The material of a region. In a spec, omitted members are those of the case.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MaterialDocument {
-    /// A material of the literature (`GET /v1/materials`): what is stated beside it stands over it, and it stands over what is
-    /// elsewhere, whole.
+    /// A material of the literature (`GET /v1/materials`): members beside it override it, and it replaces all that is
+    /// stated elsewhere.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub preset: Option<PresetName>,
@@ -40,22 +40,22 @@ pub struct MaterialDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false, minimum = 0.0, maximum = 100.0)]
     pub density_g_per_cm3: Option<f64>,
-    /// Absent where the material is isotropic.
+    /// Absent if the material is isotropic.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub fibre: Option<FibreDocument>,
-    /// What the tissue does at finite strain; absent: neo-Hookean with these constants. Where it is stated, Young's modulus and
-    /// Poisson's ratio may be left out: they are those of the law at rest, and have to agree with them to 1 %.
+    /// The hyperelastic law; absent: neo-Hookean with these constants. With a law, Young's modulus and
+    /// Poisson's ratio may be omitted: they are those of the law at zero strain, and have to agree with them to 1 %.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub law: Option<LawDocument>,
 }
 
-/// Materials by region name; `*` serves every region without an entry of its own.
+/// Materials by region name; `*` is for every region without an entry.
 pub type MaterialDocuments = BTreeMap<String, MaterialDocument>;
 
 impl MaterialDocument {
-    /// What is given here, and for the rest what `base` gives.
+    /// The members given here, the others from `base`.
     pub(super) fn over(&self, base: &MaterialDocument) -> MaterialDocument {
         MaterialDocument {
             preset: self.preset.or(base.preset),
@@ -70,7 +70,7 @@ impl MaterialDocument {
         }
     }
 
-    /// A preset over what else is known of a tissue: of that only the course of fibres is left.
+    /// A preset over other data of a tissue, of which only the fibre direction is kept.
     pub(super) fn over_course(&self, below: &MaterialDocument) -> MaterialDocument {
         let course = |fibre: &FibreDocument| FibreDocument {
             direction: fibre.direction,
@@ -84,7 +84,7 @@ impl MaterialDocument {
         MaterialDocument { fibre, ..self.clone() }
     }
 
-    /// The same over the default tissue: a law with moduli of its own takes its place.
+    /// The same over the default tissue, which a law with its own moduli replaces.
     pub(super) fn over_default(&self, base: &MaterialDocument) -> MaterialDocument {
         match self.law.as_ref().is_some_and(LawDocument::has_moduli) {
             true => self.clone(),
@@ -92,7 +92,7 @@ impl MaterialDocument {
         }
     }
 
-    /// The material and the course of its fibres, if it has any.
+    /// The material and its fibre direction, if any.
     pub(super) fn to_material(
         &self,
         at: &Pointer,
@@ -113,14 +113,14 @@ impl MaterialDocument {
         let needs = self.law.as_ref().is_some_and(|law| law.kind == LawKind::FungAnisotropic);
         let has = self.fibre.as_ref().is_some_and(|fibre| fibre.k1_kpa.is_some());
         if needs && !has {
-            let detail = "`fung_anisotropic` has fibres: `fibre` with `k1_kpa`, `k2` and a course is missing";
+            let detail = "`fung_anisotropic` needs `fibre` with `k1_kpa`, `k2` and a direction";
             faults.add(&at.key("fibre"), ErrorCode::MissingField, detail);
             return None;
         }
         Some(())
     }
 
-    /// The tissue without what `fibre` says.
+    /// The tissue without its `fibre`.
     pub(super) fn to_isotropic(&self, at: &Pointer, faults: &mut Faults) -> Option<LinearElastic> {
         let Some(law) = &self.law else { return self.to_linear(at, faults) };
         self.check_pulling(at, faults)?;
@@ -146,7 +146,7 @@ impl MaterialDocument {
         }
     }
 
-    /// Refuses linear constants that are not those of the law at rest.
+    /// Refuses linear constants that contradict the law at zero strain.
     fn agrees(&self, law: &LinearElastic, at: &Pointer, faults: &mut Faults) -> bool {
         let differs = |stated: f64, own: f64| (stated - own).abs() > AGREEMENT * own.abs() + 1e-12;
         let (young_modulus, poisson_ratio) = (law.young_modulus(), law.poisson_ratio());

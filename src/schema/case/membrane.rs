@@ -1,4 +1,4 @@
-//! The skin as a membrane of its own.
+//! The skin as a membrane.
 
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
@@ -10,7 +10,7 @@ use crate::schema::wire::fault::{Faults, Pointer};
 use mechanics::material::{PlaneStress, Sheet, SheetError};
 use mechanics::prediction::SkinMembrane;
 
-/// A sheet on the skin faces of the case that resists stretching and no bending, beside the tissue under it.
+/// A sheet on the skin faces of the case that resists stretching but not bending, beside the tissue under it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MembraneDocument {
@@ -18,15 +18,15 @@ pub struct MembraneDocument {
     #[serde(default = "default_thickness_mm")]
     #[schema(default = 1.5, minimum = 1e-3, maximum = 20.0)]
     pub thickness_mm: f64,
-    /// In [1e-9, 1e9]; with lines, across them.
+    /// In [1e-9, 1e9]; with lines, transverse to them.
     #[serde(default = "default_modulus_kpa")]
     #[schema(default = 200.0, minimum = 1e-9, maximum = 1e9)]
     pub young_modulus_kpa: f64,
-    /// In [0, 0.5]; with lines, how much the sheet narrows when it is stretched along them.
+    /// In [0, 0.5]; with lines, the transverse contraction under stretch along them.
     #[serde(default = "default_poisson_ratio")]
     #[schema(default = 0.45, minimum = 0.0, maximum = 0.5)]
     pub poisson_ratio: f64,
-    /// Stress of the skin in its plane as it was scanned, in balance with the tissue below, in [0, 1000]: a taut skin resists slopes
+    /// In-plane stress of the skin when scanned, in balance with the tissue below, in [0, 1000]: a taut skin resists slopes
     /// and dents. Default 0.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false, minimum = 0.0, maximum = 1000.0)]
@@ -41,10 +41,10 @@ pub struct MembraneDocument {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LinesDocument {
-    /// Along the lines; in [1e-9, 1e9] and above nu^2 times the one across them.
+    /// Along the lines; in [1e-9, 1e9] and above nu^2 times the transverse one.
     #[schema(minimum = 1e-9, maximum = 1e9)]
     pub young_modulus_kpa: f64,
-    /// The same on the whole skin, of which each face takes what lies in its plane. Exactly one of `direction`
+    /// Uniform on the skin; each face takes the component in its plane. Exactly one of `direction`
     /// and `array`; neither length nor sign matters.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]

@@ -12,10 +12,10 @@ use mechanics::mesh::Warning;
 use mechanics::mesh::ignored::listed;
 use mechanics::prediction::FibreDirection;
 
-/// Serves every region without a material of its own.
+/// The entry for every region without a material.
 const EVERY_REGION: &str = "*";
 
-/// Materials and the place in the documents where they stand.
+/// Materials and their place in the documents.
 pub struct PlacedMaterials<'a> {
     pub at: Pointer,
     pub materials: Option<&'a MaterialDocuments>,
@@ -26,7 +26,7 @@ impl PlacedMaterials<'_> {
         self.materials.is_some_and(|given| given.contains_key(region))
     }
 
-    /// The `*` of a spec where every region of the mesh has an entry of its own, in the spec or in the case below.
+    /// The `*` of a spec if every region of the mesh has its own entry, in the spec or in the case.
     pub fn unused_default(
         &self,
         case: &PlacedMaterials,
@@ -37,7 +37,7 @@ impl PlacedMaterials<'_> {
             return None;
         }
         let detail = format!(
-            "{} changes nothing: it serves regions without an entry of their own, and each of {} has one; name these to change \
+            "{} has no effect: it is for regions without an entry, and each of {} has one; name these to change \
              them",
             self.at.key(EVERY_REGION),
             listed(regions)
@@ -46,14 +46,14 @@ impl PlacedMaterials<'_> {
     }
 }
 
-/// Materials by region name, the courses of their fibres, and what a reader must know.
+/// Materials by region name, their fibre directions, and warnings.
 pub struct Merged {
     pub materials: BTreeMap<String, LinearElastic>,
     pub fibres: BTreeMap<String, FibreDirection>,
     pub warnings: Vec<Warning>,
 }
 
-/// What is stated of each region, presets written out, with its place.
+/// The statements on each region, presets in full, with their places.
 type Stated = BTreeMap<String, (Pointer, MaterialDocument)>;
 
 /// The materials of a case with those of a spec over them, field by field.
@@ -91,7 +91,7 @@ pub fn merge_materials(
     Merged { materials, fibres, warnings }
 }
 
-/// What is stated of each region, the spec over the case.
+/// The statements on each region, the spec over the case.
 fn merged(case: &PlacedMaterials, spec: &PlacedMaterials) -> Stated {
     let mut merged = Stated::new();
     if case.materials.is_none() {
@@ -122,7 +122,7 @@ fn merged(case: &PlacedMaterials, spec: &PlacedMaterials) -> Stated {
     merged
 }
 
-/// The materials of a case with those of a spec over them, by region, with their presets written out.
+/// The materials of a case with those of a spec over them, by region, with presets in full.
 pub fn expanded_materials(
     case: Option<&MaterialDocuments>,
     spec: Option<&MaterialDocuments>,
@@ -144,7 +144,7 @@ fn default_material() -> Warning {
         .with("density_g_per_cm3", density)
 }
 
-/// What is stated, in words: `muscle E 300 kPa nu 0.44, * nu 0.46`.
+/// The statements in words: `muscle E 300 kPa nu 0.44, * nu 0.46`.
 pub fn in_words(document: &MaterialDocuments) -> String {
     let region = |(name, of): (&String, &MaterialDocument)| {
         let mut words = if name == "*" { "all".to_owned() } else { name.clone() };

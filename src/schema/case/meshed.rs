@@ -1,4 +1,4 @@
-//! A case whose mesh is made from a scan, and the body of `POST /v1/cases`, which is that or a case with its mesh.
+//! A case whose mesh is made from a scan, and the body of `POST /v1/cases`: such a case or one with its mesh.
 
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -16,8 +16,8 @@ use crate::schema::wire::names::check_tags;
 use crate::schema::wire::problem::Problem;
 use crate::schema::wire::strict;
 
-/// A patient's scene whose mesh is to be made from a scan. The meshing finds the volume, what moves it and what holds it,
-/// skin, landmarks and bones; the rest is said here.
+/// A patient's scene whose mesh is to be made from a scan. The meshing finds the volume, its boundary conditions,
+/// skin, landmarks and bones; all else is stated here.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MeshedCaseDocument {
@@ -34,17 +34,17 @@ pub struct MeshedCaseDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub acquisition: Option<AcquisitionDocument>,
-    /// The job that makes the mesh, as it is posted. Its tags are those of the job.
+    /// The job that makes the mesh, as posted. Its tags are those of the job.
     pub meshing: MeshingDocument,
-    /// By region name; `*` serves every region without an entry of its own.
+    /// By region name; `*` is for every region without an entry.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false, value_type = Option<BTreeMap<String, MaterialDocument>>)]
     pub materials: Option<MaterialDocuments>,
-    /// Materials by what an image shows, over those of the regions; the image may be the scan.
+    /// Materials by image values; they override those of the regions. The image may be the scan.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub hounsfield: Option<HounsfieldDocument>,
-    /// Permits plans that move all bones alike while nothing stays.
+    /// Permits plans that move all bones alike while nothing is fixed.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     #[schema(default = false)]
     pub allow_unfixed: bool,
@@ -55,7 +55,7 @@ fn one() -> u32 {
 }
 
 impl MeshedCaseDocument {
-    /// Every image that the document asks for, with its place.
+    /// Every image that the document refers to, with its place.
     pub fn mesh_references_mut(&mut self) -> Vec<(Pointer, &mut String)> {
         let root = Pointer::root();
         let mut found = self.meshing.mesh_references_mut(&root.key("meshing"));
@@ -65,7 +65,7 @@ impl MeshedCaseDocument {
         found
     }
 
-    /// Checks what needs no mesh and no scan; pointers start at the document.
+    /// Checks that need no mesh and no scan; pointers start at the document.
     pub fn check(&self, limits: &Limits, faults: &mut Faults) {
         let at = Pointer::root();
         if self.schema != one() {
@@ -81,7 +81,7 @@ impl MeshedCaseDocument {
         }
     }
 
-    /// The case that a meshing has found, with what is said here.
+    /// The case that a meshing has made, with the statements here.
     pub fn complete(&self, mut found: CaseDocument) -> CaseDocument {
         found.name.clone_from(&self.name);
         found.tags.clone_from(&self.tags);
@@ -93,7 +93,7 @@ impl MeshedCaseDocument {
     }
 }
 
-/// A case with the volume mesh that it names, or one whose mesh is to be made: distinguished by `volume` or `meshing`.
+/// A case with the id of its volume mesh, or one whose mesh is to be made: distinguished by `volume` or `meshing`.
 #[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
 #[serde(untagged)]
 pub enum CaseBody {
@@ -111,7 +111,7 @@ impl CaseBody {
         }
     }
 
-    /// The same as it was stored.
+    /// The same as stored.
     pub fn stored(text: &str) -> serde_json::Result<CaseBody> {
         let value: Value = serde_json::from_str(text)?;
         match is_to_mesh(&value) {
@@ -127,7 +127,7 @@ impl CaseBody {
         }
     }
 
-    /// Every mesh and image that the document asks for, with its place.
+    /// Every mesh and image that the document refers to, with its place.
     pub fn mesh_references_mut(&mut self) -> Vec<(Pointer, &mut String)> {
         match self {
             CaseBody::Whole(case) => case.mesh_references_mut(),

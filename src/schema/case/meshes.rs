@@ -1,4 +1,4 @@
-//! The meshes of a case, as its files have them.
+//! The meshes of a case, as read from its files.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -6,7 +6,7 @@ use std::sync::Arc;
 use mechanics::image::ImageVolume;
 use mechanics::mesh::{Frame, TriangleSurface, VolumeMesh};
 
-/// A mesh as its file has it, and the frame the file names.
+/// A mesh as read, and the frame that its file names.
 #[derive(Clone, Debug)]
 pub struct NamedMesh<T> {
     pub mesh: Arc<T>,
@@ -17,8 +17,8 @@ pub struct NamedMesh<T> {
 #[derive(Clone, Debug)]
 pub struct CaseMeshes {
     pub volume: NamedMesh<VolumeMesh>,
-    /// By the id under which bones and selections ask for them.
+    /// By the id that bones and selections refer to.
     pub surfaces: BTreeMap<String, NamedMesh<TriangleSurface>>,
-    /// In mm, whatever the unit of the case.
+    /// Always in mm, not in the unit of the case.
     pub image: Option<NamedMesh<ImageVolume>>,
 }

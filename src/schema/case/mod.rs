@@ -1,4 +1,4 @@
-//! The case document, its parts, and its conversion to the case that is computed.
+//! The case document, its parts, and its conversion to the numerics.
 
 pub mod acquisition;
 pub mod bone_landmark;

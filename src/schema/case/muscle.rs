@@ -1,4 +1,4 @@
-//! Muscles of a case, as regions with fibres, as polylines or as bodies with a surface, and the tissue that they are of.
+//! Muscles of a case, as regions with fibres, as polylines or as bodies with a surface, and their tissue.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -21,56 +21,56 @@ use mechanics::material::LinearElastic;
 use mechanics::mesh::{TriangleSurface, Vector, Warning};
 use mechanics::prediction::{BodyFibres, Muscle, MuscleCourse, Stiffening};
 
-/// Distances from its lines within which a muscle may pull, in mm.
+/// Range of the distance from its lines at which a muscle acts, in mm.
 pub const REACH_MM: (f64, f64) = (0.1, 50.0);
 
-/// A muscle that plans may activate: a region with fibres, polylines through the tissue, or what a closed surface holds. Exactly
+/// A muscle that plans may activate: a region with fibres, polylines through the tissue, or a closed surface. Exactly
 /// one of `region`, `surface`, `box_mm` and, without these, `lines_mm`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MuscleDocument {
     pub name: String,
-    /// All cells of a region pull, each along its fibre.
+    /// All cells of a region contract, each along its fibre.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub region: Option<String>,
-    /// Of the fibres everywhere in it; without it and `array` those of the material of the `region`.
+    /// Uniform direction of its fibres; without it and `array` that of the material of the `region`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub direction: Option<Triple>,
-    /// A cell array of the volume mesh with 3 components, or else a point array, in the place of `direction`.
+    /// A cell array of the volume mesh with 3 components, or else a point array, instead of `direction`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub array: Option<String>,
-    /// Lines through the tissue along which it pulls, each of two points or more, in mm in the frame of the case. Beside `surface`
-    /// or `box_mm` they say where its fibres run, each cell along the nearest.
+    /// Lines through the tissue along which it contracts, each of two or more points, in mm in the case's frame. Beside `surface`
+    /// or `box_mm` they give the fibre direction, each cell that of the nearest.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false, value_type = Option<Vec<Vec<Triple>>>)]
     pub lines_mm: Option<Vec<Vec<Triple>>>,
-    /// The distance from its lines at which the pull has fallen to nothing, from all of it at a line; in [0.1, 50].
+    /// The distance from its lines over which the stress falls from its full value to 0; in [0.1, 50].
     /// Default: 6.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false, minimum = 0.1, maximum = 50.0)]
     pub within_mm: Option<f64>,
-    /// The closed surface of the muscle: the id of a mesh. Cells are muscle by the share of their sample points inside.
+    /// The closed surface of the muscle: the id of a mesh. The muscle share of a cell is that of its sample points inside.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub surface: Option<String>,
-    /// A box in the place of `surface`.
+    /// A box instead of `surface`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub box_mm: Option<MuscleBoxDocument>,
-    /// Fibres along the longest axis of so many boxes of `surface`, one after the other: 1, 2 or 4. Of strap muscles only
-    /// (`muscle-broad`). Default 1, where nothing else says where fibres run.
+    /// Fibres along the longest axis of this number of consecutive boxes of `surface`: 1, 2 or 4. Of strap muscles only
+    /// (`muscle-broad`). Default 1, without any other fibre direction.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false, minimum = 1, maximum = 4)]
     pub boxes: Option<u32>,
-    /// What the muscle is made of, mixed into the tissue of its cells by its share as `muscle_mixing` says. Its `fibre` has no course:
-    /// it runs along the muscle. Not of a `region`, which has its own. Absent: the muscle pulls, and tissue stays what it is.
+    /// The material of the muscle, mixed into its cells by its share as `muscle_mixing` states. Its `fibre` has no direction:
+    /// it follows the muscle. Not of a `region`, which has its own. Absent: the muscle contracts, and the material is unchanged.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub material: Option<MaterialDocument>,
-    /// The `fibre` of its material becomes stiffer as the muscle pulls. Absent: it stays what it is.
+    /// The `fibre` of its material stiffens with activation. Absent: it is constant.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub stiffening: Option<StiffeningDocument>,
@@ -79,10 +79,10 @@ pub struct MuscleDocument {
 /// The usual reach of a muscle around its lines.
 pub const USUAL_REACH_MM: f64 = 6.0;
 
-/// Surfaces in mm by their ids.
+/// Surfaces in mm, by id.
 pub type Surfaces = BTreeMap<String, Arc<TriangleSurface>>;
 
-/// What muscles are read with.
+/// Context of reading muscles.
 #[derive(Clone, Copy)]
 pub struct MuscleContext<'a> {
     pub limits: &'a Limits,
@@ -103,13 +103,13 @@ pub fn to_muscles(
     documents.filter_map(|(index, own)| own.to_muscle(&at.index(index), context, faults)).collect()
 }
 
-/// What speaks against the presets of muscles.
+/// Objections to the presets of muscles.
 pub(super) fn doubts(documents: &[MuscleDocument]) -> impl Iterator<Item = Warning> + '_ {
     let preset = |own: &MuscleDocument| own.material.as_ref().and_then(|material| material.preset);
     documents.iter().filter_map(move |own| doubt(&own.name, preset(own)))
 }
 
-/// The materials of muscles by name, with presets written out.
+/// The materials of muscles by name, with presets in full.
 pub fn muscle_materials(documents: &[MuscleDocument]) -> MaterialDocuments {
     let of = |own: &MuscleDocument| Some((own.name.clone(), expanded(own.material.as_ref()?)));
     documents.iter().filter_map(of).collect()
@@ -202,7 +202,7 @@ impl MuscleDocument {
             (Some(id), _) => {
                 let found = surfaces.get(id).cloned();
                 if found.is_none() {
-                    let detail = format!("mesh `{id}` is not a surface that is there");
+                    let detail = format!("mesh `{id}` is not a surface");
                     faults.add(&place, ErrorCode::UnknownMesh, detail);
                 }
                 found?
@@ -212,7 +212,7 @@ impl MuscleDocument {
         Some(MuscleCourse::Body { surface, fibres: fibres? })
     }
 
-    /// The one way in which fibres of a body are stated; without one along its box.
+    /// The fibre direction of a body; by default along its box.
     fn body_fibres(
         &self,
         at: &Pointer,
@@ -254,14 +254,14 @@ impl MuscleDocument {
         let own = self.stiffening.as_ref()?;
         let material = self.material.as_ref().map(expanded);
         let Some(fibre) = material.and_then(|material| material.fibre?.to_fibre()) else {
-            let detail = "what becomes stiffer is `young_modulus_kpa` of the `fibre` of `material`";
+            let detail = "stiffening needs `young_modulus_kpa` of the `fibre` of `material`";
             faults.add(&at.key("stiffening"), ErrorCode::MissingField, detail);
             return None;
         };
         own.to_stiffening(fibre, &at.key("stiffening"), faults)
     }
 
-    /// Linear tissue, with presets written out, whose fibres run along the muscle.
+    /// Linear tissue, with presets in full, whose fibres follow the muscle.
     fn to_tissue(&self, at: &Pointer, faults: &mut Faults) -> Option<LinearElastic> {
         let material = expanded(self.material.as_ref()?);
         let place = at.key("fibre");
@@ -281,7 +281,7 @@ impl MuscleDocument {
             (
                 "/fibre/k1_kpa",
                 fibre.is_some_and(|own| own.k1_kpa.is_some() || own.k2.is_some()),
-                "tissue that is mixed has no fibres that only pull",
+                "tissue that is mixed has no tension-only fibres",
             ),
         ];
         for (member, _, why) in wrong.into_iter().filter(|(_, is_given, _)| *is_given) {
@@ -296,7 +296,7 @@ impl MuscleDocument {
     }
 }
 
-/// Refuses members that do not belong to the form that is given.
+/// Refuses members that do not belong to the given form.
 fn refuse(members: &[(&str, bool)], form: &str, at: &Pointer, faults: &mut Faults) {
     for (name, _) in members.iter().filter(|(_, is_given)| *is_given) {
         let detail = format!("`{name}` does not belong to a muscle with `{form}`");
@@ -304,10 +304,10 @@ fn refuse(members: &[(&str, bool)], form: &str, at: &Pointer, faults: &mut Fault
     }
 }
 
-/// Points of all lines of a muscle: each is held against each cell.
+/// Points of all lines of a muscle: each is compared with each cell.
 const MOST_POINTS: usize = 1000;
 
-/// Lines of a muscle, each of two points or more.
+/// Lines of a muscle, each of two or more points.
 fn to_lines(
     lines: &[Vec<Triple>],
     at: &Pointer,
@@ -324,7 +324,7 @@ fn to_lines(
     let count: usize = lines.iter().map(Vec::len).sum();
     if count > MOST_POINTS {
         let detail = format!(
-            "the lines have {count} points, and {MOST_POINTS} is the most: leave out points of straight parts"
+            "the lines have {count} points, at most {MOST_POINTS} are allowed: omit points of straight parts"
         );
         faults.add(at, ErrorCode::TooMany, detail);
     }

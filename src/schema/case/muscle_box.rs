@@ -1,4 +1,4 @@
-//! The box of a strap muscle, from numbers.
+//! The box of a strap muscle, given by numbers.
 
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
@@ -20,7 +20,7 @@ const FLAT: f64 = 1e-6;
 #[serde(deny_unknown_fields)]
 pub struct MuscleBoxDocument {
     pub centre: Triple,
-    /// From the centre to the middles of three faces.
+    /// From the centre to the centres of three faces.
     #[schema(value_type = Vec<Triple>, min_items = 3, max_items = 3)]
     pub half_axes: [Triple; 3],
 }
@@ -40,7 +40,7 @@ impl MuscleBoxDocument {
         let (volume, cube) = (a.dot(&b.cross(&c)), a.norm() * b.norm() * c.norm());
         if !(volume.abs() > FLAT * cube && cube > 0.0) {
             let detail =
-                format!("a box has a volume, and this one has {:.3} mm³", 8.0 * volume.abs());
+                format!("a box needs a volume, this one has {:.3} mm³", 8.0 * volume.abs());
             faults.add(&at.key("half_axes"), ErrorCode::OutOfRange, detail);
             return None;
         }

@@ -12,13 +12,13 @@ use mechanics::material::mixture::MixingRule;
 use mechanics::mesh::VolumeMesh;
 use mechanics::prediction::{MuscleField, MuscleMixing, MuscleTissue, Scene, Stiffening};
 
-/// How the `material` of muscles becomes the tissue of cells that they fill in part.
+/// How the `material` of muscles is mixed into cells that they fill in part.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MuscleMixingDocument {
     #[serde(default)]
     pub rule: MixingRuleName,
-    /// Points in each cell by which the share of a body in it is found.
+    /// Sample points in each cell for the share of a body.
     #[serde(default = "default_samples")]
     #[schema(default = 64, minimum = 1, maximum = 512)]
     pub samples: u32,
@@ -28,16 +28,16 @@ fn default_samples() -> u32 {
     MuscleMixing::default().samples as u32
 }
 
-/// How stiffnesses of parts become that of a cell.
+/// How the stiffnesses of the parts of a cell are averaged.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum MixingRuleName {
-    /// The mean of stiffnesses: parts are strained alike. The stiffest that shares allow.
+    /// The mean of stiffnesses: uniform strain, the upper bound.
     #[default]
     Voigt,
-    /// The mean of compliances: parts are stressed alike. The softest.
+    /// The mean of compliances: uniform stress, the lower bound.
     Reuss,
-    /// The mean of logarithms, between both.
+    /// The mean of logarithms, between the two.
     Geometric,
 }
 
@@ -69,15 +69,15 @@ impl MuscleMixingDocument {
     }
 }
 
-/// Stiffness along the fibres of a muscle that pulls: E_f + (E_0 - E_f) T / T_0 with E_f that of its material, T the `stress_kpa` of
-/// its activation, up to T_0 (Chabanas et al. 2003: from 6.2 to 110 kPa).
+/// Stiffness along the fibres of an active muscle: E_f + (E_0 - E_f) T / T_0 with E_f that of its material, T the `stress_kpa` of
+/// its activation, at most T_0 (Chabanas et al. 2003: from 6.2 to 110 kPa).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct StiffeningDocument {
     /// E_0, of the fully active muscle; in [1e-9, 1e9] and not below that of the material.
     #[schema(minimum = 1e-9, maximum = 1e9)]
     pub young_modulus_kpa: f64,
-    /// T_0, with which it pulls then; in [0.001, 10000].
+    /// T_0, its stress then; in [0.001, 10000].
     #[schema(minimum = 0.001, maximum = 10000.0)]
     pub stress_kpa: f64,
 }
@@ -101,7 +101,7 @@ impl StiffeningDocument {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct MusclesDocument {
     pub muscles: BTreeMap<String, MuscleInCellsDocument>,
-    /// Where muscles have a `material`.
+    /// If muscles have a `material`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub tissue: Option<MuscleTissueDocument>,
@@ -110,36 +110,36 @@ pub struct MusclesDocument {
 /// A muscle in the cells of a mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct MuscleInCellsDocument {
-    /// Cells that are of it, be it in part.
+    /// Cells with a share of it.
     pub cells: u64,
-    /// Of the muscle in the tissue: the volume of each cell times its share.
+    /// Of the muscle in the mesh: the sum of cell volume times share.
     pub volume_mm3: f64,
-    /// Of what its surface encloses.
+    /// Inside its surface.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub enclosed_mm3: Option<f64>,
-    /// The second over the first standard deviation of its surface, where its fibres run along its boxes: above 0.4 it is no strap.
+    /// The second over the first standard deviation of its surface, if its fibres follow its boxes: above 0.4 it is no strap.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub broadness: Option<f64>,
 }
 
-/// What the material of muscles makes of the tissue.
+/// The effect of muscle materials on the tissue.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct MuscleTissueDocument {
     pub rule: MixingRuleName,
-    /// Cells that have some of it.
+    /// Cells with a share of any muscle.
     pub cells: u64,
     /// Cells of several tissues.
     pub mixed_cells: u64,
-    /// Cells in which fibres cross, the second eigenvalue of their axes above half of the first.
+    /// Cells with crossing fibres: the second eigenvalue of their axes is above half of the first.
     pub crossing_cells: u64,
-    /// Of the volume of the tissue: cells whose stiffest mixture is more than three times as stiff as their softest.
+    /// Share of the tissue volume in cells whose stiffest mixture is more than three times as stiff as their softest.
     pub rule_decides_share: f64,
 }
 
 impl MusclesDocument {
-    /// Absent where the case names none.
+    /// Absent without muscles in the case.
     pub fn of(scene: &Scene) -> Option<Self> {
         let of =
             |own: &MuscleField| (own.name.clone(), MuscleInCellsDocument::of(own, &scene.mesh));

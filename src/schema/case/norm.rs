@@ -1,4 +1,4 @@
-//! Norms of cephalometric measures that a client states.
+//! Norms of cephalometric measures in documents.
 
 use std::collections::BTreeMap;
 
@@ -10,7 +10,7 @@ use crate::schema::wire::fault::{Faults, Pointer};
 use crate::schema::wire::limits::Limits;
 use mechanics::cephalometry::MEASURES;
 
-/// What is usual of a measure, in its unit.
+/// The norm of a measure, in its unit.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct NormDocument {
@@ -19,14 +19,14 @@ pub struct NormDocument {
     /// Standard deviation.
     #[schema(minimum = 1e-6, maximum = 1e4)]
     pub sd: f64,
-    /// Whose norm it is: authors, year, group of people.
+    /// Source: authors, year, population.
     pub source: String,
 }
 
 /// Norms by the names of measures.
 pub type NormDocuments = BTreeMap<String, NormDocument>;
 
-/// Adds what is wrong with norms at a place.
+/// Adds the faults of norms at a place.
 pub fn check_norms(norms: &NormDocuments, at: &Pointer, limits: &Limits, faults: &mut Faults) {
     for (name, norm) in norms {
         let at = at.key(name);

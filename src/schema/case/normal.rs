@@ -1,4 +1,4 @@
-//! Reading of the direction across which sliding nodes are held: a word or three numbers.
+//! Reading of the direction in which sliding nodes are constrained: a word or three numbers.
 
 use std::fmt;
 

@@ -1,6 +1,6 @@
 //! Materials of the literature by name: constants, source, state of the tissue, and caveats.
 //!
-//! A value never changes under its name, because results that are stored name it: a better one gets a name of its own.
+//! The constants of a name never change, because stored results refer to it: better ones get a new name.
 
 use std::collections::BTreeMap;
 
@@ -13,7 +13,7 @@ use super::material::MaterialDocument;
 use super::preset_name::PresetName;
 use super::preset_source::{MEASURED, MEASURED_IN, Words};
 
-/// Who stated constants, and where.
+/// Source of constants.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct SourceDocument {
     pub authors: String,
@@ -28,40 +28,40 @@ pub struct PresetDocument {
     pub name: PresetName,
     pub tissue: String,
     pub source: SourceDocument,
-    /// What the constants are of, and how they were come by.
+    /// The state of the tissue, and how the constants were obtained.
     pub state: String,
-    /// What speaks against them; the warning `preset-doubt` of a prediction with it repeats this.
+    /// Objections to them; the warning `preset-doubt` of a prediction with it repeats these.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub doubt: Option<String>,
-    /// Whether the course of its fibres has to be stated beside it, as `fibre.direction` or `fibre.array`.
+    /// Whether its fibre direction has to be stated beside it, as `fibre.direction` or `fibre.array`.
     pub needs_course: bool,
     /// The tissue that it describes.
     pub material: MaterialDocument,
 }
 
-/// A Young's modulus that is reported, or the range of several.
+/// A reported Young's modulus, or the range of several.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct MeasuredModulusDocument {
     pub tissue: String,
-    /// As the table names it.
+    /// The name in the table.
     pub source: String,
     pub from_kpa: f64,
     pub to_kpa: f64,
 }
 
-/// The answer of `GET /v1/materials`.
+/// The response of `GET /v1/materials`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct MaterialList {
-    /// What `preset` of a material may name.
+    /// The names that `preset` of a material may have.
     pub presets: Vec<PresetDocument>,
-    /// Moduli of the literature beside them, which are too far apart to be taken for constants.
+    /// Other moduli of the literature, which differ too much to be used as constants.
     pub measured: Vec<MeasuredModulusDocument>,
-    /// The table that collects these.
+    /// The source table of these.
     pub measured_in: SourceDocument,
 }
 
-/// A preset as a result repeats it, with what the documents changed of it.
+/// A preset as repeated by a result, with the changes of the documents.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct UsedPresetDocument {
     pub source: SourceDocument,
@@ -69,7 +69,7 @@ pub struct UsedPresetDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub doubt: Option<String>,
-    /// The constants that were used, with the name of the preset.
+    /// The constants used, with the name of the preset.
     pub material: MaterialDocument,
 }
 
@@ -77,7 +77,7 @@ pub struct UsedPresetDocument {
 const MUSCLE_OF_ZHANG: [f64; 5] = [1.0, 3700.0, 25.0, 595.0, 0.002_16];
 const OTHER_OF_ZHANG: [f64; 5] = [1.1, 1700.0, 36.0, 1294.0, 0.000_08];
 
-/// The constants of a preset, without a course of fibres.
+/// The constants of a preset, without a fibre direction.
 pub fn material_of(preset: PresetName) -> MaterialDocument {
     match preset {
         PresetName::TissueChabanas => isotropic(15.0, 0.49),
@@ -96,7 +96,7 @@ pub fn material_of(preset: PresetName) -> MaterialDocument {
     }
 }
 
-/// A material with its preset written out.
+/// A material with its preset in full.
 pub fn expanded(material: &MaterialDocument) -> MaterialDocument {
     match material.preset {
         Some(preset) => material.over(&material_of(preset)),
@@ -170,7 +170,7 @@ fn isotropic(young_modulus_kpa: f64, poisson_ratio: f64) -> MaterialDocument {
     }
 }
 
-/// With fibres of such a modulus; the other one is that across them.
+/// With fibres of this modulus; the other one is transverse.
 fn along(young_modulus_kpa: f64, law: FibreLawName, across: MaterialDocument) -> MaterialDocument {
     let fibre = FibreDocument {
         young_modulus_kpa: Some(young_modulus_kpa),

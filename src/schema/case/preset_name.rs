@@ -6,7 +6,7 @@ use utoipa::ToSchema;
 use super::preset_source::{self as source, Words};
 use mechanics::mesh::Warning;
 
-/// A material of the literature; `GET /v1/materials` says what each is.
+/// A material of the literature; `GET /v1/materials` describes each.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, ToSchema)]
 pub enum PresetName {
     #[serde(rename = "tissue_chabanas_2003")]
@@ -49,7 +49,7 @@ impl PresetName {
         PresetName::OtherBothJawsZhang,
     ];
 
-    /// As documents call it.
+    /// Its name in documents.
     pub fn name(self) -> &'static str {
         self.words().name
     }
@@ -71,7 +71,7 @@ impl PresetName {
     }
 }
 
-/// What a reader of a prediction must know of the preset of a region or tissue of that name.
+/// The warning of a prediction about the preset of a region or tissue of that name.
 pub(super) fn doubt(of: &str, preset: Option<PresetName>) -> Option<Warning> {
     let preset = preset?;
     let Words { authors, year, place, doubt, .. } = preset.words();

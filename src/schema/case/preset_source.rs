@@ -139,5 +139,5 @@ pub(super) const MEASURED: [(&str, &str, f64, f64); 12] = [
     ("muscle", "Levinson 1995", 50.0, 150.0),
 ];
 
-/// Where `MEASURED` stands.
+/// The source table of `MEASURED`.
 pub(super) const MEASURED_IN: (&str, u32, &str) = (ZACHOW, 2006, "table 1");

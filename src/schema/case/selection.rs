@@ -1,4 +1,4 @@
-//! SELECT: a set of nodes, asked for by name, label or distance.
+//! SELECT: a set of nodes, given by name, label or distance.
 
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
@@ -47,7 +47,7 @@ impl SelectionDocument {
         SelectionDocument { node_set: Some(name.to_owned()), ..SelectionDocument::default() }
     }
 
-    /// The selection as the path understands it; `None` where faults were added.
+    /// The selection as the numerics take it; `None` if faults were added.
     pub fn to_selection(
         &self,
         at: &Pointer,
@@ -91,7 +91,7 @@ impl SelectionDocument {
         Some(NodeSelection::NearSurface { surface, distance })
     }
 
-    /// Every surface asked for here and in the parts of a union, with its place.
+    /// Every surface named here and in the parts of a union, with its place.
     pub fn surfaces_mut<'a>(
         &'a mut self,
         at: &Pointer,

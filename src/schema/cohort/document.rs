@@ -14,10 +14,10 @@ use crate::schema::wire::names::check_tags;
 use mechanics::learning::virtual_cohort::PARTS;
 use mechanics::mesh::ignored::listed;
 
-/// As many subjects have a p that is counted out.
+/// The most twins: p is exact up to this number.
 const MOST_TWINS: f64 = 25.0;
 
-/// What every client's whole numbers hold.
+/// The largest integer of all clients.
 const MOST_SEED: f64 = 2_147_483_647.0;
 
 /// `cohort`.
@@ -28,7 +28,7 @@ pub enum CohortKind {
     Cohort,
 }
 
-/// Comparisons with scans, of the same subjects in each group, held against each other in pairs. Exactly one of `groups`,
+/// Comparisons with scans, of the same subjects in each group, tested in pairs. Exactly one of `groups`,
 /// `cohort` and `virtual`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
@@ -39,12 +39,12 @@ pub struct CohortDocument {
     /// By the name of a method: the id of a job that compared, for each subject in the same order.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub groups: BTreeMap<String, Vec<String>>,
-    /// The id of a stored cohort, as it is at this moment: its members are the subjects, and the methods of their `comparisons` the
+    /// The id of a stored cohort, in its present version: its members are the subjects, and the methods of their `comparisons` the
     /// groups.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub cohort: Option<String>,
-    /// Twins that the program makes itself, modelled in four ways; the groups are these, and distances are of nodes.
+    /// Generated twins, with four models as groups; distances are of nodes.
     #[serde(default, rename = "virtual", skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub made: Option<TwinsDocument>,
@@ -58,14 +58,14 @@ pub struct CohortDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub region: Option<String>,
-    /// The number of each subject that is tested and drawn as a box.
+    /// The statistic of each subject that is tested and drawn as a box.
     #[serde(default)]
     pub statistic: CohortStatistic,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub tags: Vec<String>,
 }
 
-/// Operated twins of the generic face, the same for the same numbers: one tissue or muscles along their fibres in it, glued to
+/// Operated twins of the generic face, deterministic by their numbers: one tissue or muscles along their fibres in it, glued to
 /// the teeth or sliding along them.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
@@ -97,14 +97,14 @@ impl TwinsDocument {
     }
 }
 
-/// Which distances of a comparison.
+/// The distances of a comparison.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum CohortDistance {
     /// Of closest points, both ways, by area.
     #[default]
     ClosestPoint,
-    /// Of points of the same number.
+    /// Of points with the same index.
     NodeWise,
     /// Of points by thin-plate spline and closest point.
     TpsCp,
@@ -137,7 +137,7 @@ impl CohortStatistic {
 }
 
 impl CohortDocument {
-    /// Adds what is wrong with it; pointers start at `/spec`.
+    /// Adds its faults; pointers start at `/spec`.
     pub fn check(&self, limits: &Limits, faults: &mut Faults) {
         let at = Pointer::root().key("spec");
         check_tags(&self.tags, &at.key("tags"), limits, faults);
@@ -172,12 +172,12 @@ impl CohortDocument {
         }
     }
 
-    /// What is not in the stored cohort itself.
+    /// Members that a stored cohort does not have.
     fn check_cohort(&self, at: &Pointer, faults: &mut Faults) {
         let given = 1 + usize::from(!self.groups.is_empty()) + usize::from(self.made.is_some());
         faults.check_one_of(at, given, "`groups`, `cohort`, `virtual`");
         if !self.subjects.is_empty() {
-            let detail = "the subjects of a stored cohort are called as its members are";
+            let detail = "the subjects of a stored cohort have the names of its members";
             faults.add(&at.key("subjects"), ErrorCode::UnknownField, detail);
         }
     }
@@ -188,7 +188,7 @@ impl CohortDocument {
         made.check(&at.key("virtual"), limits, faults);
         self.check_subjects(made.patients as usize, at, limits, faults);
         if self.distance == CohortDistance::TpsCp {
-            let detail = "of twins every node is known: their distances are of nodes";
+            let detail = "twins have distances of nodes only";
             faults.add(&at.key("distance"), ErrorCode::NoSuchOutput, detail);
         }
         if let Some(region) = self.region.as_ref().filter(|own| !PARTS.contains(&own.as_str())) {
@@ -213,7 +213,7 @@ impl CohortDocument {
         }
     }
 
-    /// The name of a subject: its number from 1 where none is stated.
+    /// The name of a subject; by default its number from 1.
     pub fn subject(&self, index: usize) -> String {
         self.subjects.get(index).cloned().unwrap_or_else(|| (index + 1).to_string())
     }
@@ -227,7 +227,7 @@ impl CohortDocument {
         })
     }
 
-    /// The distances of a comparison that are asked for; nothing where it has none.
+    /// The selected distances of a comparison, if any.
     pub fn row(&self, comparison: &ComparisonDocument) -> Option<StatDocument> {
         match (self.distance, &self.region) {
             (CohortDistance::ClosestPoint, None) => Some(comparison.both.to_stat()),

@@ -1,4 +1,4 @@
-//! The spec of a cohort and its result, and cohorts that are kept.
+//! The spec of a cohort and its result, and stored cohorts.
 
 pub mod document;
 pub mod result;

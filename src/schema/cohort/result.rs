@@ -1,4 +1,4 @@
-//! The answer of a cohort: a table, boxes, and tests in pairs.
+//! The result of a cohort: a table, boxes, and tests in pairs.
 
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
@@ -15,9 +15,9 @@ pub struct CohortResultDocument {
     #[schema(nullable = false)]
     pub cohort: Option<CohortVersionDocument>,
     pub distance: CohortDistance,
-    /// The number that boxes and tests are of.
+    /// The statistic of boxes and tests.
     pub statistic: CohortStatistic,
-    /// Of twins the four variants of the model, then what happened, with the errors of measuring it, and no movement.
+    /// Of twins the four variants of the model, then the outcome with measurement errors, and no movement.
     pub groups: Vec<CohortGroupDocument>,
     /// Every two groups, in the order of their names; of twins every two variants.
     pub pairs: Vec<CohortPairDocument>,
@@ -29,7 +29,7 @@ pub struct CohortGroupDocument {
     pub name: String,
     /// One for each subject.
     pub rows: Vec<CohortRowDocument>,
-    /// Of the statistic over subjects: `min`, `p25`, `median`, `p75` and `max` make its box.
+    /// Of the statistic over subjects: `min`, `p25`, `median`, `p75` and `max` are its box plot.
     pub over_subjects: StatDocument,
 }
 
@@ -45,19 +45,19 @@ pub struct CohortRowDocument {
 pub struct CohortPairDocument {
     pub first: String,
     pub second: String,
-    /// Of first less second over the subjects: half of them are below it.
+    /// Median of first minus second over the subjects.
     pub median_difference_mm: f64,
     /// Subjects that differ by more than 1e-4 mm.
     pub differing: u64,
-    /// Sums of the ranks of subjects whose first is larger, and whose second is.
+    /// Rank sums of subjects whose first is larger, and whose second is.
     pub w_first_larger: f64,
     pub w_second_larger: f64,
-    /// Two-sided; absent where no subject differs.
+    /// Two-sided; absent if no subject differs.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub p: Option<f64>,
-    /// Whether it is counted over all signs (up to 25 that differ) and not approximated.
+    /// Whether it is exact, over all signs (up to 25 that differ), and not approximated.
     pub is_exact: bool,
-    /// The smallest that so many differing subjects can give: with fewer than 6 no difference is below 0.05.
+    /// The smallest p possible with this number of differing subjects: with fewer than 6 none is below 0.05.
     pub smallest_p: f64,
 }

@@ -12,7 +12,7 @@ use crate::schema::wire::fault::{Faults, Pointer};
 use crate::schema::wire::limits::Limits;
 use mechanics::learning::cohort::LEAST_CASES;
 
-/// Characters of a statement of consent.
+/// The most characters of a statement of consent.
 const LONGEST_STATEMENT: usize = 2000;
 
 /// Operated cases to learn from.
@@ -20,7 +20,7 @@ const LONGEST_STATEMENT: usize = 2000;
 #[serde(deny_unknown_fields)]
 pub struct StoredCohortDocument {
     pub name: String,
-    /// Of every member that states none of its own.
+    /// Of every member without its own.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub consent: Option<ConsentDocument>,
@@ -32,20 +32,20 @@ pub struct StoredCohortDocument {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ConsentDocument {
-    /// By which right, such as the number of a form or of an approval; no names of patients.
+    /// Legal basis, such as the number of a form or of an approval; no names of patients.
     #[schema(min_length = 1, max_length = 2000)]
     pub statement: String,
-    /// What for; empty: nothing.
+    /// Permitted uses; empty: none.
     pub uses: BTreeSet<CohortUse>,
 }
 
-/// What a cohort is used for.
+/// A use of a cohort.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum CohortUse {
     /// A model that corrects predictions of other patients, by a job of kind `learn`.
     Learn,
-    /// The errors of methods against each other, by a job of kind `cohort`.
+    /// A comparison of the errors of methods, by a job of kind `cohort`.
     Compare,
 }
 
@@ -58,16 +58,16 @@ impl CohortUse {
     }
 }
 
-/// An operated case: what was predicted of it, and what came of it.
+/// An operated case: its prediction and its outcome.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MemberDocument {
-    /// The id of a job of kind `predict`, whose case, plan and method are taken.
+    /// The id of a job of kind `predict`, whose case, plan and method are used.
     pub prediction: String,
     /// The id of a mesh after the operation: a volume with the cells of the case's, or a surface with the node ids or the
     /// triangles of its skin, which tell what corresponds.
     pub actual: String,
-    /// The registration of `actual` onto the case: row-major, x' = R x + t in mm. Absent: it lies in the frame of the case.
+    /// The registration of `actual` onto the case: row-major, x' = R x + t in mm. Absent: it is registered already.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub matrix4x4: Option<Matrix4x4>,
@@ -75,7 +75,7 @@ pub struct MemberDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub name: Option<String>,
-    /// Of surgery, such as `two_jaw`, for which one `theta` is fitted. Absent: how many segments the plan moves.
+    /// Class of surgery, such as `two_jaw`, for which one `theta` is fitted. Absent: the number of segments that the plan moves.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub class: Option<String>,
@@ -83,7 +83,7 @@ pub struct MemberDocument {
     /// methods.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub comparisons: BTreeMap<String, String>,
-    /// In place of that of the cohort.
+    /// Replaces that of the cohort.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub consent: Option<ConsentDocument>,
@@ -136,7 +136,7 @@ impl ConsentDocument {
 }
 
 impl StoredCohortDocument {
-    /// Adds what is wrong with it; pointers start at its root.
+    /// Adds its faults; pointers start at its root.
     pub fn check(&self, limits: &Limits, faults: &mut Faults) {
         let root = Pointer::root();
         faults.check_name(&root.key("name"), &self.name, limits.name_characters as usize);
@@ -164,7 +164,7 @@ impl StoredCohortDocument {
             for ((key, value), seen) in own.into_iter().zip(&mut seen) {
                 if !seen.insert(value.clone()) {
                     let detail =
-                        format!("{value:?} is there twice, and every member is another patient");
+                        format!("{value:?} is listed twice, and every member is another patient");
                     faults.add(&place.key(key), ErrorCode::DuplicateName, detail);
                 }
             }
@@ -176,13 +176,13 @@ impl StoredCohortDocument {
             (Some(own), _) => own.check(&at.key("consent"), faults),
             (None, Some(_)) => {}
             (None, None) => {
-                let detail = "neither the member nor the cohort states what may be learned from it";
+                let detail = "neither the member nor the cohort states consent";
                 faults.add(&at.key("consent"), ErrorCode::MissingField, detail);
             }
         }
     }
 
-    /// Tests are in pairs: every member has what the first one has.
+    /// Tests are in pairs: every member needs the methods of the first one.
     fn check_methods(&self, member: &MemberDocument, at: &Pointer, faults: &mut Faults) {
         let first = self.members.first().map(|first| first.comparisons.keys());
         if first.is_some_and(|first| !first.eq(member.comparisons.keys())) {

@@ -25,34 +25,34 @@ pub struct AlignDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub matrix4x4: Option<Matrix4x4>,
-    /// At least three places that both surfaces have; required by `landmarks`, and by `surfaces` where they are its
+    /// At least three corresponding points of both surfaces; required by `landmarks`, and by `surfaces` if they are its
     /// `start`.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub landmarks: BTreeMap<String, LandmarkDocument>,
-    /// A surface that lies as the prediction does, such as bone before the operation; required by `surfaces`.
+    /// A surface registered with the prediction, such as bone before the operation; required by `surfaces`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub fixed: Option<MeshReference>,
-    /// What it corresponds to, as it lies beside the actual surface; required by `surfaces`. Its movement onto `fixed`
-    /// is that of the actual surface.
+    /// Its counterpart, registered with the actual surface; required by `surfaces`. Its movement onto `fixed`
+    /// is applied to the actual surface.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub moving: Option<MeshReference>,
-    /// Where `moving` starts; of `surfaces` only.
+    /// Initial position of `moving`; of `surfaces` only.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub start: Option<StartName>,
-    /// Only the part of the prediction in it decides an alignment by `icp`, only that of `fixed` one by `surfaces`.
+    /// Restricts an alignment by `icp` to this part of the prediction, one by `surfaces` to this part of `fixed`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub mask: Option<PlaceDocument>,
-    /// Reports the measures before the alignment as well.
+    /// Also reports the measures before the alignment.
     #[serde(default = "yes")]
     #[schema(default = true)]
     pub report_unaligned: bool,
 }
 
-/// An alignment by its name, or with its parameters. Only described here.
+/// An alignment by its name, or with its parameters.
 #[derive(Clone, Debug, Serialize, ToSchema)]
 #[serde(untagged)]
 pub enum AlignReference {
@@ -91,7 +91,7 @@ impl Default for AlignDocument {
     }
 }
 
-/// The same place on both surfaces.
+/// A pair of corresponding points of both surfaces.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LandmarkDocument {
@@ -105,26 +105,26 @@ pub struct LandmarkDocument {
 pub enum AlignMethod {
     #[default]
     None,
-    /// As `matrix4x4` says.
+    /// By `matrix4x4`.
     Matrix,
     Landmarks,
     Icp,
-    /// As `moving` goes onto `fixed` by iterative closest point.
+    /// By the registration of `moving` onto `fixed` by iterative closest point.
     Surfaces,
 }
 
-/// Where the iteration starts.
+/// The initial position of the iteration.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum StartName {
-    /// As the surfaces lie; where their boxes do not touch, with the middles of these together.
+    /// The surfaces unchanged; if their bounding boxes do not touch, with the centres of these aligned.
     #[default]
     None,
-    /// The middles of the boxes together.
+    /// Centres of the bounding boxes aligned.
     Boxes,
-    /// Centres and principal axes together.
+    /// Centres and principal axes aligned.
     Inertia,
-    /// As `landmarks` say.
+    /// By `landmarks`.
     Landmarks,
 }
 
@@ -172,7 +172,7 @@ impl AlignDocument {
         }
     }
 
-    /// The surfaces that decide, with their places.
+    /// The surfaces of the alignment, with their places.
     pub fn surfaces_mut(&mut self, at: &Pointer) -> Vec<(Pointer, &mut String)> {
         let surfaces = [("fixed", &mut self.fixed), ("moving", &mut self.moving)];
         let named = surfaces.into_iter();
@@ -194,7 +194,7 @@ impl AlignMethod {
     }
 }
 
-/// Adds what is wrong with how many there are and how they are called.
+/// Adds faults of their number and names.
 pub(super) fn check_landmarks(
     landmarks: &BTreeMap<String, LandmarkDocument>,
     at: &Pointer,

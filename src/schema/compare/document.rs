@@ -1,4 +1,4 @@
-//! The spec of a comparison: two surfaces, whether they are aligned first, and where they are measured.
+//! The spec of a comparison: two surfaces, their alignment, and the measured regions.
 
 use std::collections::BTreeMap;
 
@@ -45,8 +45,8 @@ pub struct CompareDocument {
     pub samples_per_mm2: f64,
     #[serde(default)]
     pub node_wise: NodeWise,
-    /// Places that both surfaces have, those of the actual one before it is aligned. Their distances are reported; four
-    /// or more that do not lie in a plane measure by thin-plate spline and closest point as well.
+    /// Corresponding points of both surfaces, those of the actual one before alignment. Their distances are reported; four
+    /// or more that are not coplanar also give distances by thin-plate spline and closest point.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub landmarks: BTreeMap<String, LandmarkDocument>,
     /// Ascending edges of the bins of a histogram of distances, in mm.
@@ -56,7 +56,7 @@ pub struct CompareDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub acquisition: Option<AcquisitionDocument>,
-    /// The signed distance at both ends of the colours of a map, in mm: also writes `skin.ply` and `skin.glb` with it, and is the range
+    /// The signed distance at both ends of the colour scale, in mm: also writes `skin.ply` and `skin.glb` with it, and is the range
     /// of the report. Absent: `skin.vtp` only, and 2 mm in the report.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false, minimum = 0.01, maximum = 100.0)]
@@ -65,7 +65,7 @@ pub struct CompareDocument {
     pub tags: Vec<String>,
 }
 
-/// A comparison within a prediction: that of the predicted skin with another surface.
+/// A comparison within a prediction: the predicted skin with another surface.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CompareToDocument {
@@ -82,8 +82,8 @@ pub struct CompareToDocument {
     pub samples_per_mm2: f64,
     #[serde(default)]
     pub node_wise: NodeWise,
-    /// Places that both surfaces have, those of the actual one before it is aligned. Their distances are reported; four
-    /// or more that do not lie in a plane measure by thin-plate spline and closest point as well.
+    /// Corresponding points of both surfaces, those of the actual one before alignment. Their distances are reported; four
+    /// or more that are not coplanar also give distances by thin-plate spline and closest point.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub landmarks: BTreeMap<String, LandmarkDocument>,
     /// Ascending edges of the bins of a histogram of distances, in mm.
@@ -99,11 +99,11 @@ fn default_samples_per_mm2() -> f64 {
     1.0
 }
 
-/// Whether the distance between points of the same number is measured.
+/// Whether the distance between points with the same index is measured.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum NodeWise {
-    /// Where `node_id` arrays or the triangles of both agree.
+    /// If `node_id` arrays or the triangles of both agree.
     #[default]
     Auto,
     On,
@@ -111,7 +111,7 @@ pub enum NodeWise {
 }
 
 impl CompareToDocument {
-    /// With another surface as it lies, and all else as usual.
+    /// With another surface without alignment, and all else by default.
     pub fn of(actual: MeshReference) -> Self {
         CompareToDocument {
             kind: CompareKind::Compare,
@@ -126,7 +126,7 @@ impl CompareToDocument {
         }
     }
 
-    /// Adds what is wrong with it.
+    /// Adds its faults.
     pub fn check(&self, at: &Pointer, limits: &Limits, faults: &mut Faults) {
         self.align.check(&at.key("align"), limits, faults);
         let place = at.key("regions");
@@ -159,14 +159,14 @@ impl CompareToDocument {
         named.map(|(_, id)| id.clone()).collect()
     }
 
-    /// What decides the numbers, for the hash of a job.
+    /// Everything that determines the numbers, for the hash of a job.
     pub fn content(&self) -> Value {
         canonical::to_value(self)
     }
 }
 
 impl CompareDocument {
-    /// Adds what is wrong with it; pointers start at `/spec`.
+    /// Adds its faults; pointers start at `/spec`.
     pub fn check(&self, limits: &Limits, faults: &mut Faults) {
         let at = Pointer::root().key("spec");
         let reference = &self.prediction;
@@ -179,7 +179,7 @@ impl CompareDocument {
         self.to_compare_to().check(&at, limits, faults);
     }
 
-    /// The part that does not depend on where the prediction comes from.
+    /// The part that does not depend on the source of the prediction.
     pub fn to_compare_to(&self) -> CompareToDocument {
         CompareToDocument {
             kind: self.kind,
@@ -210,7 +210,7 @@ fn check_edges(edges: &[f64], at: &Pointer, limits: &Limits, faults: &mut Faults
     for (index, edge) in edges.iter().enumerate() {
         faults.check_range(&at.index(index), *edge, -1e3..=1e3, "mm");
         if index > 0 && *edge <= edges[index - 1] {
-            let detail = format!("{edge} mm does not lie above the edge before it");
+            let detail = format!("{edge} mm is not above the edge before it");
             faults.add(&at.index(index), ErrorCode::OutOfRange, detail);
         }
     }

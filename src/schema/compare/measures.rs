@@ -9,22 +9,22 @@ use mechanics::validation::{
     Comparison, Histogram, Histograms, LandmarkError, Statistics, WarpedStatistics,
 };
 
-/// Distances in mm from where points were predicted to the closest points of where a thin-plate spline through the
-/// landmarks takes them.
+/// Distances in mm from predicted points to the closest actual points of their images under a thin-plate spline through
+/// the landmarks.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct WarpedDocument {
     pub landmarks: u64,
     /// Four landmarks give an affine map only.
     pub is_affine: bool,
-    /// Every point counts the same.
+    /// Unweighted.
     pub nodes: StatDocument,
-    /// Every point counts by its area on the prediction.
+    /// Weighted by area on the prediction.
     pub area: StatDocument,
-    /// By area; positive where the prediction is outside.
+    /// By area; positive if the prediction is outside.
     pub signed: StatDocument,
 }
 
-/// A landmark of the prediction, seen from the same one of the aligned actual surface.
+/// A landmark of the prediction relative to that of the aligned actual surface.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct LandmarkErrorDocument {
     pub difference_mm: Triple,
@@ -36,17 +36,17 @@ pub struct LandmarkErrorDocument {
 pub struct HistogramDocument {
     /// Below the first edge.
     pub below: f64,
-    /// From each edge to below the next one.
+    /// From each edge, inclusive, to the next, exclusive.
     pub shares: Vec<f64>,
-    /// From the last edge on.
+    /// At or above the last edge.
     pub above: f64,
 }
 
-/// Of the distances of both directions, without and with their sign.
+/// Of the distances of both directions, unsigned and signed.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct HistogramsDocument {
     pub unsigned: HistogramDocument,
-    /// Positive where the prediction is outside.
+    /// Positive if the prediction is outside.
     pub signed: HistogramDocument,
 }
 

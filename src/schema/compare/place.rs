@@ -1,4 +1,4 @@
-//! Parts of space and of the skin that a comparison is asked for.
+//! Parts of space and of the skin that a comparison measures.
 
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
@@ -21,8 +21,8 @@ pub struct PlaceDocument {
     pub box_mm: Option<CornerPair>,
 }
 
-/// Where a comparison is measured once more: exactly one of a part of space, a part of the predicted skin, and what
-/// the plan moves. Of the actual surface belongs what is nearest to that part of the prediction.
+/// A region with its own measures: exactly one of a part of space, a part of the predicted skin, and the part that
+/// the plan moves. Its actual surface is the part nearest to that of the prediction.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ComparedRegionDocument {
@@ -34,12 +34,12 @@ pub struct ComparedRegionDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub box_mm: Option<CornerPair>,
-    /// A part of the skin by its name in `skin_regions` of the case: `skin.vtp` of a prediction has it as point array
+    /// A part of the skin by its name in `skin_regions` of the case: in `skin.vtp` of a prediction it is the point array
     /// `set_NAME`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub skin_region: Option<String>,
-    /// Where the prediction moved the skin by more than this, in the mean over the corners of a triangle.
+    /// The skin that the prediction moved by more than this, in the mean over the corners of a triangle.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false, minimum = 0.0)]
     pub moved_by_more_than_mm: Option<f64>,
@@ -82,7 +82,7 @@ impl ComparedRegionDocument {
         }
     }
 
-    /// The part of space that it may be.
+    /// Its part of space, if it is one.
     pub fn place(&self) -> PlaceDocument {
         PlaceDocument { sphere_mm: self.sphere_mm, box_mm: self.box_mm }
     }

@@ -1,4 +1,4 @@
-//! The answer of a comparison: distances both ways, aligned and as they were, per region.
+//! The result of a comparison: distances both ways, before and after alignment, per region.
 
 use std::collections::BTreeMap;
 
@@ -37,7 +37,7 @@ pub struct DistanceDocument {
     pub share_below_1_mm: f64,
     pub share_below_2_mm: f64,
     pub share_below_3_mm: f64,
-    /// Positive where the prediction is outside.
+    /// Positive if the prediction is outside.
     pub signed: StatDocument,
 }
 
@@ -49,13 +49,13 @@ pub struct DirectionsDocument {
     pub both: DistanceDocument,
 }
 
-/// A comparison of two surfaces. The prediction stays where it is; an alignment moves the actual surface.
+/// A comparison of two surfaces. An alignment moves the actual surface, not the prediction.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct ComparisonDocument {
     pub to_actual: DistanceDocument,
     pub to_prediction: DistanceDocument,
     pub both: DistanceDocument,
-    /// By the names of `regions`; a region that the actual surface does not reach is left out, with a warning.
+    /// By the names of `regions`; a region that the actual surface does not cover is omitted, with a warning.
     pub regions: BTreeMap<String, DirectionsDocument>,
     pub alignment: AlignmentDocument,
     /// The measures before the alignment.
@@ -63,7 +63,7 @@ pub struct ComparisonDocument {
     #[schema(nullable = false)]
     pub unaligned: Option<DirectionsDocument>,
     pub coverage: CoverageDocument,
-    /// Distances between points of the same number; absent where the surfaces do not correspond.
+    /// Distances between points with the same index; absent if the surfaces do not correspond.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub node_wise: Option<NodeWiseDocument>,
@@ -83,13 +83,13 @@ pub struct ComparisonDocument {
     #[schema(nullable = false)]
     pub histogram: Option<HistogramsDocument>,
     pub samples_per_mm2: f64,
-    /// How the actual surface was taken, as the spec says.
+    /// How the actual surface was taken, from the spec.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub acquisition: Option<AcquisitionDocument>,
 }
 
-/// The rigid movement that took the actual surface onto the prediction.
+/// The rigid movement of the actual surface onto the prediction.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct AlignmentDocument {
     /// `none`, `matrix`, `landmarks`, `icp` or `surfaces`.
@@ -97,42 +97,42 @@ pub struct AlignmentDocument {
     /// Row-major; x' = R x + t in mm.
     pub matrix4x4: Matrix4x4,
     pub rotation_deg: f64,
-    /// Of the middle of the actual surface.
+    /// Of the centre of the actual surface.
     pub displacement_mm: Triple,
     pub iterations: u64,
-    /// Pairs of points that decided.
+    /// Pairs of points used.
     pub pairs: u64,
     /// Root of the mean squared distance of these pairs.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub rms_mm: Option<f64>,
-    /// Of what decided, the share that is left more than 1 mm from its partner, 0 to 1; of `icp` and `surfaces`.
+    /// Share of the points used that remain more than 1 mm from their partners, 0 to 1; of `icp` and `surfaces`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub share_above_1_mm: Option<f64>,
 }
 
-/// How much of each surface has the other opposite, 0 to 1, and distances of that part alone.
+/// The share of each surface that the other covers, 0 to 1, and distances of that part alone.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct CoverageDocument {
     pub of_prediction: f64,
     pub of_actual: f64,
-    /// Absent where all or nothing is covered.
+    /// Absent if all or nothing is covered.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub to_actual: Option<DistanceDocument>,
-    /// Absent where all or nothing is covered.
+    /// Absent if all or nothing is covered.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub to_prediction: Option<DistanceDocument>,
 }
 
-/// Distances in mm between points of the same number.
+/// Distances in mm between points with the same index.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct NodeWiseDocument {
-    /// Every point counts the same.
+    /// Unweighted.
     pub nodes: StatDocument,
-    /// Every point counts by its area on the prediction.
+    /// Weighted by area on the prediction.
     pub area: StatDocument,
 }
 
@@ -206,7 +206,7 @@ impl From<&AlignmentReport> for AlignmentDocument {
 }
 
 impl ComparisonDocument {
-    /// What a comparison says, and how densely it was sampled.
+    /// The result of a comparison, and its sampling density.
     pub fn new(comparison: &Comparison, samples_per_mm2: f64) -> Self {
         let all = DirectionsDocument::from(&comparison.distances);
         let regions = comparison.regions.iter();

@@ -1,4 +1,4 @@
-//! The spec of a conformation: the template with its skin and bone, the patient's, landmarks, and how far nodes may go.
+//! The spec of a conformation: the template with its skin and bone, the patient's, landmarks, and bounds of node movement.
 
 use std::collections::BTreeMap;
 
@@ -22,7 +22,7 @@ pub enum ConformKind {
     Conform,
 }
 
-/// A template mesh brought to a patient: by landmarks, by surfaces, or by both. Surfaces alone claim nothing about single
+/// A template mesh conformed to a patient by landmarks, surfaces, or both. Surfaces alone do not determine single
 /// nodes.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
@@ -38,7 +38,7 @@ pub struct ConformDocument {
     pub landmarks: BTreeMap<String, TemplateLandmarkDocument>,
     #[serde(default)]
     pub start: ConformStartName,
-    /// By which map the template's muscles and uniform fibres come to the patient; those in arrays go with the mesh.
+    /// The map of the template's muscles and uniform fibres to the patient; fibres in arrays move with the mesh.
     #[serde(default, skip_serializing_if = "MuscleMapName::is_default")]
     pub muscles_by: MuscleMapName,
     #[serde(default)]
@@ -47,7 +47,7 @@ pub struct ConformDocument {
     pub tags: Vec<String>,
 }
 
-/// The surfaces of a patient, in one frame; that of the template may be another.
+/// The surfaces of a patient, in one frame, which may differ from that of the template.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PatientDocument {
@@ -55,13 +55,13 @@ pub struct PatientDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub skin: Option<String>,
-    /// All bone that the segments and `fixed` of the template lie on.
+    /// All bone of the segments and of `fixed` of the template.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub bone: Option<String>,
 }
 
-/// The same place of both, in mm.
+/// A point of both, in mm.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TemplateLandmarkDocument {
@@ -69,28 +69,28 @@ pub struct TemplateLandmarkDocument {
     pub patient_mm: Triple,
 }
 
-/// How the template is first brought to the patient.
+/// The initial alignment of the template with the patient.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum ConformStartName {
-    /// Landmarks where there are three or more, principal axes otherwise.
+    /// Three or more landmarks, else principal axes.
     #[default]
     Auto,
     Landmarks,
-    /// Centres, sizes and principal axes of the skins together.
+    /// Centres, sizes and principal axes of the skins aligned.
     Inertia,
-    /// Boxes around the skins together; nothing is turned.
+    /// Bounding boxes of the skins aligned, without rotation.
     Boxes,
 }
 
-/// A map that takes muscles from the template to the patient.
+/// The map of muscles from the template to the patient.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum MuscleMapName {
     /// That of the mesh.
     #[default]
     Conformation,
-    /// The thin-plate spline that meets all landmarks, of which it needs four that lie in no plane (Kim et al. 2012).
+    /// The thin-plate spline through all landmarks, at least four and not coplanar (Kim et al. 2012).
     Landmarks,
 }
 
@@ -113,7 +113,7 @@ impl From<ConformStartName> for Start {
 }
 
 impl ConformDocument {
-    /// Adds what is wrong with it; pointers start at `/spec`.
+    /// Adds its faults; pointers start at `/spec`.
     pub fn check(&self, limits: &Limits, faults: &mut Faults) {
         let at = Pointer::root().key("spec");
         check_tags(&self.tags, &at.key("tags"), limits, faults);

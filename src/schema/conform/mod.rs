@@ -1,4 +1,4 @@
-//! Documents of a conformation: a template mesh brought to a patient.
+//! Documents of a conformation of a template mesh to a patient.
 
 pub mod document;
 pub mod result;

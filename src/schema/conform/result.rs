@@ -1,4 +1,4 @@
-//! The answer of a conformation: how far the template is left from the patient, and what its cells are worth.
+//! The result of a conformation: the remaining distance of the template from the patient, and the validity of its cells.
 
 use std::collections::BTreeMap;
 
@@ -11,33 +11,33 @@ use crate::schema::repair::RepairResultDocument;
 use mechanics::conformation::FibreDifference;
 use mechanics::mesh::quality::QualityReport;
 
-/// A template on a patient, and the case that it is ready for.
+/// A template on a patient, and a case of it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct ConformationDocument {
     /// From the points of the template's skin to the patient's; absent without one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub skin: Option<LeftDocument>,
-    /// The same of bone.
+    /// The same for bone.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub bone: Option<LeftDocument>,
-    /// Points of the template's skin that lie opposite the patient's, 0 to 1; the others follow.
+    /// Share of the points of the template's skin that face the patient's, 0 to 1; the others follow.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub share_with_partner: Option<f64>,
-    /// How far each landmark is left from its place, in mm.
+    /// The remaining distance of each landmark from its target, in mm.
     pub landmarks_mm: BTreeMap<String, f64>,
     pub before_repair: CellsDocument,
     pub after_repair: CellsDocument,
     pub repair: RepairResultDocument,
-    /// Muscles along lines, where the map has taken them.
+    /// Muscles along lines, mapped to the patient.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub muscles: Vec<MappedMuscleDocument>,
     /// A case of the mesh, ready to be stored and predicted on.
     pub case: CaseDocument,
-    /// Of that case as it stands, before any segment moves; absent where only a plan can tell what holds it, or where the case is
-    /// refused, which a warning tells then.
+    /// The check of that case before any segment moves; absent if its constraints depend on a plan, or if the case is
+    /// refused, with a warning.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub check: Option<CheckDocument>,
@@ -51,10 +51,10 @@ pub struct MappedMuscleDocument {
     /// Of all its lines together, on the template and on the patient.
     pub template_length_mm: f64,
     pub length_mm: f64,
-    /// How many times as wide the tissue across the lines has become; `within_mm` of the case has grown by as much.
+    /// Stretch of the tissue across the lines; `within_mm` of the case is scaled by it.
     pub widening: f64,
-    /// How far the other map, by landmarks or the conformation, would have taken the lines from where they are; absent where
-    /// landmarks give none.
+    /// Distance of the lines from those of the other map, by landmarks or the conformation; absent if
+    /// landmarks define none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub beside_other_map: Option<MapDifferenceDocument>,
@@ -69,7 +69,7 @@ pub struct MapDifferenceDocument {
     pub max_mm: f64,
 }
 
-/// Distances that are left, in mm.
+/// Remaining distances, in mm.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct LeftDocument {
     pub points: u64,
@@ -79,13 +79,13 @@ pub struct LeftDocument {
     pub max_mm: f64,
 }
 
-/// Cells by the proof of their Jacobian.
+/// Cells by the proven sign of their Jacobian.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct CellsDocument {
     pub cells: u64,
-    /// A point with a Jacobian of zero or less is known.
+    /// A point with a Jacobian of zero or less was found.
     pub inverted: u64,
-    /// Too close to zero to know the sign.
+    /// Too close to zero for a proof of the sign.
     pub undecided: u64,
     pub smallest_scaled_jacobian: f64,
 }

@@ -16,7 +16,7 @@ use crate::schema::case::selection::SelectionDocument;
 use crate::schema::wire::fault::{Faults, Pointer};
 use crate::schema::wire::limits::Limits;
 
-/// A volume mesh, which of its nodes lie on what, and what of a case goes with it to the patient.
+/// A volume mesh, its node sets, and members of a case that are mapped to the patient.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TemplateDocument {
@@ -24,27 +24,27 @@ pub struct TemplateDocument {
     pub mesh: String,
     /// The node set of the skin.
     pub skin: String,
-    /// By the names of segments: the node sets that lie on them.
+    /// By the names of segments: their node sets.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub segments: BTreeMap<String, String>,
-    /// The node set on bone that stays.
+    /// The node set on fixed bone.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub fixed: Option<String>,
-    /// Node sets that stay and lie on no bone, such as where the mesh is cut off.
+    /// Fixed node sets not on bone, such as at a cut of the mesh.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub held: Vec<String>,
-    /// Node sets that slide along what is behind them.
+    /// Node sets that slide along a wall.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub sliding: Vec<TemplateSlidingDocument>,
     /// By name: the node sets of parts of the skin.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub skin_regions: BTreeMap<String, String>,
-    /// As in a case; the array goes with the mesh.
+    /// As in a case; the array moves with the mesh.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub regions: Option<RegionsDocument>,
-    /// As in a case. Fibres in a `direction` become an array of the patient's mesh, turned with the tissue.
+    /// As in a case. Fibres in a `direction` become an array of the patient's mesh, rotated with the tissue.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false, value_type = Option<BTreeMap<String, MaterialDocument>>)]
     pub materials: Option<MaterialDocuments>,
@@ -57,13 +57,13 @@ pub struct TemplateDocument {
     pub muscle_mixing: Option<MuscleMixingDocument>,
 }
 
-/// Nodes of a template that slide.
+/// Sliding nodes of a template.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TemplateSlidingDocument {
     /// The node set.
     pub nodes: String,
-    /// The segment that carries the wall. Absent: the wall stays.
+    /// The segment that moves the wall. Absent: the wall stays.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub segment: Option<String>,
@@ -108,7 +108,7 @@ impl TemplateDocument {
         sets
     }
 
-    /// Whether more than its node sets has to be right for a case of it.
+    /// Whether a case of it needs checks of more than its node sets.
     pub fn has_tissue(&self) -> bool {
         self.regions.is_some()
             || self.materials.is_some()

@@ -1,4 +1,4 @@
-//! Cuts through the bone that was found: their paths, for navigation, and how clear they keep of what must not be sawn.
+//! Cuts through the segmented bone: their paths, for navigation, and their clearance from structures at risk.
 
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
@@ -9,26 +9,26 @@ use crate::schema::Triple;
 pub struct CutPathDocument {
     pub cut: String,
     pub segment: String,
-    /// From below to above the cut, of length 1.
+    /// Unit normal, from below to above the cut.
     pub normal: Triple,
-    /// Of bone that is sawn.
+    /// Area of sawn bone.
     pub area_mm2: f64,
     /// Outlines of the bone on the plane of the cut, each in its order and closed; of holes in the bone too.
     pub paths_mm: Vec<Vec<Triple>>,
-    /// From each of the structures that were named.
+    /// From each structure at risk.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub clearances: Vec<ClearanceDocument>,
 }
 
-/// How far the saw is from a structure.
+/// The clearance of the saw from a structure.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct ClearanceDocument {
     /// Its name.
     pub risk: String,
-    /// From the saw to the structure with its radius; negative where the saw enters it.
+    /// From the saw to the structure with its radius; negative if the saw enters it.
     pub distance_mm: f64,
-    /// What was asked for.
+    /// The required clearance.
     pub clearance_mm: f64,
-    /// The place of its line that is nearest.
+    /// The nearest point of its line.
     pub at_mm: Triple,
 }

@@ -37,8 +37,8 @@ pub enum MeshingKind {
     Mesh,
 }
 
-/// A volume mesh of the soft tissue in a CT or between surfaces, with a node set for each bone segment that an operation
-/// cuts loose: exactly one of `scan`, `labels` and `surfaces`.
+/// A volume mesh of the soft tissue in a CT or between surfaces, with a node set for each bone segment of an
+/// osteotomy: exactly one of `scan`, `labels` and `surfaces`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MeshingDocument {
@@ -49,7 +49,7 @@ pub struct MeshingDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub scan: Option<String>,
-    /// Beside a scan: a surface scan of the face, which takes the place of the skin of the CT.
+    /// Beside a scan: a surface scan of the face, which replaces the skin of the CT.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub skin_scan: Option<Box<SkinScanDocument>>,
@@ -63,31 +63,31 @@ pub struct MeshingDocument {
     /// Of a scan.
     #[serde(default)]
     pub thresholds_hu: ThresholdsReference,
-    /// Of a scan. Absent: bone is what lies above its threshold, and nothing else.
+    /// Of a scan. Absent: bone is exactly the voxels above its threshold.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub whole_bone: Option<WholeBoneDocument>,
-    /// Absent: no bone is cut, and all of it is fixed that is no segment already.
+    /// Absent: no bone is cut, and all bone that is no segment is fixed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub osteotomy: Option<OsteotomyDocument>,
-    /// The frame of the osteotomy, and of surfaces whose files name none. Default: LPS where the scan or the surfaces say
-    /// how they lie, whichever way they are stored; else the axes of the file.
+    /// The frame of the osteotomy, and of surfaces without a frame mark. Default: LPS if the scan or the surfaces state
+    /// their orientation, in whichever frame they are stored; else the axes of the file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub frame: Option<FrameName>,
     #[serde(default)]
     pub size: MeshSizeDocument,
-    /// Landmarks of the skin that are known. Absent: they are looked for on its profile.
+    /// Known landmarks of the skin. Absent: they are detected on its profile.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub landmarks: Option<SkinLandmarksDocument>,
-    /// Absent: all of the head that the scan shows.
+    /// Absent: the whole field of view of the scan.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub region: Option<RegionDocument>,
-    /// Whether nodes may share a place, where tissue touches itself at a point or along an edge. Gmsh and TetGen read a mesh
-    /// only where none do; the surfaces are then apart by a little.
+    /// Whether nodes may coincide, where tissue touches itself at a point or along an edge. Gmsh and TetGen read a mesh
+    /// only if none do; the surfaces are then slightly apart.
     #[serde(default = "yes")]
     #[schema(default = true)]
     pub coincident_nodes: bool,
@@ -95,7 +95,7 @@ pub struct MeshingDocument {
     #[serde(default = "yes")]
     #[schema(default = true)]
     pub scan_ends_fixed: bool,
-    /// Whether tissue slides on the teeth of segments and their mucosa. Where it does not, it is joined to them.
+    /// Whether tissue slides on the teeth of segments and their mucosa. Otherwise it is joined to them.
     #[serde(default = "yes")]
     #[schema(default = true)]
     pub teeth_slide: bool,
@@ -133,17 +133,17 @@ impl Default for MeshingDocument {
     }
 }
 
-/// The part of the head that is meshed. Tissue beyond it is left out, and what remains ends there as where the scan ends.
+/// The part of the head that is meshed. Tissue beyond it is omitted; its boundary there is treated as the end of the scan.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RegionDocument {
-    /// All tissue this near to segments of the osteotomy, in mm, and little beyond.
+    /// All tissue within this distance of segments of the osteotomy, in mm, and little beyond.
     #[schema(minimum = 10.0, maximum = 300.0)]
     pub around_segments_mm: f64,
 }
 
 impl MeshingDocument {
-    /// Every mesh that it names, with its place in the document that stands at a place.
+    /// Every mesh that it names, with its place below that of the document.
     pub fn mesh_references_mut(&mut self, root: &Pointer) -> Vec<(Pointer, &mut String)> {
         let scan = self.scan.iter_mut().map(|scan| (root.key("scan"), scan));
         let at = root.key("skin_scan").key("mesh");
@@ -162,7 +162,7 @@ impl MeshingDocument {
         self.mesh_references_mut(&Pointer::root()).into_iter().map(|(_, id)| id.clone()).collect()
     }
 
-    /// The rules of the path for a scan, or for surfaces without an image, in that frame; pointers start at `/spec`.
+    /// The settings of the numerics for a scan, or for surfaces without an image, in that frame; pointers start at `/spec`.
     pub fn to_rules(
         &self,
         (image, scan): (Option<&ImageVolume>, Frame),
@@ -214,7 +214,7 @@ impl MeshingDocument {
         }
     }
 
-    /// Whether x and y change sign between the document and what is meshed.
+    /// Whether x and y change sign between the document and the meshed body.
     fn is_mirrored(&self, scan: Frame) -> bool {
         self.frame.is_some_and(|frame| Frame::from(frame) != scan)
     }
@@ -224,7 +224,7 @@ impl MeshingDocument {
         let at = at.key("skin_scan");
         skin.check(&at, limits, faults);
         if self.scan.is_none() {
-            let detail = "a surface scan takes the place of the skin of a CT, and there is no `scan`; between surfaces it is `surfaces.skin` itself";
+            let detail = "a surface scan replaces the skin of a CT, and there is no `scan`; between surfaces it is `surfaces.skin` itself";
             faults.add(&at, ErrorCode::NoScan, detail);
         }
     }
@@ -249,12 +249,12 @@ impl MeshingDocument {
         labels.check(&at.key("labels"), limits, faults);
         self.check_without_scan(at, "a label map has no values that thresholds part", faults);
         if self.osteotomy.is_some() && !labels.segments().is_empty() {
-            let detail = "bone of `labels` that has a name is a segment already: leave the names out to have it cut";
+            let detail = "bone of `labels` that has a name is a segment already: omit the names to have it cut";
             faults.add(&at.key("osteotomy"), ErrorCode::OneOf, detail);
         }
     }
 
-    /// Refuses what only a scan has.
+    /// Refuses members that only a scan has.
     fn check_without_scan(&self, at: &Pointer, detail: &str, faults: &mut Faults) {
         if self.thresholds_hu != ThresholdsReference::default() {
             faults.add(&at.key("thresholds_hu"), ErrorCode::NoScan, detail);
@@ -264,7 +264,7 @@ impl MeshingDocument {
             faults.add(&at.key("whole_bone"), ErrorCode::NoScan, detail);
         }
         if self.region.is_some() {
-            let detail = "only what a scan shows is meshed in part";
+            let detail = "only a scan is meshed in part";
             faults.add(&at.key("region"), ErrorCode::NoScan, detail);
         }
     }
@@ -303,7 +303,7 @@ impl MeshingDocument {
         plan.take_osteotomy(at, scan, limits, faults)
     }
 
-    /// What decides the mesh, for the hash: no tags, no budget.
+    /// Everything that determines the mesh, for the hash: no tags, no budget.
     pub fn content(&self) -> Value {
         let mut plain = self.clone();
         plain.tags.clear();

@@ -1,4 +1,4 @@
-//! Label map to be meshed, with the meaning of its labels.
+//! Label map to be meshed, with the meanings of its labels.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -13,47 +13,47 @@ use mechanics::domain::{LabelBody, LabelClass};
 use mechanics::image::labels::Region;
 use mechanics::image::{ImageVolume, LabelMap};
 
-/// The region of tissue that has no name of its own.
+/// The region of unnamed tissue.
 const TISSUE: &str = "tissue";
-/// The label for all that are not listed.
+/// The label that stands for all unlisted ones.
 const REST: &str = "*";
-/// Labels that a message names at most.
+/// The most labels named in a message.
 const MOST_TOLD: usize = 20;
-/// Regions of tissue, at most.
+/// The most regions of tissue.
 const MOST_REGIONS: usize = 255;
 
-/// A label map, as segmentation programs write them, and what each of its labels is. 0 is air unless it is listed.
+/// A label map, as written by segmentation programs, with the meanings of its labels. 0 is air unless it is listed.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LabelsDocument {
     /// The label map: the id of an uploaded image of whole numbers from 0 to 65535.
     pub image: String,
-    /// What its labels are. All labels that have voxels are listed.
+    /// The meanings of its labels. All labels with voxels have to be listed.
     pub classes: Vec<LabelClassDocument>,
 }
 
-/// What a label is.
+/// The meaning of a label.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LabelClassDocument {
-    /// The name that the file has for it, or its number, or `*` for all that are not listed.
+    /// Its name in the file, or its number, or `*` for all unlisted ones.
     pub label: String,
     pub is: SubstanceName,
-    /// Of tissue the region, `tissue` by default: several labels may be one region. Of bone and teeth the segment that they
-    /// are of; without a name they stay.
+    /// Of tissue the region, `tissue` by default: several labels may be one region. Of bone and teeth their segment;
+    /// without a name they are fixed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub name: Option<String>,
 }
 
-/// What is where a label is.
+/// The substance of a label.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum SubstanceName {
     Air,
     Tissue,
     Bone,
-    /// Bone that tissue slides on, where it is of a segment.
+    /// Bone that tissue slides on, if it belongs to a segment.
     Teeth,
 }
 
@@ -90,7 +90,7 @@ impl LabelsDocument {
         distinct_in_order(self.classes.iter().filter_map(LabelClassDocument::segment))
     }
 
-    /// What needs no image.
+    /// Checks that need no image.
     pub(super) fn check(&self, at: &Pointer, limits: &Limits, faults: &mut Faults) {
         let classes = at.key("classes");
         faults.check_length(&classes, self.classes.len(), limits.map_entries as usize);
@@ -99,7 +99,7 @@ impl LabelsDocument {
             if let Some(name) = class.name() {
                 faults.check_name(&at.key("name"), name, limits.name_characters as usize);
                 if class.is == SubstanceName::Air {
-                    let detail = "air has no region and no segment to be named";
+                    let detail = "air has no region and no segment, and takes no name";
                     faults.add(&at.key("name"), ErrorCode::UnknownSegment, detail);
                 }
             }
@@ -111,13 +111,13 @@ impl LabelsDocument {
         }
         let regions = self.regions().len();
         if regions == 0 {
-            let detail = "no label is tissue, of which a mesh is made";
+            let detail = "no label is tissue, so that there is nothing to mesh";
             faults.add(&classes, ErrorCode::MissingField, detail);
         }
         faults.check_length(&classes, regions, MOST_REGIONS);
     }
 
-    /// The body of a label map. What is wrong is added to `faults`.
+    /// The body of a label map. Errors are added to `faults`.
     pub fn to_body(
         &self,
         image: &Arc<ImageVolume>,
@@ -127,7 +127,7 @@ impl LabelsDocument {
         let map = match LabelMap::of(image) {
             Ok(map) => map,
             Err(error) => {
-                let detail = format!("this image is no label map: {error}");
+                let detail = format!("this image is not a label map: {error}");
                 faults.add(&at.key("image"), ErrorCode::WrongMesh, detail);
                 return None;
             }
@@ -158,7 +158,7 @@ impl LabelsDocument {
             there.into_iter().filter(|region| !table.contains_key(&region.label)).collect();
         if rest.is_none() && !unlisted.is_empty() {
             let detail = format!(
-                "it is not said what these labels are: {}; list them, or `*` for all others",
+                "these labels have no meaning: {}; list them, or `*` for all others",
                 told(&unlisted)
             );
             faults.add(&classes, ErrorCode::UnknownLabel, detail);
@@ -189,7 +189,7 @@ impl LabelsDocument {
     }
 }
 
-/// The label of a name or a number that the file names or that has voxels.
+/// The label of a name or a number that is in the file or has voxels.
 fn known(text: &str, map: &LabelMap, there: &[Region]) -> Option<u16> {
     let number = text.parse::<u16>().ok();
     let number = number.filter(|number| *number == 0 || there.iter().any(|r| r.label == *number));

@@ -1,4 +1,4 @@
-//! Landmarks of the skin that are known before a head is meshed.
+//! Landmarks of the skin that are given before a head is meshed.
 
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
@@ -9,13 +9,13 @@ use crate::schema::wire::fault::{Faults, Pointer};
 use mechanics::anatomy::GivenLandmarks;
 use mechanics::mesh::{Frame, Vector};
 
-/// No head is farther from the origin of its scan.
+/// The largest distance of a head from the origin of its scan.
 const FARTHEST_MM: f64 = 1e5;
-/// Landmarks of a mid-plane lie no farther from it, in mm.
+/// The largest distance of mid-plane landmarks from it, in mm.
 const ASIDE_MM: f64 = 10.0;
 
-/// Landmarks of the skin on its mid-plane, in mm, in the `frame` of the document, from below: they bound the parts of the skin,
-/// which `skin_regions` of the case names, and cells about lips and nose are as fine as around segments.
+/// Landmarks of the skin on its mid-plane, in mm, in the `frame` of the document, upwards: they bound the parts of the skin,
+/// `skin_regions` of the case, and cells around lips and nose are as fine as around segments.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SkinLandmarksDocument {
@@ -25,14 +25,14 @@ pub struct SkinLandmarksDocument {
     pub sublabiale: Triple,
     /// Where the upper lip meets the nose.
     pub subnasale: Triple,
-    /// The tip of the nose. Absent, as under a bandage: there is no part `nose`, and cheeks end at the subnasale.
+    /// The tip of the nose. If absent, as under a bandage, there is no part `nose`, and cheeks end at the subnasale.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub pronasale: Option<Triple>,
 }
 
 impl SkinLandmarksDocument {
-    /// The landmarks in the frame of what is meshed; what is wrong is added to `faults`.
+    /// The landmarks in the frame of the meshed body; errors are added to `faults`.
     pub(super) fn to_given(
         self,
         at: &Pointer,
@@ -41,7 +41,7 @@ impl SkinLandmarksDocument {
         faults: &mut Faults,
     ) -> Option<GivenLandmarks> {
         if frame == Frame::Unspecified {
-            let detail = "the input states no frame, so that up and front are not known";
+            let detail = "the input states no frame, so that superior and anterior are not known";
             faults.add(at, ErrorCode::FrameConflict, detail);
             return None;
         }
@@ -63,7 +63,7 @@ impl SkinLandmarksDocument {
                     format!("`{name}` is not above `{lower}`: {z} mm is not above {height} mm")
                 }
                 _ if (x - middle).abs() > ASIDE_MM => format!(
-                    "landmarks lie on the mid-plane of the face: {x} mm is more than {ASIDE_MM} mm from their middle at {middle:.1} mm"
+                    "landmarks have to be on the mid-plane of the face: {x} mm is over {ASIDE_MM} mm from their mean at {middle:.1} mm"
                 ),
                 _ => {
                     below = Some((*name, *z));

@@ -15,7 +15,7 @@ use mechanics::anatomy::Anatomy;
 use mechanics::meshing::{Angles, Gap};
 use mechanics::osteotomy::labelling::FoundSegment;
 
-/// A mesh made from a scan, and the case that it is made for.
+/// A mesh made from a scan, and a case of it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct MeshingResultDocument {
     pub nodes: u64,
@@ -25,30 +25,30 @@ pub struct MeshingResultDocument {
     pub finest_mm: f64,
     pub dihedral_angles_deg: AnglesDocument,
     pub segments: Vec<FoundSegmentDocument>,
-    /// Of a scan: the values that part air, tissue and bone in it.
+    /// Of a scan: the thresholds between air, tissue and bone.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub thresholds_hu: Option<HounsfieldThresholdsDocument>,
     /// Cuts through their bone, for navigation.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub cuts: Vec<CutPathDocument>,
-    /// Where the surface scan went that is the skin, and how well it fits that of the CT.
+    /// The registration of the surface scan that is the skin, and its fit to that of the CT.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub skin_scan: Option<FittedScanDocument>,
-    /// How many nodes each node set has.
+    /// The number of nodes in each node set.
     pub node_sets: BTreeMap<String, u64>,
-    /// Nodes on bone that are free because others near them move otherwise.
+    /// Nodes on bone that are free because neighbours move differently.
     pub free_beside_cuts: u64,
-    /// Gaps thinner than a cell that are filled with tissue now, such as closed lips; the largest first.
+    /// Gaps thinner than a cell that were filled with tissue, such as closed lips; the largest first.
     pub gaps_closed: Vec<GapDocument>,
     /// Tissue thinner than a cell that the mesh lacks; the largest first.
     pub sheets_lost: Vec<GapDocument>,
-    /// Tissue that hangs together with nothing else and was left out.
+    /// Disconnected tissue that was omitted.
     pub dropped_ml: f64,
     /// A case of the mesh, ready to be stored and predicted on.
     pub case: CaseDocument,
-    /// What holds its nodes before any segment moves, where a stored case waits for the mesh.
+    /// Its boundary conditions before any segment moves, if a stored case waits for the mesh.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub check: Option<CheckDocument>,
@@ -58,30 +58,30 @@ pub struct MeshingResultDocument {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct AnglesDocument {
     pub smallest: f64,
-    /// A thousandth of all angles is smaller.
+    /// The 0.1 % quantile.
     pub thousandth: f64,
-    /// A hundredth is smaller.
+    /// The 1 % quantile.
     pub hundredth: f64,
     pub largest: f64,
 }
 
-/// A segment that was found in the bone of the scan.
+/// A segment found in the bone of the scan.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct FoundSegmentDocument {
     pub name: String,
     pub volume_ml: f64,
     pub centre_mm: Triple,
-    /// Bone on its sides of the cuts that does not hang together with it.
+    /// Bone on its sides of the cuts that is not connected with it.
     pub left_ml: f64,
 }
 
-/// Where the mesh differs from the scan because cells are too large there.
+/// A difference of the mesh from the scan because cells are too large there.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct GapDocument {
     pub centre_mm: Triple,
     /// Along x, y and z.
     pub extent_mm: Triple,
-    /// Edges of the lattice that met it.
+    /// Edges of the lattice that cross it.
     pub edges: u64,
 }
 

@@ -10,34 +10,34 @@ use crate::schema::{CornerPair, Sphere};
 use mechanics::mesh::Vector;
 use mechanics::meshing::{MeshingSettings, RegionShape, SizeField, SizeRegion};
 
-/// How fine the mesh is: about so many tetrahedra, or cells of a length; fine around segments, coarse far from them.
+/// Size of the mesh: an approximate number of tetrahedra, or a cell length; fine around segments, coarse far from them.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MeshSizeDocument {
-    /// Default: 300000, where no length is given.
+    /// Default: 300000, if no length is given.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false, minimum = 1000, maximum = 4000000)]
     pub tetrahedra: Option<u64>,
-    /// The edge of the finest cubes of the lattice, in mm; each holds twelve tetrahedra.
+    /// The edge of the finest cubes of the lattice, in mm; each has twelve tetrahedra.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false, minimum = 0.5, maximum = 50.0)]
     pub finest_mm: Option<f64>,
-    /// How many times as large cells may be far from segments.
+    /// The largest ratio of cell sizes, far from segments to near them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false, minimum = 1.0, maximum = 16.0)]
     pub coarsening: Option<f64>,
-    /// Where cells are as fine as around segments, in the `frame` of the document.
+    /// Places with cells as fine as around segments, in the `frame` of the document.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub fine: Vec<PlaceDocument>,
 }
 
-/// Where nothing else is said.
+/// The default.
 const USUAL_TETRAHEDRA: u64 = 300_000;
 /// Uniform at first: the estimate of the size of a mesh is best there.
 const USUAL_COARSENING: f64 = 4.0;
 
 impl MeshSizeDocument {
-    /// `mirrored`: x and y change sign between the document and what is meshed.
+    /// `mirrored`: x and y change sign between the document and the meshed body.
     pub(super) fn to_settings(
         &self,
         at: &Pointer,
@@ -78,7 +78,7 @@ impl MeshSizeDocument {
     }
 }
 
-/// The part of space that a place is.
+/// The part of space of a place.
 fn shape(place: &PlaceDocument, mirrored: bool) -> Option<RegionShape> {
     let sign = if mirrored { -1.0 } else { 1.0 };
     let turned = |x: f64, y: f64, z: f64| Vector::new(sign * x, sign * y, z);

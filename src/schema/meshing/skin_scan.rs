@@ -18,28 +18,28 @@ use mechanics::registration::RigidTransform;
 
 const MM2_IN_CM2: f64 = 100.0;
 
-/// A surface scan that takes the place of the skin that the CT shows, where it covers this; it is registered rigidly first, by
+/// A surface scan that replaces the skin of the CT where it covers it; it is registered rigidly first, by
 /// iterative closest point.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SkinScanDocument {
     /// The id of an uploaded surface, open or closed, whose triangles face outwards.
     pub mesh: String,
-    /// At least three places that the scan and the CT have, where they do not lie near each other already.
+    /// At least three corresponding points of scan and CT, if the two are not near each other already.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub landmarks: BTreeMap<String, ScanLandmarkDocument>,
-    /// Only the skin of the CT in it decides where the scan goes, such as the face above a mouth that is open in the CT.
+    /// Restricts the registration to this part of the skin of the CT, such as the face above a mouth that is open in the CT.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub mask: Option<PlaceDocument>,
-    /// A segment of the osteotomy that is moved before anything is meshed: a jaw that was open in the CT and closed before the
-    /// camera. Plans move it from there.
+    /// A segment of the osteotomy that is moved before meshing: a jaw that was open in the CT and closed for the
+    /// camera. Plans start from there.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub jaw: Option<ClosedJawDocument>,
 }
 
-/// How a jaw is closed.
+/// The movement that closes a jaw.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ClosedJawDocument {
@@ -48,7 +48,7 @@ pub struct ClosedJawDocument {
     pub movement: MovementDocument,
 }
 
-/// The same place on the scan, as its file has it, and in the CT.
+/// A pair of corresponding points, of the scan as in its file, and of the CT.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ScanLandmarkDocument {
@@ -56,10 +56,10 @@ pub struct ScanLandmarkDocument {
     pub ct_mm: Triple,
 }
 
-/// Where a surface scan went, and what was left between it and the skin of the CT.
+/// The registration of a surface scan, and the remaining distance to the skin of the CT.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct FittedScanDocument {
-    /// Of the scan into the CT, both in LPS where their frames are known.
+    /// Of the scan into the CT, both in LPS if their frames are known.
     pub matrix4x4: Matrix4x4,
     pub iterations: u64,
     /// Distances from the scan to the skin of the CT, in its field of view and in the mask, by area.
@@ -68,7 +68,7 @@ pub struct FittedScanDocument {
     pub p95_mm: f64,
     /// The share of outliers, 0 to 1.
     pub share_above_3_mm: f64,
-    /// What was compared, and all of the scan.
+    /// The compared area, and that of the whole scan.
     pub compared_cm2: f64,
     pub area_cm2: f64,
 }
@@ -106,7 +106,7 @@ impl ClosedJawDocument {
         let name = self.segment.trim();
         let segment = osteotomy.segments().iter().position(|segment| segment.name == name);
         if segment.is_none() {
-            let detail = format!("no segment of the osteotomy is called {name:?}");
+            let detail = format!("the osteotomy has no segment {name:?}");
             faults.add(&at.key("segment"), ErrorCode::UnknownSegment, detail);
         }
         let movement = RigidTransform::from_matrix4(&movement.matrix4());

@@ -1,4 +1,4 @@
-//! Surfaces between which tissue is meshed: a skin, and bone in one or in segments.
+//! Surfaces between which tissue is meshed: a skin, and bone as one surface or in segments.
 
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
@@ -7,17 +7,17 @@ use crate::schema::case::document::BoneDocument;
 use crate::schema::wire::fault::{Faults, Pointer};
 use crate::schema::wire::limits::Limits;
 
-/// A skin and bone, as damaged as surfaces of scans are: exactly one of `bone` and `bones`.
+/// A skin and bone, with the defects of surfaces from scans: exactly one of `bone` and `bones`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SurfacesDocument {
-    /// The skin: the id of an uploaded surface. Its flat ends are where the scan ended.
+    /// The skin: the id of an uploaded surface. Its flat ends are the ends of the scan.
     pub skin: String,
     /// All bone: the id of one surface, which the osteotomy cuts.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub bone: Option<String>,
-    /// A closed surface for each segment: bone that is cut already.
+    /// A closed surface for each segment of bone that is cut already.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub bones: Vec<BoneDocument>,
 }

@@ -10,7 +10,7 @@ use crate::schema::wire::text_or_object::TextOrObject;
 use mechanics::domain::ImageOptions;
 use mechanics::image::{Histogram, ImageVolume, Thresholds};
 
-/// Values between which a scan shows soft tissue: numbers, or `auto` for those of its histogram.
+/// Thresholds of soft tissue in a scan: numbers, or `auto` for those of its histogram.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, ToSchema)]
 #[serde(untagged)]
 pub enum ThresholdsReference {
@@ -25,15 +25,15 @@ pub enum HistogramName {
     Auto,
 }
 
-/// Values between which a scan shows soft tissue, in Hounsfield units.
+/// Thresholds of soft tissue in a scan, in Hounsfield units.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct HounsfieldThresholdsDocument {
-    /// Below this there is air.
+    /// Air below.
     #[serde(default = "default_skin_hu")]
     #[schema(default = -300.0)]
     pub skin: f64,
-    /// From this on there is bone.
+    /// Bone at and above.
     #[serde(default = "default_bone_hu")]
     #[schema(default = 250.0)]
     pub bone: f64,
@@ -71,7 +71,7 @@ impl<'de> Deserialize<'de> for ThresholdsReference {
 }
 
 impl ThresholdsReference {
-    /// The values as stated, or those of the histogram of `scan`, which has to show air and soft tissue.
+    /// The thresholds as stated, or those of the histogram of `scan`, which has to contain air and soft tissue.
     pub fn to_values(
         self,
         scan: Option<&ImageVolume>,
@@ -96,7 +96,7 @@ impl ThresholdsReference {
         if values.skin >= values.bone {
             let HounsfieldThresholdsDocument { skin, bone } = values;
             let detail =
-                format!("tissue lies between {skin} HU and {bone} HU, which has to be larger");
+                format!("tissue is between {skin} HU and {bone} HU, which has to be larger");
             faults.add(at, ErrorCode::OutOfRange, detail);
         }
         values

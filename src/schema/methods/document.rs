@@ -6,16 +6,16 @@ use utoipa::ToSchema;
 use super::name::{ElementName, MethodName};
 use mechanics::prediction::MethodKind;
 
-/// A model that a spec may ask for.
+/// A model that a spec may name.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct MethodDocument {
     pub name: MethodName,
     pub title: String,
-    /// What it takes for granted, and what it cannot represent.
+    /// Its assumptions and limits.
     pub assumptions: Vec<String>,
-    /// The elements it knows; none where it has no elements.
+    /// Its elements; none if it has no elements.
     pub elements: Vec<ElementName>,
-    /// The cell shapes it takes.
+    /// Supported cell shapes.
     pub cells: Vec<String>,
     /// The fields of case, plan and spec that it reads.
     pub reads: Vec<String>,

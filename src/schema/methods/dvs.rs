@@ -10,7 +10,7 @@ use crate::schema::wire::fault::{Faults, Pointer};
 use mechanics::model::spline::stepping::{Clock, Damping, Scheme};
 use mechanics::model::spline::{Bone, ControlPoints, Stiffness, VolumeSpline};
 
-/// The most steps between rest and `duration_s`.
+/// The most steps within `duration_s`.
 const MOST_STEPS: f64 = 1e6;
 
 /// Along one axis.
@@ -20,41 +20,41 @@ const MOST_CONTROL_POINTS: f64 = 200.0;
 const LINK_STIFFNESS: f64 = 80.0;
 const LINK_DAMPING: f64 = 1.0;
 
-/// What holds control points together.
+/// The coupling of control points.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum DvsStiffness {
     /// The elasticity of the tissue, from the materials of its regions.
     #[default]
     Galerkin,
-    /// Equal links between neighbouring control points; materials are ignored but for density, and rotation
+    /// Equal links between neighbouring control points; materials are ignored except density, and rotation
     /// is resisted.
     Lattice,
 }
 
-/// How bone moves the spline.
+/// The coupling of bone and spline.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum DvsBone {
-    /// Springs draw held nodes to where they have to be.
+    /// Springs pull constrained nodes to their prescribed positions.
     #[default]
     Springs,
-    /// The control points nearest to held nodes are bone and move with these, by K_ff C_f = -K_fb C_b; `static` only.
+    /// The control points nearest to constrained nodes are bone and move with these, by K_ff C_f = -K_fb C_b; `static` only.
     ControlPoints,
 }
 
-/// How rest is found.
+/// How equilibrium is found.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum DvsStepping {
-    /// At once, without time.
+    /// Directly, without time steps.
     #[default]
     Static,
-    /// First order, damps every mode.
+    /// First order, with damping of all modes.
     BackwardEuler,
     /// Second order, beta 1/4, gamma 1/2.
     Newmark,
-    /// Symplectic Euler with lumped masses; refused above its limit.
+    /// Symplectic Euler with lumped masses; refused above its stability limit.
     Explicit,
 }
 
@@ -68,8 +68,8 @@ pub struct DvsDocument {
     #[serde(default = "cubic")]
     #[schema(default = 3, minimum = 2, maximum = 3)]
     pub degree: u32,
-    /// Distance of control points along the principal axes of the tissue. Default: the finest of at least 1.5
-    /// mean edges of the mesh that leaves at most 4000 control points.
+    /// Spacing of control points along the principal axes of the tissue. Default: the finest of at least 1.5
+    /// mean edges of the mesh with at most 4000 control points.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false, minimum = 0.1, maximum = 1000.0)]
     pub control_spacing_mm: Option<f64>,
@@ -77,25 +77,25 @@ pub struct DvsDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false, min_items = 3, max_items = 3)]
     pub degrees: Option<[u32; 3]>,
-    /// How many control points there are along each principal axis of the tissue, the longest first, in place of
+    /// The number of control points along each principal axis of the tissue, the longest first, in place of
     /// `control_spacing_mm`: more than its degree, and 200 at most.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false, min_items = 3, max_items = 3)]
     pub control_points: Option<[u32; 3]>,
     #[serde(default)]
     pub bone: DvsBone,
-    /// Penalty stiffness of fixed and moved nodes, over that of the tissue around a control point. A large one brings
-    /// held nodes nearer to where they have to be, and leaves less freedom beside them.
+    /// Penalty stiffness of fixed and moved nodes, relative to the tissue around a control point. A large one brings
+    /// constrained nodes nearer to their prescribed positions, with less freedom beside them.
     #[serde(default = "default_hold")]
     #[schema(default = 5.0, minimum = 1.0, maximum = 1e6)]
     pub hold_weight: f64,
     #[serde(default)]
     pub stepping: DvsStepping,
-    /// Of time. Default 0.01; only where `stepping` is not `static`.
+    /// Time step. Default 0.01; only if `stepping` is not `static`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false, minimum = 1e-9, maximum = 10.0)]
     pub step_s: Option<f64>,
-    /// When the tissue has to be at rest. Default 10; only where `stepping` is not `static`.
+    /// Time at which the tissue has to be in equilibrium. Default 10; only if `stepping` is not `static`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false, minimum = 1e-6, maximum = 1000.0)]
     pub duration_s: Option<f64>,
@@ -147,7 +147,7 @@ impl Default for DvsDocument {
 }
 
 impl DvsDocument {
-    /// The method of the path.
+    /// The method of the numerics.
     pub fn to_method(self, at: &Pointer, faults: &mut Faults) -> VolumeSpline {
         self.check(at, faults);
         let stiffness = match self.stiffness {
@@ -201,7 +201,7 @@ impl DvsDocument {
             }
         }
         if self.bone == DvsBone::ControlPoints && self.stepping != DvsStepping::Static {
-            let detail = "control points of bone are there where rest is found at once: `stepping` is `static`";
+            let detail = "control points of bone need `stepping` `static`";
             faults.add(&at.key("bone"), ErrorCode::MethodMismatch, detail);
         }
     }
@@ -274,7 +274,7 @@ impl DvsDocument {
             let Some(value) = value else { continue };
             faults.check_range(&at.key(name), value, range, unit);
             if !has_use {
-                let detail = format!("`{name}` is for {user}, which this spec does not ask for");
+                let detail = format!("`{name}` is for {user}, which this spec does not have");
                 faults.add(&at.key(name), ErrorCode::MethodMismatch, detail);
             }
         }
@@ -284,20 +284,20 @@ impl DvsDocument {
 const LATTICE: &str = "`stiffness` `lattice`";
 const GALERKIN: &str = "`stiffness` `galerkin`";
 
-/// Its words in `GET /v1/methods`.
+/// Its description in `GET /v1/methods`.
 pub(super) fn description() -> Description {
     Description {
         title: "dynamic volume spline: B-splines over a lattice of control points",
         assumptions: &[
             "displacement is smooth, with continuous second derivatives for degree 3: steep changes beside the \
                 edge of a bone are smeared over about two control spacings",
-            "bone lies between control points: held nodes are pulled to where they have to be, or the control points \
-                nearest to them move in their place; what is left is told as `held-nodes-missed`",
-            "galerkin: small strain and linear elastic regions, without means against locking above a Poisson \
+            "bone is between control points: constrained nodes are pulled to their positions, or the control points \
+                nearest to them move instead; the warning `held-nodes-missed` has the remainder",
+            "galerkin: small strain and linear elastic regions, without remedy for locking above a Poisson \
                 ratio of 0.49; gaps narrower than a control spacing, such as between the lips, are bridged",
-            "lattice: control points are tied by equal links, component by component: tissue has no Poisson \
-                ratio and no regions, and resists rotation, told as `rotation-resisted`",
-            "rest does not depend on mass and damping: stepping in time arrives where `static` is at once",
+            "lattice: control points are connected by equal links, by component: tissue has no Poisson \
+                ratio and no regions, and resists rotation, with the warning `rotation-resisted`",
+            "equilibrium does not depend on mass and damping: time steps converge to that of `static`",
         ],
         reads: &[
             "case.segments",
@@ -339,25 +339,25 @@ fn parameters() -> Vec<ParameterDocument> {
         ),
         parameter(
             "bone",
-            "springs that draw held nodes, or control points that move with them",
+            "springs that pull constrained nodes, or control points that move with them",
             json!("springs"),
             "springs | control_points",
         ),
         parameter(
             "hold_weight",
-            "penalty stiffness of fixed and moved nodes over that of the tissue around a control point",
+            "penalty stiffness of fixed and moved nodes, relative to the tissue at a control point",
             json!(5.0),
             "[1, 1e6]",
         ),
         parameter(
             "stepping",
-            "how rest is found; explicit steps above 4 / (c + sqrt(c^2 + 4 omega^2)) are refused, c the \
+            "time stepping; explicit steps above 4 / (c + sqrt(c^2 + 4 omega^2)) are refused, c the \
                 damping and omega the frequency of the fastest mode",
             json!("static"),
             "static | backward_euler | newmark | explicit",
         ),
         parameter("step_s", "length of a step in time", json!(0.01), "[1e-9, 10]"),
-        parameter("duration_s", "when everything has to rest", json!(10.0), "[1e-6, 1000]"),
+        parameter("duration_s", "time of equilibrium", json!(10.0), "[1e-6, 1000]"),
         parameter("stiffness_n_per_m", "of a link, lattice only", json!(80.0), "[1e-3, 1e6]"),
         parameter("damping_n_s_per_m", "of a link, lattice only", json!(1.0), "[0, 1e6]"),
         parameter("mass_damping_per_s", "D = d_M M + d_K K, galerkin only", json!(0.0), "[0, 1e6]"),

@@ -2,13 +2,13 @@
 
 use super::document::Description;
 
-/// Its words in `GET /v1/methods`.
+/// Its description in `GET /v1/methods`.
 pub(super) fn description() -> Description {
     Description {
         title: "linear elasticity at small strain, finite elements",
         assumptions: &[
-            "strain is the symmetric part of the displacement gradient: a segment that turns by theta \
-                stretches the tissue beside it by 1 - cos theta, and cells may turn inside out, which is told",
+            "strain is the symmetric part of the displacement gradient: a rotation by theta \
+                stretches the tissue beside it by 1 - cos theta, and cells may invert, with a warning",
             "stress is linear in strain",
             "displacement is prescribed on bone, so that only ratios of moduli matter",
         ],

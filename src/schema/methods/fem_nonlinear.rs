@@ -10,14 +10,14 @@ use super::document::{Description, ParameterDocument};
 use crate::schema::wire::fault::{Faults, Pointer};
 use mechanics::prediction::Advance;
 
-/// Load steps at most.
+/// The most load steps.
 const MOST_LOAD_STEPS: u32 = 100;
 
-/// How a movement at finite strain is made.
+/// Load steps of a movement at finite strain.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FemNonlinearDocument {
-    /// Movement, loads, growth and activations are advanced in so many equal steps, each at rest before the next one, with a row
+    /// Movement, loads, growth and activations are applied in this number of equal steps, each solved to equilibrium, with a row
     /// each in `load_steps` of the result. Default: all of it at once.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false, minimum = 1, maximum = 100)]
@@ -38,18 +38,18 @@ impl FemNonlinearDocument {
     }
 }
 
-/// Its words in `GET /v1/methods`.
+/// Its description in `GET /v1/methods`.
 pub(super) fn description() -> Description {
     Description {
         title: "hyperelastic tissue at finite strain, finite elements",
         assumptions: &[
-            "each region follows its law; without one it is neo-Hookean, W = mu/2 (I1 - 3) - mu ln J + lambda/2 ln^2 J \
+            "each region has its law; the default is neo-Hookean, W = mu/2 (I1 - 3) - mu ln J + lambda/2 ln^2 J \
                 with the Lame constants of Young's modulus and Poisson's ratio: no cell turns inside out, and turning is \
-                no stretching",
+                no strain",
             "elements of first order that do not lock: tetrahedra share pressures at their nodes, hexahedra and wedges one in \
-                each cell; plain ones lock above a Poisson ratio of 0.45, which is told",
-            "a wall that tissue slides on stays flat, and turns with the segment that carries it; loads keep their direction",
-            "where tissue may rest in several ways, as pressed and creased tissue may, one of them is found",
+                each cell; plain ones lock above a Poisson ratio of 0.45, with a warning",
+            "a wall that tissue slides on stays flat, and rotates with its segment; loads keep their direction",
+            "if tissue has several equilibria, as compressed and creased tissue may, one of them is found",
         ],
         reads: &[
             "case.segments",
@@ -77,7 +77,7 @@ pub(super) fn description() -> Description {
         ],
         parameters: vec![ParameterDocument {
             name: "load_steps".to_owned(),
-            meaning: "equal steps in which movement, loads, growth and activations are advanced, each at rest before the next one"
+            meaning: "equal steps in which movement, loads, growth and activations are applied, each solved to equilibrium"
                 .to_owned(),
             default: json!(null),
             range: format!("[1, {MOST_LOAD_STEPS}]"),

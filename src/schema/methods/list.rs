@@ -14,10 +14,10 @@ use mechanics::prediction::MethodKind;
 use mechanics::response::COLUMNS_PER_SEGMENT;
 use mechanics::response::linearity::LINEAR_RANGE_MM;
 
-/// Of a method that was built after the study that comes with the program.
-const NOT_MEASURED: &str = "the study that comes with the program has no row of this method";
+/// Of a method that is newer than the built-in study.
+const NOT_MEASURED: &str = "the built-in study has no row of this method";
 
-/// Refuses, for plan responses, a method whose skin is not linear in the movements, or that has none of its own.
+/// Refuses, for plan responses, a method whose skin is not linear in the movements.
 pub fn check_linear(method: MethodName, at: &Pointer, faults: &mut Faults) {
     if !method.chosen().properties().is_linear {
         let names: Vec<String> =
@@ -27,17 +27,17 @@ pub fn check_linear(method: MethodName, at: &Pointer, faults: &mut Faults) {
     }
 }
 
-/// Those whose skin is linear in the movements.
+/// The methods whose skin is linear in the movements.
 fn linear() -> Vec<MethodName> {
     let linear = MethodKind::ALL.iter().filter(|method| method.properties().is_linear);
     linear.map(|method| MethodName::Named(*method)).collect()
 }
 
-/// The answer of `GET /v1/methods`.
+/// The response of `GET /v1/methods`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct MethodList {
     pub methods: Vec<MeasuredMethod>,
-    /// What `auto` chooses, and why.
+    /// The choice of `auto`, and why.
     pub auto: String,
     pub response: ResponseMethod,
     pub optimise: OptimiseMethod,
@@ -46,26 +46,26 @@ pub struct MethodList {
 /// How jobs of kind `optimise` find a plan.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct OptimiseMethod {
-    /// Those whose skin is linear in the movements.
+    /// The methods whose skin is linear in the movements.
     pub methods: Vec<MethodName>,
-    /// What is minimised, and how.
+    /// The objective and its minimisation.
     pub minimises: String,
-    /// How `standard_error` and `covariance` come about.
+    /// How `standard_error` and `covariance` are computed.
     pub certainty: String,
-    /// A combination of parameters is undetermined where it moves the targets by less than this share of
-    /// what the strongest one does.
+    /// A combination of parameters is undetermined if it moves the targets by less than this share of
+    /// the strongest one.
     pub undetermined_below: f64,
 }
 
-/// What jobs of kind `response` build.
+/// Plan responses, built by jobs of kind `response`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct ResponseMethod {
     /// The linear ones.
     pub methods: Vec<MethodName>,
     pub columns_per_segment: u32,
-    /// How `nonlinearity_estimate_mm` of an applied plan comes about.
+    /// How `nonlinearity_estimate_mm` of an applied plan is computed.
     pub nonlinearity_estimate: String,
-    /// The estimate above which an answer is outside the linear range.
+    /// The estimate above which a result is outside the linear range.
     pub linear_range_mm: f64,
 }
 
@@ -74,10 +74,10 @@ pub struct ResponseMethod {
 pub struct MeasuredMethod {
     #[serde(flatten)]
     pub method: MethodDocument,
-    /// What the study that comes with the program measured; its truths, machine and command are in
+    /// The results of the built-in study; its reference solutions, machine and command are in
     /// docs/speed-and-accuracy.md.
     pub measured: Vec<MeasuredDocument>,
-    /// Why there is nothing in `measured`, where there is nothing.
+    /// Why `measured` is empty, if it is.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub not_measured: Option<String>,
@@ -89,14 +89,14 @@ impl MeasuredMethod {
         MeasuredMethod::with(method, measured)
     }
 
-    /// A method with these rows of the table, or why there is none.
+    /// A method with these rows of the table, or the reason for none.
     pub(super) fn with(method: MethodDocument, measured: Vec<MeasuredDocument>) -> Self {
         let not_measured = measured.is_empty().then(|| NOT_MEASURED.to_owned());
         MeasuredMethod { method, measured, not_measured }
     }
 }
 
-/// The methods that are built.
+/// The available methods.
 pub fn available_methods() -> MethodList {
     MethodList {
         methods: MethodKind::ALL.iter().map(|method| MeasuredMethod::of(describe(*method))).collect(),
@@ -106,7 +106,7 @@ pub fn available_methods() -> MethodList {
             columns_per_segment: COLUMNS_PER_SEGMENT as u32,
             nonlinearity_estimate: "of order 1: the second-order term, sampled for each segment along and about each \
                 axis and added up; of quadratic tetrahedra by a rule of thumb, 0.15 d^2 / h + 2.7 h (1 - cos theta), d \
-                the largest movement in mm of a segment against another or against what stays, h the median distance \
+                the largest movement in mm of a segment relative to another or to fixed nodes, h the median distance \
                 in mm from the skin to the nearest held node, theta the largest rotation. Of order 2: the third-order \
                 term, sampled likewise"
                 .to_owned(),
@@ -118,8 +118,8 @@ pub fn available_methods() -> MethodList {
                 Levenberg and Marquardt's method from rest, on a response of the segments and of growth; constants of \
                 tissue by steps of Gauss and Newton, with a response each"
                 .to_owned(),
-            certainty: "(J^T J)^-1 of the parameters that are not at a bound, and of growth and constants even so, J the derivative of residual / \
-                sigma_mm: right where errors are independent with standard deviation sigma_mm"
+            certainty: "(J^T J)^-1 of the parameters not at a bound, and of growth and constants in any case, J the derivative of residual / \
+                sigma_mm: correct for independent errors with standard deviation sigma_mm"
                 .to_owned(),
             undetermined_below: UNDETERMINED,
         },

@@ -1,4 +1,4 @@
-//! Measured speed and accuracy of each method: read from the table of the study that is kept with the program.
+//! Measured speed and accuracy of each method, read from the table of the built-in study.
 
 use std::sync::OnceLock;
 
@@ -16,18 +16,18 @@ pub struct MeasuredDocument {
     pub scene: String,
     /// The variant.
     pub label: String,
-    /// How often each edge was halved.
+    /// The number of halvings of each edge.
     pub level: u32,
     pub unknowns: u64,
     /// From mesh in memory to displacement in memory, on one thread.
     pub wall_s: f64,
-    /// The error that 95 % of the skin's area stay below.
+    /// The 95th percentile of the error, by area of the skin.
     pub p95_mm: f64,
-    /// Rows behind the medians.
+    /// Rows in the medians.
     pub rows: u64,
 }
 
-/// A row of the table that has numbers.
+/// A row of the table with numbers.
 #[derive(Clone, Debug, PartialEq)]
 struct Row {
     scene: String,
@@ -44,9 +44,9 @@ fn rows() -> &'static [Row] {
     ROWS.get_or_init(|| parse(TABLE).unwrap_or_default())
 }
 
-/// Between which times a method is expected to solve for so many unknowns, in s: from the best row of the table with
+/// The expected range of the solution time for a number of unknowns, in s: from the best row of the table with
 /// time in proportion to the unknowns, to the worst with time in proportion to their power 4/3, as that of iterations
-/// whose number grows with the nodes across the mesh. Half and double allow for another machine.
+/// whose number grows with the nodes across the mesh. Factors of 1/2 and 2 allow for other machines.
 pub fn time_band(method: &str, unknowns: u64) -> Option<TimeBandDocument> {
     let rows = rows().iter().filter(|row| row.method == method && row.unknowns > 0);
     let mut band: Option<TimeBandDocument> = None;
@@ -62,7 +62,7 @@ pub fn time_band(method: &str, unknowns: u64) -> Option<TimeBandDocument> {
     band
 }
 
-/// The places of a method, in the order of the table.
+/// The rows of a method, in the order of the table.
 pub fn measured(method: &str) -> Vec<MeasuredDocument> {
     let rows = rows();
     let mut places: Vec<(&Row, Vec<&Row>)> = Vec::new();
@@ -92,7 +92,7 @@ fn median(mut values: Vec<f64>) -> f64 {
     values.get(values.len().saturating_sub(1) / 2).copied().unwrap_or_default()
 }
 
-/// The rows with numbers, or the line that is none.
+/// The rows with numbers, or the malformed line.
 fn parse(table: &str) -> Result<Vec<Row>, String> {
     let mut lines = table.lines();
     let head = cells(lines.next().unwrap_or_default());
@@ -129,7 +129,7 @@ fn parse(table: &str) -> Result<Vec<Row>, String> {
     Ok(rows)
 }
 
-/// The cells of a line (RFC 4180); no cell of the table holds a line break.
+/// The cells of a line (RFC 4180); no cell of the table has a line break.
 fn cells(line: &str) -> Vec<String> {
     let mut cells = vec![String::new()];
     let mut quoted = false;

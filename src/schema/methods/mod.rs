@@ -1,4 +1,4 @@
-//! Methods in documents: for each a row with its description, its own settings and the method they become.
+//! Methods in documents: for each a row with its description, its settings and their conversion to the numerics.
 
 mod document;
 pub mod dvs;
@@ -30,7 +30,7 @@ use crate::schema::code::ErrorCode;
 use crate::schema::wire::fault::{Faults, Pointer};
 use mechanics::prediction::{Method, MethodKind};
 
-/// What a spec tells single methods, each in the field that has the name of the method.
+/// The settings of single methods in a spec, each in the field with the name of the method.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct OwnSettings {
     pub fem_nonlinear: Option<FemNonlinearDocument>,
@@ -114,7 +114,7 @@ fn describe(method: MethodKind) -> MethodDocument {
     MethodDocument::new(method, (row(method).description)())
 }
 
-/// The method that a spec asks for, with its own settings; those of another one are refused.
+/// The method of a spec, with its settings; those of another one are refused.
 pub fn to_method(
     asked: MethodName,
     own: &OwnSettings,

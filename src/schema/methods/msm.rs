@@ -8,14 +8,14 @@ use super::document::{Description, ParameterDocument};
 use crate::schema::wire::fault::{Faults, Pointer};
 use mechanics::model::mass_spring::{MassSpringSettings, Search};
 
-/// Iterations allowed at most, of either search.
+/// The most iterations, of either search.
 const MOST_ITERATIONS: u32 = 1_000_000;
-/// Newton's steps, where the spec does not say.
+/// The default number of Newton's steps.
 pub const NEWTON_ITERATIONS: u32 = 500;
-/// Sweeps over all nodes, where the spec does not say.
+/// The default number of sweeps over all nodes.
 pub const DIRECT_ITERATIONS: u32 = 50_000;
 
-/// How the springs are brought to rest; only with the method `msm`.
+/// The search of the equilibrium of springs; only with the method `msm`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MassSpringDocument {
@@ -27,14 +27,14 @@ pub struct MassSpringDocument {
     pub max_iterations: Option<u32>,
 }
 
-/// How rest is looked for.
+/// The search of equilibrium.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum EquilibriumName {
     /// Newton's method with a line search on the energy.
     #[default]
     Newton,
-    /// Node by node, each to where its springs would have it: the papers' way.
+    /// Node by node, each to the equilibrium of its springs, as in the papers.
     Direct,
 }
 
@@ -51,21 +51,21 @@ impl MassSpringDocument {
     }
 }
 
-/// Its words in `GET /v1/methods`.
+/// Its description in `GET /v1/methods`.
 pub(super) fn description() -> Description {
     Description {
-        title: "springs along the edges of tetrahedra, at rest",
+        title: "springs along the edges of tetrahedra, in equilibrium",
         assumptions: &[
             "a spring has the stiffness E V / L^2, V the volume of the tetrahedra around it and L its length \
-                (Van Gelder): only Young's modulus is read, and only its ratios matter where bone is moved",
+                (Van Gelder): only Young's modulus is used, and only its ratios matter if bone is moved",
             "a Poisson ratio of 1/4 on average, whatever the materials say: the bulk modulus is 2 E / 3 and \
                 C1122 equals C1212 (Cauchy's symmetry) on every mesh; tissue, of 0.43 and above, loses volume \
                 instead of moving the skin. The result has the warning `built-in-poisson-ratio`",
-            "the mesh shows in the answer: its edges are the only directions in which forces run, and how \
-                stiff it is in which direction depends on how it was cut",
+            "the result depends on the mesh: forces act along its edges only, and how \
+                stiff it is in a direction depends on how it was meshed",
             "springs know lengths and not volumes: rotations cost nothing, and under large pressure the network \
                 buckles sideways and cells are inverted (warning `cells-inverted`). There are then \
-                several states of rest, and `newton` and `direct` may end in different ones",
+                several equilibria, and `newton` and `direct` may end in different ones",
         ],
         reads: &[
             "case.segments",
@@ -85,8 +85,8 @@ pub(super) fn description() -> Description {
         parameters: vec![
             ParameterDocument {
                 name: "equilibrium".to_owned(),
-                meaning: "how rest is looked for: Newton's method with a line search on the energy, or node by \
-                    node, each to where its own springs would have it"
+                meaning: "equilibrium search: Newton's method with a line search on the energy, or node by \
+                    node, each to the equilibrium of its springs"
                     .to_owned(),
                 default: json!("newton"),
                 range: "newton | direct".to_owned(),

@@ -10,18 +10,18 @@ use crate::schema::wire::fault::{Faults, Pointer};
 use mechanics::model::fem::mass_tensor::{Iterations, MassTensorSettings};
 use mechanics::solver::stationary::{Iteration, Stationary};
 
-/// Sweeps over all nodes, where the spec does not say.
+/// The default number of sweeps over all nodes.
 pub const USUAL_ITERATIONS: u32 = 50_000;
-/// Iterations allowed at most.
+/// The most iterations.
 const MOST_ITERATIONS: u32 = 1_000_000;
 
-/// How the tensors are brought to rest; with the methods `mtm` and `mtm_ti`, in the field of each.
+/// The iterations to equilibrium; with the methods `mtm` and `mtm_ti`, in the field of each.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MassTensorDocument {
     #[serde(default)]
     pub iterations: IterationsName,
-    /// |u - u_old| / |u| at which the iterations may end, beside `tolerance.relative_residual`; default: any.
+    /// |u - u_old| / |u| required to end the iterations, beside `tolerance.relative_residual`; default: any.
     /// Not with `fast`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false, minimum = 1e-14, maximum = 1e-2)]
@@ -32,7 +32,7 @@ pub struct MassTensorDocument {
     pub max_iterations: Option<u32>,
 }
 
-/// What brings the tensors to rest: all that converge give the same answer.
+/// The iterations to equilibrium: all that converge give the same result.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum IterationsName {
@@ -41,10 +41,10 @@ pub enum IterationsName {
     Fast,
     /// Node by node, each with the newest displacements of the others.
     GaussSeidel,
-    /// All nodes at once, with a step just below the largest that converges.
+    /// All nodes at once, with a step just below the convergence limit.
     DampedJacobi,
     /// All nodes at once with a step of 1, as printed in papers. On nearly all meshes it diverges, which
-    /// is then the answer: `solver-diverged` with the residuals and their growth.
+    /// is then the error: `solver-diverged` with the residuals and their growth.
     Jacobi,
 }
 
@@ -74,7 +74,7 @@ impl MassTensorDocument {
         }
     }
 
-    /// `fast` ends at the residual of the spec, and reads nothing else.
+    /// `fast` ends at the residual of the spec, and has no other settings.
     fn refuse_unread(&self, at: &Pointer, faults: &mut Faults) {
         let given = [
             ("relative_change", self.relative_change.is_some()),
@@ -88,15 +88,15 @@ impl MassTensorDocument {
     }
 }
 
-/// Its words in `GET /v1/methods`.
+/// Its description in `GET /v1/methods`.
 pub(super) fn description() -> Description {
     Description {
         title: "mass-tensor model: one stiffness tensor for each node and edge",
         assumptions: &[
-            "its tensors are the blocks of the stiffness matrix of plain linear tetrahedra, so that its answer is \
-                that of `fem_linear` with the element `plain`, with all that this assumes",
-            "it locks above a Poisson ratio of 0.45 and says so: skin moves too little",
-            "what is its own are its iterations. They converge to the same answer, in a number of sweeps that \
+            "its tensors are the blocks of the stiffness matrix of plain linear tetrahedra, so that its result is \
+                that of `fem_linear` with the element `plain`, with the same assumptions",
+            "it locks above a Poisson ratio of 0.45, with a warning: skin moves too little",
+            "only its iterations differ. They converge to the same result, in a number of sweeps that \
                 grows with the fineness of the mesh and as 1 / (1 - 2 nu); plain Jacobi diverges wherever the \
                 largest eigenvalue of D^-1 K is above 2, as on nearly all meshes of tetrahedra",
         ],
@@ -127,7 +127,7 @@ pub(super) fn parameters() -> Vec<ParameterDocument> {
     vec![
         ParameterDocument {
             name: "iterations".to_owned(),
-            meaning: "what brings the tensors to rest: the solver of fem_linear, block Gauss-Seidel, block Jacobi \
+            meaning: "the iterations to equilibrium: the solver of fem_linear, block Gauss-Seidel, block Jacobi \
                 with omega at 0.95 of its limit, or block Jacobi with omega 1, which diverges"
                 .to_owned(),
             default: json!("fast"),
@@ -135,7 +135,7 @@ pub(super) fn parameters() -> Vec<ParameterDocument> {
         },
         ParameterDocument {
             name: "relative_change".to_owned(),
-            meaning: "the change of u in one iteration, as a share of u, at which the iterations may end, beside \
+            meaning: "the change of u in one iteration, as a share of u, required to end them, beside \
                 tolerance.relative_residual; not with fast"
                 .to_owned(),
             default: json!(null),

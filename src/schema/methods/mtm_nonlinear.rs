@@ -2,17 +2,17 @@
 
 use super::document::Description;
 
-/// Its words in `GET /v1/methods`.
+/// Its description in `GET /v1/methods`.
 pub(super) fn description() -> Description {
     Description {
         title: "mass-tensor with the full Green strain",
         assumptions: &[
-            "the force of a node is a cubic polynomial of displacements, whose tensors each tetrahedron has before anything \
-                moves: Saint Venant-Kirchhoff tissue, W = lambda/2 (tr E)^2 + mu tr E^2; turning is no stretching",
-            "tissue that is pressed to less than 0.577 of its length gives way, and cells may turn inside out, which is told: \
-                fem_nonlinear with its usual law does neither",
+            "the force of a node is a cubic polynomial of displacements, with tensors of each undeformed tetrahedron: \
+                Saint Venant-Kirchhoff tissue, W = lambda/2 (tr E)^2 + mu tr E^2; rotation causes no strain",
+            "tissue compressed to less than 0.577 of its length collapses, and cells may invert, with a warning: \
+                fem_nonlinear with its default law does neither",
             "plain tetrahedra lock above a Poisson ratio of 0.45, with a warning",
-            "a wall that tissue slides on stays flat, and turns with the segment that carries it; loads keep their direction",
+            "a wall that tissue slides on stays flat, and rotates with its segment; loads keep their direction",
         ],
         reads: &[
             "case.segments",

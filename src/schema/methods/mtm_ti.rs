@@ -3,18 +3,18 @@
 use super::document::Description;
 use super::mtm;
 
-/// Its words in `GET /v1/methods`.
+/// Its description in `GET /v1/methods`.
 pub(super) fn description() -> Description {
     Description {
         title: "mass-tensor of tetrahedra with fibres",
         assumptions: &[
             "the force of a node is a sum over its neighbours of a tensor times their displacement, V g_j.C.g_k: \
                 the plain finite element, node by node; both give the same numbers",
-            "tissue is stiffer along the fibre of a cell than across it, by the law that its material names; \
+            "tissue is stiffer along the fibre of a cell than across it, by the law of its material; \
                 Kim et al. 2012 print this tensor with another factor and without one of its terms, which is not \
-                what is solved",
-            "its iterations are those of mtm: with others than fast, tissue is not kept from passing through what it \
-                touches, and each answer stands for itself",
+                solved here",
+            "its iterations are those of mtm: with others than fast, unilateral contact is not available, \
+                and each load case is solved separately",
             "strain is small, as with fem_linear; plain tetrahedra lock above a Poisson ratio of 0.45, with a \
                 warning",
         ],

@@ -11,19 +11,19 @@ use utoipa::{PartialSchema, ToSchema};
 use crate::schema::wire::reading::NOT_AVAILABLE;
 use mechanics::prediction::{ElementChoice, MethodKind};
 
-/// What `auto` is where nothing is estimated that could choose between models.
-pub const WHY_LINEAR: &str = "auto: fem_linear, where no estimate chooses between models";
-/// What `auto` chooses from.
+/// The choice of `auto` without estimates to choose by.
+pub const WHY_LINEAR: &str = "auto: fem_linear, without estimates to choose between models";
+/// The models of `auto`.
 pub const WHY_ESTIMATED: &str = "auto: the cheapest of fem_linear, its second order and fem_nonlinear, corrected for the mesh or \
     not, whose estimated error of the skin is accepted";
-/// Why a method that was asked for by name is used.
-pub const WHY_ASKED: &str = "asked for by the spec";
+/// Reason of a method that the spec names.
+pub const WHY_ASKED: &str = "named by the spec";
 
-/// Words for methods that the first version of the API knew and that were never built.
+/// Methods of the first version of the API that were never built.
 const NOT_BUILT: [&str; 5] =
     ["fem_corotational", "fem_neo_hookean", "fem_mooney_rivlin", "fem_ogden", "fem_rubin_bodner"];
 
-/// A model soft tissue.
+/// A model of soft tissue.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum MethodName {
     #[default]
@@ -31,12 +31,12 @@ pub enum MethodName {
     Named(MethodKind),
 }
 
-/// The treatment of cells, by its word.
+/// The finite element of cells, by its name.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ElementName(ElementChoice);
 
 impl MethodName {
-    /// The method that is used: what `auto` chooses, or the one asked for.
+    /// The method in use: the choice of `auto`, or the one named.
     pub fn chosen(self) -> MethodKind {
         match self {
             MethodName::Auto => MethodKind::FemLinear,
@@ -87,7 +87,7 @@ impl<'de> Deserialize<'de> for MethodName {
     }
 }
 
-/// The words of all methods.
+/// The names of all methods.
 static WORDS: LazyLock<Vec<&'static str>> =
     LazyLock::new(|| MethodName::all().map(MethodName::name).collect());
 
@@ -95,7 +95,7 @@ impl PartialSchema for MethodName {
     fn schema() -> RefOr<Schema> {
         ObjectBuilder::new()
             .schema_type(SchemaType::Type(Type::String))
-            .description(Some("A model soft tissue."))
+            .description(Some("A model of soft tissue."))
             .enum_values(Some(MethodName::all().map(MethodName::name)))
             .into()
     }
@@ -109,7 +109,7 @@ impl ElementName {
         self.0.name()
     }
 
-    /// The element of the path.
+    /// The element of the numerics.
     pub fn choice(self) -> ElementChoice {
         self.0
     }
@@ -137,7 +137,7 @@ impl<'de> Deserialize<'de> for ElementName {
     }
 }
 
-/// The words of all elements.
+/// The names of all elements.
 static ELEMENTS: LazyLock<Vec<&'static str>> =
     LazyLock::new(|| ElementChoice::ALL.iter().map(|element| element.name()).collect());
 
@@ -145,7 +145,7 @@ impl PartialSchema for ElementName {
     fn schema() -> RefOr<Schema> {
         ObjectBuilder::new()
             .schema_type(SchemaType::Type(Type::String))
-            .description(Some("The treatment of cells."))
+            .description(Some("The finite element of cells."))
             .enum_values(Some(ElementChoice::ALL.iter().map(|element| element.name())))
             .into()
     }

@@ -12,32 +12,32 @@ use mechanics::model::thickness_warp::ThicknessWarp;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ThicknessWarpDocument {
-    /// Bones up to this much farther than the nearest one take part, the less the farther; 0 follows the
-    /// nearest bone alone, and jumps where another one becomes the nearest.
+    /// Bones up to this much farther than the nearest one have weights, decreasing with distance; 0 follows the
+    /// nearest bone alone, with jumps where another becomes the nearest.
     #[serde(default)]
     #[schema(default = 0.0, minimum = 0.0, maximum = 200.0)]
     pub blend_radius_mm: f64,
 }
 
 impl ThicknessWarpDocument {
-    /// The method of the path.
+    /// The method of the numerics.
     pub fn to_method(self, at: &Pointer, faults: &mut Faults) -> ThicknessWarp {
         faults.check_range(&at.key("blend_radius_mm"), self.blend_radius_mm, 0.0..=200.0, "mm");
         ThicknessWarp { blend_radius: self.blend_radius_mm }
     }
 }
 
-/// Its words in `GET /v1/methods`.
+/// Its description in `GET /v1/methods`.
 pub(super) fn description() -> Description {
     Description {
-        title: "thickness-preserving warp: tissue rides on the nearest bone",
+        title: "thickness-preserving warp: tissue moves with the nearest bone",
         assumptions: &[
             "every point keeps its distance to the nearest bone, and moves as that bone does",
             "no mechanics: volume is not preserved, materials and sliding are ignored, reactions are 0, and \
                 loads are refused",
-            "bone is where all nodes of a boundary face are held in all directions",
-            "where another bone becomes the nearest, tissue jumps: told as `warp-jumps`; a blend radius \
-                softens that and gives up thickness there",
+            "bone is each boundary face whose nodes are all constrained in all directions",
+            "where another bone becomes the nearest, tissue jumps (`warp-jumps`); a blend radius \
+                reduces that at the cost of thickness there",
         ],
         reads: &[
             "case.segments",
@@ -48,7 +48,7 @@ pub(super) fn description() -> Description {
         ],
         parameters: vec![parameter(
             "blend_radius_mm",
-            "bones up to this much farther than the nearest take part",
+            "bones up to this much farther than the nearest have weights",
             json!(0.0),
             "[0, 200]",
         )],

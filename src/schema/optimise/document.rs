@@ -1,4 +1,4 @@
-//! Spec of inverse planning: targets of the skin, and bounds of the movement of each segment.
+//! Spec of inverse planning: targets on the skin, and bounds of the movement of each segment.
 
 use std::collections::BTreeMap;
 
@@ -49,22 +49,22 @@ pub struct OptimiseDocument {
     pub kind: OptimiseKind,
     /// The id of the case.
     pub case: String,
-    /// Where skin is wanted; coordinates in the frame of the case.
+    /// Desired positions of skin; coordinates in the frame of the case.
     #[schema(min_items = 1)]
     pub targets: Vec<TargetDocument>,
-    /// How far each segment may move, by its name; the others stay where they are.
+    /// Bounds of movements by segment name; other segments are fixed.
     pub bounds: BTreeMap<String, BoundsDocument>,
-    /// Growth and constants that are looked for with the plan, by region: what a scan after the operation says of tissue that was
-    /// lost, and of what tissue is. `*` stands for every region without an entry of its own.
+    /// Unknown growth and constants, estimated with the plan, by region: from a scan after the operation, loss and constants
+    /// of tissue. `*` is every region without an entry.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub tissue_bounds: BTreeMap<String, TissueBoundsDocument>,
-    /// Growth that stays as it is stated while the plan is looked for, and is part of it.
+    /// Growth that is given, not searched for, and part of the plan.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub growth: Vec<GrowthDocument>,
-    /// Muscles that pull likewise.
+    /// Activations, given likewise.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub activations: Vec<ActivationDocument>,
-    /// Solves the plan that was found as `predict` would, and reports how far the skin is from the answer of the
+    /// Solves the resulting plan as `predict` would, and reports the difference of its skin from that of the
     /// response.
     #[serde(default = "yes")]
     #[schema(default = true)]
@@ -79,11 +79,11 @@ pub struct OptimiseDocument {
     pub method: MethodName,
     #[serde(default)]
     pub element: ElementName,
-    /// Over the materials of the case, field by field.
+    /// Overrides the materials of the case, by member.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false, value_type = Option<BTreeMap<String, MaterialDocument>>)]
     pub materials: Option<MaterialDocuments>,
-    /// Absent: the skin is tissue like the rest.
+    /// Absent: no membrane.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub membrane: Option<MembraneDocument>,
@@ -95,7 +95,7 @@ pub struct OptimiseDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub outputs: Option<Vec<OutputName>>,
-    /// As for `predict`: the displacement at which the colours of `skin.glb` and `skin.ply` end, in mm. Default: 10.
+    /// As for `predict`: the displacement at the end of the colour scale of `skin.glb` and `skin.ply`, in mm. Default: 10.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false, minimum = 0.001, maximum = 1000.0)]
     pub range_mm: Option<f64>,
@@ -107,7 +107,7 @@ fn yes() -> bool {
     true
 }
 
-/// Between which values a segment may move; equal ends hold a value. What is left out is held at 0.
+/// Bounds of the movement of a segment; equal bounds fix a value. Omitted members are fixed at 0.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct BoundsDocument {
@@ -116,14 +116,14 @@ pub struct BoundsDocument {
     /// About x, y and z, in the order `xyz-extrinsic`.
     #[serde(default)]
     pub rotation_deg: Intervals,
-    /// Required where a rotation may be other than 0.
+    /// Required if a rotation may be other than 0.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub pivot_mm: Option<Triple>,
 }
 
 impl OptimiseDocument {
-    /// Adds what is wrong with it, but for what only the meshes can tell; pointers start at `/spec`.
+    /// Adds its faults, except those that need the meshes; pointers start at `/spec`.
     pub fn check(&self, case: &CaseDocument, limits: &Limits, faults: &mut Faults) {
         let root = Pointer::root().key("spec");
         methods::check_linear(self.method, &root.key("method"), faults);
@@ -151,24 +151,24 @@ impl OptimiseDocument {
         }
         let moves = self.bounds.values().any(BoundsDocument::is_free);
         if !moves && !self.tissue_bounds.values().any(TissueBoundsDocument::is_free) {
-            let detail = "nothing may change: at least one lowest value is below its highest";
+            let detail = "nothing may change: raise at least one highest value above its lowest";
             faults.add(&at, ErrorCode::NothingFree, detail);
         }
         for (index, name) in self.outputs.iter().flatten().enumerate() {
             if !self.verify && *name == OutputName::VolumeVtu {
-                let detail = "the inside of the tissue is known only after `verify`";
+                let detail = "the inside of the tissue needs `verify`";
                 faults.add(&root.key("outputs").index(index), ErrorCode::NeedsVerify, detail);
             }
         }
     }
 
-    /// The names of the segments that may move or are held away from rest.
+    /// The names of the segments that may move or are fixed at other values than 0.
     pub fn moving(&self) -> Vec<String> {
         let moving = self.bounds.iter().filter(|(_, bounds)| **bounds != bounds.at_rest());
         moving.map(|(name, _)| name.trim().to_owned()).collect()
     }
 
-    /// The regions with a column of growth: first those whose growth is stated, then those whose growth is looked for.
+    /// The regions with a column of growth: first those of given growth, then those of unknown growth.
     fn growing(&self) -> Vec<String> {
         let stated = self.growth.iter().map(|own| own.region.trim().to_owned());
         let free = self.tissue_bounds.iter().filter(|(_, own)| own.volume_change.is_some());
@@ -192,7 +192,7 @@ impl OptimiseDocument {
         PlanDocument { segments: self.bounds.keys().map(rest).collect(), ..PlanDocument::default() }
     }
 
-    /// A plan of what stays as it is stated.
+    /// A plan of the given growth and activations.
     pub fn held(&self) -> PlanDocument {
         PlanDocument {
             growth: self.growth.clone(),
@@ -201,13 +201,13 @@ impl OptimiseDocument {
         }
     }
 
-    /// The prediction of the plan that is found, with which it shares its checks.
+    /// The prediction of the resulting plan, whose checks it shares.
     pub fn to_prediction(&self) -> PredictDocument {
         let shared = self.to_response().to_prediction();
         PredictDocument { outputs: self.outputs.clone(), range_mm: self.range_mm, ..shared }
     }
 
-    /// The response that the plan is found with.
+    /// The response that the optimisation uses.
     pub fn to_response(&self) -> ResponseDocument {
         ResponseDocument {
             case: self.case.clone(),
@@ -228,7 +228,7 @@ impl OptimiseDocument {
         }
     }
 
-    /// Every surface its selections ask for; some may be names of bones of the case.
+    /// Every surface of its selections; some may be names of bones of the case.
     pub fn surfaces_mut(&mut self) -> Vec<&mut String> {
         let mut found = Vec::new();
         for nodes in self.targets.iter_mut().filter_map(|target| target.nodes.as_mut()) {
@@ -237,7 +237,7 @@ impl OptimiseDocument {
         found.into_iter().map(|(_, id)| id).collect()
     }
 
-    /// What decides the numbers, for the hash of the job: no tags, no ids.
+    /// Everything that determines the numbers, for the hash of the job: no tags, no ids.
     pub fn content(&self) -> Value {
         let mut plain = self.clone();
         plain.tags.clear();
@@ -259,7 +259,7 @@ impl BoundsDocument {
         self.intervals().iter().any(|[low, high]| low < high)
     }
 
-    /// The same with everything held at 0.
+    /// The same with everything fixed at 0.
     fn at_rest(&self) -> Self {
         BoundsDocument { pivot_mm: self.pivot_mm, ..BoundsDocument::default() }
     }
@@ -295,7 +295,7 @@ impl BoundsDocument {
         let (length, longest) = (Vector::from(farthest).norm(), limits.translation_mm);
         if length > longest {
             let detail = format!(
-                "the farthest corner is {length:.3} mm away, at most {longest} mm are allowed"
+                "the farthest corner is at {length:.3} mm, at most {longest} mm are allowed"
             );
             faults.add(&at.key("translation_mm"), ErrorCode::PlanOutOfRange, detail);
         }

@@ -1,4 +1,4 @@
-//! Plausibility of growth and constants that were found.
+//! Plausibility of estimated growth and constants.
 
 use super::document::OptimiseDocument;
 use super::result::{OptimisationDocument, ParameterName};
@@ -14,7 +14,7 @@ impl OptimiseDocument {
         own.map(|(_, own)| *own).unwrap_or_default()
     }
 
-    /// What a reader of growth and constants that were found has to know.
+    /// Warnings on estimated growth and constants.
     pub fn doubts(&self, found: &OptimisationDocument) -> Vec<Warning> {
         let mut doubts = Vec::new();
         let is_free = |own: Option<Interval>| own.is_some_and(|Interval([low, high])| low < high);
@@ -22,8 +22,8 @@ impl OptimiseDocument {
         if all().any(|own| is_free(own.poisson_ratio))
             && !all().any(|own| is_free(own.volume_change))
         {
-            let detail = "Poisson's ratio is looked for as if no tissue gained volume or lost it, and 5 % of volume may shift it \
-                          by .3: look for `volume_change` with it";
+            let detail = "Poisson's ratio is estimated as if tissue kept its volume, and 5 % of volume may shift it \
+                          by .3: estimate `volume_change` with it";
             doubts.push(Warning::new("growth-left-out", detail));
         }
         for parts in &found.undetermined {
@@ -43,7 +43,7 @@ impl OptimiseDocument {
             let guess = (high - low) / 12_f64.sqrt();
             if error > guess {
                 let detail = format!(
-                    "the standard error of {} of {region:?} is {error:.3}, and that of a guess between its bounds {guess:.3}",
+                    "the standard error of {} of {region:?} is {error:.3}, and that of a guess within its bounds {guess:.3}",
                     parameter.name.words()
                 );
                 let warning = Warning::new("constant-not-determined", detail);
@@ -53,7 +53,7 @@ impl OptimiseDocument {
         for stopped in &found.at_bound {
             let Some(region) = &stopped.region else { continue };
             let detail = format!(
-                "{} of {region:?} is stopped by its bound: better values may lie beyond",
+                "{} of {region:?} is at its bound: better values may lie beyond",
                 stopped.name.words()
             );
             doubts.push(Warning::new("constant-at-end", detail).with("value", stopped.value));
@@ -62,7 +62,7 @@ impl OptimiseDocument {
     }
 }
 
-/// Between which values a parameter of tissue may be.
+/// The bounds of a parameter of tissue.
 fn interval_of(own: &TissueBoundsDocument, name: ParameterName) -> Option<Interval> {
     match name {
         ParameterName::VolumeChange => own.volume_change,

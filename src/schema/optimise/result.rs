@@ -1,4 +1,4 @@
-//! The answer of inverse planning: the plan, growth and constants, what is left of each target, and how certain all of it is.
+//! The result of inverse planning: the plan, growth and constants, the residual of each target, and the uncertainty.
 
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
@@ -13,39 +13,39 @@ use mechanics::optimisation::{
 };
 use mechanics::response::{InnerLoad, Response, ResponseSegment};
 
-/// The plan that comes nearest to the targets, and how certain it is.
+/// The plan nearest to the targets, and its uncertainty.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct OptimisationDocument {
-    /// As `predict` takes it, with growth that was found.
+    /// As `predict` takes it, with the estimated growth.
     pub plan: PlanDocument,
-    /// As `predict` takes them beside the plan: those of the spec with the constants that were found; absent where none were
-    /// looked for.
+    /// As `predict` takes them beside the plan: those of the spec with the estimated constants; absent if none were
+    /// estimated.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false, value_type = Option<BTreeMap<String, MaterialDocument>>)]
     pub materials: Option<MaterialDocuments>,
-    /// What is left of each target, in their order.
+    /// The residual of each target, in their order.
     pub targets: Vec<TargetResidualDocument>,
-    /// The parameters that are free, that is, not at a bound, and that the targets determine; those of tissue are among them at a
-    /// bound as well, with the standard error that they would have without it.
+    /// The free parameters, those not at a bound, that the targets determine; tissue parameters are also included at a
+    /// bound, with the standard error that they would have without it.
     pub parameters: Vec<FreeParameterDocument>,
-    /// Of each of them, in its unit, if the targets have independent errors of `sigma_mm`.
+    /// Of each of them, in its unit, for independent target errors of `sigma_mm`.
     pub standard_error: Vec<f64>,
-    /// Of each two of them, in their units.
+    /// Of each pair of them, in their units.
     pub covariance: Vec<Vec<f64>>,
-    /// The same over both standard errors: 1 or -1 where the targets tell only a sum or a difference of two.
+    /// The same over both standard errors: 1 or -1 if the targets determine only a difference or a sum of two.
     pub correlation: Vec<Vec<f64>>,
-    /// Parameters that a bound stops.
+    /// Parameters at a bound.
     pub at_bound: Vec<AtBoundDocument>,
-    /// Combinations of free parameters that no target feels, to first order: the plan is one of many.
-    /// Their parameters stay as near to rest as the bounds allow.
+    /// Combinations of free parameters without first-order effect on the targets: the plan is not unique.
+    /// Their parameters are as near to no change as the bounds allow.
     pub undetermined: Vec<Vec<PartDocument>>,
     /// The sum of the squares of residual over `sigma_mm`.
     pub chi_squared: f64,
-    /// Components of targets less determined combinations of parameters: the mean of `chi_squared`
-    /// where the errors are those of `sigma_mm`.
+    /// Target components minus determined combinations of parameters: the mean of `chi_squared`
+    /// if the errors are those of `sigma_mm`.
     pub degrees_of_freedom: u64,
-    /// Root of `chi_squared` over `degrees_of_freedom`: standard errors times this are those that the residual tells, whatever
-    /// `sigma_mm` says. Absent without degrees of freedom.
+    /// Root of `chi_squared` over `degrees_of_freedom`: standard errors times this are those from the residual, independent of
+    /// `sigma_mm`. Absent without degrees of freedom.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub residual_factor: Option<f64>,
@@ -65,10 +65,10 @@ pub struct OptimisationDocument {
     pub verified_difference_mm: Option<f64>,
 }
 
-/// What is left of a target.
+/// The residual of a target.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct TargetResidualDocument {
-    /// Root of the mean over its points of the squared distance, over the components that are not free.
+    /// Root mean square over its points of the distance, in the components that are not free.
     pub residual_mm: f64,
     /// The largest of these distances.
     pub largest_mm: f64,
@@ -92,7 +92,7 @@ pub struct FreeParameterDocument {
     pub value: f64,
 }
 
-/// A number that a bound stops.
+/// A parameter at a bound.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct AtBoundDocument {
     /// Of a movement.
@@ -108,7 +108,7 @@ pub struct AtBoundDocument {
     pub bound: BoundName,
 }
 
-/// The part of a parameter in a combination.
+/// The coefficient of a parameter in a combination.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct PartDocument {
     /// Of a movement.
@@ -120,7 +120,7 @@ pub struct PartDocument {
     #[schema(nullable = false)]
     pub region: Option<String>,
     pub name: ParameterName,
-    /// In mm, degrees, hundredths of a volume or of Poisson's ratio, and per cent of Young's modulus; the largest part of a
+    /// In mm, degrees, hundredths of a volume or of Poisson's ratio, and per cent of Young's modulus; the largest of a
     /// combination is 1.
     pub part: f64,
 }
@@ -163,10 +163,10 @@ pub enum BoundName {
     Upper,
 }
 
-/// A constant that was looked for: of which region, and of which kind.
+/// An estimated constant: its region and its kind.
 pub type NamedConstant = (String, ConstantKind);
 
-/// What was found, and what it is called.
+/// The optimum, and its names.
 #[derive(Clone, Copy)]
 pub struct NamedOptimum<'a> {
     pub spec: &'a OptimiseDocument,
@@ -217,7 +217,7 @@ impl OptimisationDocument {
 }
 
 impl NamedOptimum<'_> {
-    /// How much of the document's unit one mm, one radian, a whole share, or a factor e of a modulus is.
+    /// Value in the document's unit of one mm, one radian, a share of 1, or a factor e of a modulus.
     fn unit(&self, parameter: Parameter) -> f64 {
         match parameter {
             Parameter::Movement { .. } if parameter.is_angle() => 1_f64.to_degrees(),
@@ -277,7 +277,7 @@ impl NamedOptimum<'_> {
         plan
     }
 
-    /// The segment or the region of a parameter, and what it is called.
+    /// The segment or the region of a parameter, and its name.
     fn name(&self, parameter: Parameter) -> (Option<String>, Option<String>, ParameterName) {
         match parameter {
             Parameter::Movement { segment, number } => {
@@ -323,7 +323,7 @@ impl NamedOptimum<'_> {
 }
 
 impl ParameterName {
-    /// As sentences call it.
+    /// Its name in sentences.
     pub fn words(self) -> &'static str {
         match self {
             ParameterName::TranslationX

@@ -13,15 +13,15 @@ use crate::schema::{PartialTriple, Triple};
 use mechanics::mesh::Vector;
 use mechanics::mesh::ignored::listed;
 
-/// Standard deviations in mm: a ratio beyond that of these would drown the looser target in rounding.
+/// Range of standard deviations in mm: with a larger ratio rounding would dominate the looser target.
 const SIGMA_MM: (f64, f64) = (1e-3, 1e3);
 
-/// Where a part of the skin is to be: exactly one of `nodes` and `landmark`, and exactly one of
+/// The desired position of a part of the skin: exactly one of `nodes`, `landmark` and a point, and exactly one of
 /// `position_mm` and `displacement_mm`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TargetDocument {
-    /// Holds for every selected node of the skin.
+    /// Applies to every selected node of the skin.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub nodes: Option<SelectionDocument>,
@@ -29,15 +29,15 @@ pub struct TargetDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub landmark: Option<String>,
-    /// A place in mm in the frame of the case, at rest; it moves as the point of the skin closest to it.
+    /// A point in mm in the frame of the case, undeformed; it moves as the point of the skin closest to it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub point_mm: Option<Triple>,
-    /// Where it is to be; a component that is null is free.
+    /// The desired position; a component that is null is free.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub position_mm: Option<PartialTriple>,
-    /// How far it is to move; a component that is null is free.
+    /// The desired displacement; a component that is null is free.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub displacement_mm: Option<PartialTriple>,
@@ -71,7 +71,7 @@ impl TargetDocument {
             && !case.landmarks.contains_key(name)
         {
             let known = listed(case.landmarks.keys());
-            let detail = format!("the case has no landmark {name:?}; it has {known}");
+            let detail = format!("the case has no landmark {name:?}, only {known}");
             faults.add(&at.key("landmark"), ErrorCode::UnknownLandmark, detail);
         }
         let places = [self.position_mm, self.displacement_mm];
@@ -94,7 +94,7 @@ impl TargetDocument {
         faults.check_range(&at.key("sigma_mm"), self.sigma_mm, least..=most, "mm");
     }
 
-    /// The components that are stated, and where they stand.
+    /// The components that are stated, and their places.
     pub fn wanted(&self, at: &Pointer) -> (Pointer, [Option<f64>; 3]) {
         match (self.position_mm, self.displacement_mm) {
             (Some(position), _) => (at.key("position_mm"), position.0),
@@ -102,7 +102,7 @@ impl TargetDocument {
         }
     }
 
-    /// The displacement that is wanted of a point with this place at rest.
+    /// The desired displacement of a point with this undeformed position.
     pub fn displacement(&self, rest: &Vector) -> [Option<f64>; 3] {
         match self.position_mm {
             Some(PartialTriple(position)) => {

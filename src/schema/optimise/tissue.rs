@@ -18,11 +18,11 @@ use mechanics::prediction::VOLUME_CHANGE;
 const POISSON_RATIO: RangeInclusive<f64> = 0.0..=0.5_f64.next_down();
 const YOUNG_MODULUS_KPA: RangeInclusive<f64> = 1e-9..=1e9;
 
-/// Between which values growth and constants of a region may be. Equal ends hold a value; what is left out stays as it is.
+/// Bounds of growth and constants of a region. Equal bounds fix a value; omitted members keep theirs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TissueBoundsDocument {
-    /// What free tissue would gain as a share of its volume, in [-0.5, 1]; a region has it here or in `growth`.
+    /// Volume gain of unconstrained tissue, as a share, in [-0.5, 1]; a region has it here or in `growth`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub volume_change: Option<Interval>,
@@ -30,8 +30,8 @@ pub struct TissueBoundsDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub poisson_ratio: Option<Interval>,
-    /// In [1e-9, 1e9]. Where nothing but bone moves tissue only ratios of moduli matter: that of one region is looked for, and
-    /// that of another stays.
+    /// In [1e-9, 1e9]. If only bone moves tissue, only ratios of moduli matter: estimate that of one region, and
+    /// fix that of another.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub young_modulus_kpa: Option<Interval>,
@@ -43,7 +43,7 @@ impl TissueBoundsDocument {
         all.into_iter().flatten().any(|Interval([low, high])| low < high)
     }
 
-    /// The constants of the material that are looked for.
+    /// The unknown constants of the material.
     pub fn constants(&self) -> Vec<(ConstantKind, [f64; 2])> {
         let both = [
             (ConstantKind::YoungModulus, self.young_modulus_kpa),
@@ -70,7 +70,7 @@ impl TissueBoundsDocument {
     }
 }
 
-/// Adds what is wrong with the bounds of tissue, but for what only the mesh can tell.
+/// Adds the faults of the bounds of tissue, except those that need the mesh.
 pub(super) fn check_tissue(
     bounds: &BTreeMap<String, TissueBoundsDocument>,
     growth: &[GrowthDocument],

@@ -16,12 +16,12 @@ use crate::schema::wire::limits::Limits;
 use crate::schema::wire::names::check_distinct;
 use crate::schema::wire::problem::Problem;
 
-/// Beside an osteotomy tissue is lifted; with cells of 4 mm this frees one row of nodes on either side.
+/// Near an osteotomy tissue is detached; with cells of 4 mm this frees one row of nodes on either side.
 const FREE_BAND_MM: f64 = 3.0;
 
-/// What the document is read in.
+/// The context of reading the document.
 pub struct OsteotomyContext<'a> {
-    /// Whether the document is written in the other of LPS and RAS than the scan.
+    /// Whether the document is in the other of LPS and RAS than the scan.
     pub mirrored_axes: bool,
     pub limits: &'a Limits,
 }
@@ -41,7 +41,7 @@ impl OsteotomyContext<'_> {
 }
 
 impl OsteotomyDocument {
-    /// What is wrong is added to `faults`; `None` where anything is.
+    /// Errors are added to `faults`; then the result is `None`.
     pub fn to_osteotomy(
         &self,
         at: &Pointer,
@@ -96,7 +96,7 @@ impl OsteotomyDocument {
             .map(|(number, line)| {
                 let at = place.index(number);
                 if self.cuts.iter().any(|cut| cut.name.trim() == line.name.trim()) {
-                    let detail = format!("`{}` is the name of a cut too", line.name.trim());
+                    let detail = format!("`{}` is also the name of a cut", line.name.trim());
                     faults.add(&at.key("name"), ErrorCode::DuplicateName, detail);
                 }
                 line.to_cuts(&at, number, context, faults)
@@ -121,7 +121,7 @@ impl OsteotomyDocument {
     }
 }
 
-/// Segments that are bones of their own, cut by nothing; pointers start at the list of them.
+/// Segments that are separate bones without cuts; pointers start at the list of them.
 pub fn given_segments(
     names: &[&str],
     at: &Pointer,
@@ -147,7 +147,7 @@ fn code_of(error: &RuleError) -> ErrorCode {
     }
 }
 
-/// The refusal of a segment that the bone of a scan does not hold, at its place.
+/// The refusal of a segment that is not in the bone of a scan, at its place.
 pub fn unfound(error: &LabelError, osteotomy: &Osteotomy, at: &Pointer) -> Problem {
     let named = |name: &str| {
         let number = osteotomy.segments().iter().position(|segment| segment.name == name);
@@ -166,7 +166,7 @@ pub fn unfound(error: &LabelError, osteotomy: &Osteotomy, at: &Pointer) -> Probl
     Problem::at(&place, ErrorCode::SegmentNotFound, error.to_string())
 }
 
-/// Refuses segments that bone still holds to what a cut should part them from.
+/// Refuses segments still connected by bone across a cut.
 pub fn refuse_bridges(
     bridges: &[Bridge],
     osteotomy: &Osteotomy,
@@ -177,7 +177,7 @@ pub fn refuse_bridges(
         let segment = &osteotomy.segments()[bridge.segment].name;
         let [x, y, z]: [f64; 3] = bridge.centre.into();
         let detail = match bridge.faces {
-            0 => format!("bone of segment `{segment}` goes around the cut, not beside its extent"),
+            0 => format!("bone of segment `{segment}` is around the cut, not beside its extent"),
             faces => format!(
                 "segment `{segment}` still hangs at {:.1} mm² of bone ({faces} faces of voxels) around \
                  ({x:.1}, {y:.1}, {z:.1}) mm, beside the extent of the cut",
@@ -215,7 +215,7 @@ impl CutDocument {
     }
 }
 
-/// The member that is wrong; a point may be that of the plane or a corner.
+/// The invalid member; a point may be that of the plane or a corner.
 fn member_of(error: &CutError) -> Option<&'static str> {
     match error {
         CutError::Point => None,
@@ -251,7 +251,7 @@ impl CutSegmentDocument {
                     }
                     None => {
                         all_known = false;
-                        let detail = format!("no cut is called `{}`", wanted.trim());
+                        let detail = format!("there is no cut `{}`", wanted.trim());
                         let at = at.key(member).index(number);
                         faults.add(&at, ErrorCode::UnknownCut, detail);
                     }

@@ -1,4 +1,4 @@
-//! The cuts of a plan and the segments that they part from the bone of a scan.
+//! The cuts of a plan and the segments that they separate from the bone of a scan.
 
 pub mod conversion;
 pub mod document;

@@ -9,7 +9,7 @@ use crate::schema::code::ErrorCode;
 use crate::schema::wire::fault::{Faults, Pointer};
 
 impl PolylineCutDocument {
-    /// A cut for each piece of the line, which is that number of its list.
+    /// A cut for each piece of the line, in order.
     pub(super) fn to_cuts(
         &self,
         at: &Pointer,
@@ -23,7 +23,7 @@ impl PolylineCutDocument {
         let most = context.limits.list_entries as usize;
         faults.check_length(&place, count, most);
         if count < 2 {
-            let detail = format!("a line has two points or more, here are {count}");
+            let detail = format!("a line needs two or more points, this one has {count}");
             faults.add(&place, ErrorCode::OutOfRange, detail);
         }
         let depth = at.key("depth_mm");
@@ -34,7 +34,7 @@ impl PolylineCutDocument {
         let line: Vec<Vector> = self.polyline_mm.iter().map(|&p| context.vector(p)).collect();
         let direction = context.vector(self.direction).try_normalize(1e-9);
         let Some(direction) = direction.filter(|direction| direction.norm().is_finite()) else {
-            let detail = "the direction is shorter than 1e-9 or no number";
+            let detail = "the direction is shorter than 1e-9 or not a number";
             faults.add(&at.key("direction"), ErrorCode::OutOfRange, detail);
             return None;
         };
@@ -44,7 +44,7 @@ impl PolylineCutDocument {
             let (member, detail) = match &error {
                 CutError::Kerf { .. } => ("kerf_mm", error.to_string()),
                 CutError::Normal | CutError::Radius { .. } | CutError::Polygon { .. } => {
-                    let detail = "a piece of the line is along the direction, or has no length";
+                    let detail = "a piece is parallel to the direction, or has no length";
                     ("polyline_mm", detail.to_owned())
                 }
                 CutError::Point => ("polyline_mm", error.to_string()),

@@ -12,7 +12,7 @@ use crate::schema::wire::names::check_distinct;
 /// Points, and triangles, of a structure as a surface.
 const MOST_OF_SURFACE: usize = 20_000;
 
-/// No head is farther from the origin of its scan.
+/// The largest distance of a head from the origin of its scan.
 const FARTHEST_MM: f64 = 1e5;
 
 impl OsteotomyDocument {
@@ -38,11 +38,11 @@ impl OsteotomyDocument {
             let beyond =
                 |corners: &TriangleCorners| corners.0.iter().any(|&own| own as usize >= count);
             if let Some(triangle) = risk.triangles.iter().position(beyond) {
-                let detail = format!("a corner is none of the {count} points, which count from 0");
+                let detail = format!("a corner is not one of the {count} points, counted from 0");
                 faults.add(&triangles.index(triangle), ErrorCode::OutOfRange, detail);
             }
             if count < 2 {
-                let detail = format!("a line has two points or more, here are {count}");
+                let detail = format!("a line needs two or more points, this one has {count}");
                 faults.add(&place, ErrorCode::OutOfRange, detail);
             }
             for (number, point) in risk.points_mm.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! Plan document: the movements of the segments of a case, and for mechanical cases the loads.
+//! Plan document: the movements of the segments of a case, and loads.
 
 use std::collections::BTreeSet;
 
@@ -22,15 +22,15 @@ use mechanics::prediction::{Plan, Prescribed};
 pub use super::inner::{ActivationDocument, GrowthDocument};
 pub use super::load::LoadDocument;
 
-/// What moves and what acts; coordinates in `frame`.
+/// Movements, loads and prescribed displacements; coordinates in `frame`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PlanDocument {
-    /// Tells it from other plans of the case; decides nothing of what is computed.
+    /// Distinguishes it from other plans of the case; no effect on results.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub name: Option<String>,
-    /// Segments that are not named stay where they are.
+    /// Segments that are not named stay.
     #[serde(default)]
     pub segments: Vec<PlanSegmentDocument>,
     /// Default: the frame of the case.
@@ -44,10 +44,10 @@ pub struct PlanDocument {
     /// Regions whose tissue gains or loses volume.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub growth: Vec<GrowthDocument>,
-    /// Muscles that pull.
+    /// Active muscles.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub activations: Vec<ActivationDocument>,
-    /// Cuts through the bone of a scan, for a case that is made from one.
+    /// Cuts through the bone of a scan, for a case made from one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub osteotomy: Option<OsteotomyDocument>,
@@ -69,7 +69,7 @@ pub struct PlanSegmentDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub rotation_order: Option<RotationOrder>,
-    /// Required where a rotation is not 0.
+    /// Required if a rotation is not 0.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub pivot_mm: Option<Triple>,
@@ -87,7 +87,7 @@ pub struct PlanSegmentDocument {
     pub sequence: Option<Vec<MovementDocument>>,
 }
 
-/// Displacements prescribed at nodes: exactly one of `displacement_mm` and `array`.
+/// Prescribed displacements of nodes: exactly one of `displacement_mm` and `array`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PrescribedDocument {
@@ -102,17 +102,17 @@ pub struct PrescribedDocument {
     pub array: Option<String>,
 }
 
-/// What a plan is checked against.
+/// The context of checking a plan.
 pub struct PlanContext<'a> {
     pub frame: Frame,
-    /// The centre of the mesh's bounding box in mm; `None` where there is no mesh yet.
+    /// The centre of the mesh's bounding box in mm; `None` if there is no mesh yet.
     pub centre: Option<Vector>,
     pub limits: &'a Limits,
 }
 
 impl PlanDocument {
-    /// The cuts of a plan for a scan in `frame`, taken out of it, with its segments held against theirs. `None` where
-    /// there are none or something is wrong with them.
+    /// The cuts of a plan for a scan in `frame`, taken out of it, with its segments checked against theirs. `None` if
+    /// there are none or they have faults.
     pub fn take_osteotomy(
         &mut self,
         at: &Pointer,
@@ -127,7 +127,7 @@ impl PlanDocument {
         for (index, segment) in self.segments.iter().enumerate() {
             let name = segment.name.trim();
             if !is_cut(name) {
-                let detail = format!("no segment of the osteotomy is called `{name}`");
+                let detail = format!("the osteotomy has no segment `{name}`");
                 let at = at.key("segments").index(index).key("name");
                 faults.add(&at, ErrorCode::UnknownSegment, detail);
             }
@@ -135,7 +135,7 @@ impl PlanDocument {
         document.to_osteotomy(&at.key("osteotomy"), &context, faults)
     }
 
-    /// What it says of movements and of what acts.
+    /// Its movements and loads.
     pub fn unnamed(&self) -> PlanDocument {
         PlanDocument { name: None, ..self.clone() }
     }
@@ -146,12 +146,11 @@ impl PlanDocument {
         }
     }
 
-    /// The plan in the frame of the case, whose segments are there. What is wrong is added to `faults`, and left out of
+    /// The plan in the frame of the case, whose segments are known. Faulty parts are added to `faults`, and omitted from
     /// the plan.
     pub fn to_plan(&self, at: &Pointer, context: &PlanContext, faults: &mut Faults) -> Plan {
         if self.osteotomy.is_some() {
-            let detail =
-                "the case has a mesh with its segments, and no scan whose bone could be cut";
+            let detail = "the case has a mesh with its segments, and no scan with bone to cut";
             faults.add(&at.key("osteotomy"), ErrorCode::NoScan, detail);
         }
         let limits = context.limits;
@@ -175,7 +174,7 @@ impl PlanDocument {
         }
     }
 
-    /// Every surface its selections ask for, with its place; some may be names of bones of the case.
+    /// Every surface of its selections, with its place; some may be names of bones of the case.
     pub fn surface_references_mut(&mut self) -> Vec<(Pointer, &mut String)> {
         let root = Pointer::root();
         let mut found = Vec::new();
@@ -203,7 +202,7 @@ impl PlanDocument {
         }
         if plan_frame == Frame::Unspecified || case_frame == Frame::Unspecified {
             let detail = format!(
-                "the plan is in frame {plan_frame} and the case in {case_frame}: state the `frame` of the one that has none (of a mesh on \
+                "the plan is in frame {plan_frame}, the case in {case_frame}: state the `frame` of the one without (for a mesh on \
                  the command line, `--frame LPS`)"
             );
             faults.add(&at.key("frame"), ErrorCode::FrameConflict, detail);

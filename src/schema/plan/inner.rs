@@ -10,18 +10,18 @@ use crate::schema::wire::fault::{Faults, Pointer};
 use crate::schema::wire::limits::Limits;
 use mechanics::prediction::{Activation, Growth, PULL, VOLUME_CHANGE};
 
-/// Tissue of a region that gains volume or loses it: swelling, weight change, atrophy.
+/// Volume gain or loss of a region: swelling, weight change, atrophy.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct GrowthDocument {
-    /// A region of the case, `tissue` where it has none; `*` stands for every region without an entry of its own.
+    /// A region of the case, `tissue` if it has none; `*` is every region without an entry.
     pub region: String,
-    /// What free tissue would gain, as a share of its volume; in [-0.5, 1].
+    /// Volume gain of unconstrained tissue, as a share; in [-0.5, 1].
     #[schema(minimum = -0.5, maximum = 1.0)]
     pub volume_change: f64,
 }
 
-/// A muscle that pulls along its fibres.
+/// Activation of a muscle along its fibres.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ActivationDocument {
@@ -52,7 +52,7 @@ pub fn to_growth(
     growth
 }
 
-/// Muscles and how hard they pull.
+/// Muscles and their stresses.
 pub fn to_activations(
     documents: &[ActivationDocument],
     at: &Pointer,
@@ -71,14 +71,14 @@ pub fn to_activations(
     activations
 }
 
-/// Names of one kind that were read.
+/// Names of one kind read so far.
 struct Names<'a> {
     kind: &'static str,
     seen: BTreeSet<&'a str>,
 }
 
 impl<'a> Names<'a> {
-    /// A name without spaces around it; refuses one that was there before.
+    /// A name without surrounding spaces; refuses duplicates.
     fn check(
         &mut self,
         name: &'a str,

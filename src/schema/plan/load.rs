@@ -1,4 +1,4 @@
-//! Loads of mechanical cases: forces at nodes, tractions and pressures on faces, gravity.
+//! Loads: forces at nodes, tractions and pressures on faces, gravity.
 
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;

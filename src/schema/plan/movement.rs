@@ -10,14 +10,14 @@ use crate::schema::{Matrix4x4, Triple};
 use mechanics::mesh::Vector;
 use mechanics::plan::{Restriction, RigidMovement};
 
-/// Farthest coordinate of a pivot: beyond any scanner's origin in use.
+/// Largest coordinate of a pivot, beyond the origin of any scanner in use.
 pub const FARTHEST_PIVOT_MM: f64 = 1e8;
 
-/// Lengths of a direction whose square is a number.
+/// Lengths of a direction with a finite square.
 const SHORTEST_DIRECTION: f64 = 1e-6;
 const LONGEST_DIRECTION: f64 = 1e6;
 
-/// The order in which the three rotations act.
+/// The order of the three rotations.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 pub enum RotationOrder {
     /// R = Rz Ry Rx about fixed axes.
@@ -39,7 +39,7 @@ pub struct MovementDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub rotation_order: Option<RotationOrder>,
-    /// Required where a rotation is not 0.
+    /// Required if a rotation is not 0.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub pivot_mm: Option<Triple>,
@@ -53,8 +53,8 @@ pub struct MovementDocument {
     pub restrict_to: Option<RestrictionDocument>,
 }
 
-/// What a movement is restricted to: exactly one of an axis and a plane. Of the movement that is stated remain the shift
-/// along it and the turn about the axis or about the plane's normal, at the pivot.
+/// The restriction of a movement: exactly one of an axis and a plane. Of the stated movement remain the translation
+/// along it and the rotation about the axis or about the plane's normal, at the pivot.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RestrictionDocument {
@@ -88,11 +88,11 @@ impl RestrictionDocument {
     }
 }
 
-/// What a plan's coordinates are measured against.
+/// The context of a plan's coordinates.
 pub struct MovementContext<'a> {
-    /// True where the plan is written in the other of LPS and RAS than the case.
+    /// True if the plan is in the other of LPS and RAS than the case.
     pub mirrored_axes: bool,
-    /// The centre of the mesh's bounding box in mm, in the frame of the case; `None` where there is no mesh yet.
+    /// The centre of the mesh's bounding box in mm, in the frame of the case; `None` if there is no mesh yet.
     pub centre: Option<Vector>,
     pub limits: &'a Limits,
 }
@@ -111,7 +111,7 @@ impl MovementContext<'_> {
         }
     }
 
-    /// Refuses a whole movement that turns too far or displaces the centre of the mesh too far.
+    /// Refuses a total movement that rotates too far or displaces the centre of the mesh too far.
     pub fn check_whole(&self, at: &Pointer, movement: &RigidMovement, faults: &mut Faults) {
         let degrees = movement.angle().to_degrees();
         let turn_limit = self.limits.rotation_deg;
@@ -133,7 +133,7 @@ impl MovementContext<'_> {
 }
 
 impl MovementDocument {
-    /// True where fields of the form with `translation_mm` and `rotation_deg` are given.
+    /// True if fields of the form with `translation_mm` and `rotation_deg` are given.
     pub fn has_pivot_form(&self) -> bool {
         self.translation_mm.is_some()
             || self.rotation_deg.is_some()
@@ -142,7 +142,7 @@ impl MovementDocument {
             || self.restrict_to.is_some()
     }
 
-    /// The movement in the frame of the case; `None` where faults were added.
+    /// The movement in the frame of the case; `None` if faults were added.
     pub fn to_movement(
         &self,
         at: &Pointer,

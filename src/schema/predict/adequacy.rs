@@ -10,7 +10,7 @@ use mechanics::prediction::{Accepted, Adequate, Considered, MeanErrors};
 /// The choice of the method `auto`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct AdequacyDocument {
-    /// The mean error over the skin that was accepted, in mm.
+    /// The accepted mean error over the skin, in mm.
     pub accepted_mm: f64,
     /// The same over parts of the skin.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
@@ -21,26 +21,26 @@ pub struct AdequacyDocument {
     /// that passes through itself by more than is accepted, contact that leaves parts in each other.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub objections: Vec<String>,
-    /// The model that was taken: `linear`, `second_order` or `finite_strain`, or one of these with what its mesh leaves out
+    /// The chosen model: `linear`, `second_order` or `finite_strain`, or one of these with its estimated mesh error
     /// added: `corrected`, `second_order_corrected`, `finite_strain_corrected`.
     pub taken: String,
-    /// Mean errors over the skin, estimated with the linear answer, in mm: what its mesh leaves out, and what linearity does.
-    /// Absent where they are not known.
+    /// Mean errors over the skin, estimated with the linear solution, in mm: of the mesh, and of linearity.
+    /// Absent if unknown.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub mesh_mm: Option<f64>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub linearity_mm: Option<f64>,
-    /// What the answer to second order leaves out, where that was tried.
+    /// Error of the second-order solution, if it was tried.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub third_order_mm: Option<f64>,
-    /// What the mesh leaves out at finite strain, where that was tried.
+    /// Mesh error at finite strain, if that was tried.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub mesh_at_rest_mm: Option<f64>,
-    /// From the cheapest to the dearest.
+    /// From the cheapest to the most expensive.
     pub rungs: Vec<RungDocument>,
 }
 
@@ -48,20 +48,20 @@ pub struct AdequacyDocument {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct RungDocument {
     pub name: String,
-    /// The mean error over the skin that is expected of it, in mm; absent where it is not known.
+    /// Its expected mean error over the skin, in mm; absent if unknown.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub error_mm: Option<f64>,
-    /// The same over the parts of the skin that an error is accepted for.
+    /// The same over the parts of the skin with an accepted error.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub regions_mm: BTreeMap<String, f64>,
-    /// Time it was expected to take, and time it took, in s, of the estimates of its answer too. A corrected answer is one
-    /// that is there, and takes none of its own.
+    /// Expected and actual time, in s, including its error estimates. A corrected solution is an
+    /// existing one, and takes no time.
     pub expected_s: f64,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub spent_s: Option<f64>,
-    /// Why it was not tried, or not possible: where the climb ended, and why.
+    /// Why it was not tried or not possible, or why the search ended here.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub passed_over: Option<String>,

@@ -6,7 +6,7 @@ use utoipa::ToSchema;
 use crate::schema::wire::fault::{Faults, Pointer};
 use crate::schema::wire::limits::Limits;
 
-/// What a job may take.
+/// The limits of a job.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct BudgetDocument {
@@ -19,7 +19,7 @@ pub struct BudgetDocument {
 }
 
 impl BudgetDocument {
-    /// Adds what is wrong with it, at its place.
+    /// Adds its faults, at its place.
     pub fn check(&self, at: &Pointer, limits: &Limits, faults: &mut Faults) {
         faults.check_range(&at.key("wall_s"), self.wall_s, 1e-3..=limits.wall_s, "s");
         faults.check_range(&at.key("memory_mb"), self.memory_mb, 1.0..=limits.memory_mb, "MB");

@@ -1,4 +1,4 @@
-//! Answer of a check: the boundary condition of every node, before anything is solved.
+//! Result of a check: the boundary condition of every node, before anything is solved.
 
 use std::collections::BTreeMap;
 
@@ -17,18 +17,18 @@ use crate::schema::case::muscle_mixing::MusclesDocument;
 use crate::schema::repair::RepairResultDocument;
 use crate::schema::wire::warning::WarningDocument;
 
-/// Wrong sets are the commonest mistake: these counts show them.
+/// Result of a check: its counts show wrong node sets, the most common mistake.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct CheckDocument {
     pub nodes: u64,
     pub cells: u64,
     pub classes: ClassCounts,
     pub skin: SkinSummary,
-    /// Of the volume, where the case asks for a repair.
+    /// Of the volume, if the case requests a repair.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub repair: Option<RepairResultDocument>,
-    /// What an image shows of the mesh, where materials come from one.
+    /// Tissues of the mesh by an image, if materials come from one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub imaged: Option<ImagedTissueDocument>,
@@ -38,43 +38,43 @@ pub struct CheckDocument {
     pub muscles: Option<MusclesDocument>,
     /// Unknown displacement components.
     pub unknowns: u64,
-    /// What the process of the job is expected to take; above `slot_memory_mb` of the limits the job is refused.
+    /// Expected memory of the process; above `slot_memory_mb` of the limits the job is refused.
     pub memory_mb: f64,
-    /// Where the table of measured times covers the method.
+    /// Present if the table of measured times covers the method.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub time_s: Option<TimeBandDocument>,
-    /// Where the spec has the mesh refined; numbers above are those of the mesh as it is.
+    /// If the spec refines the mesh; the numbers above are those of the original mesh.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub refine: Option<RefineBoundDocument>,
-    /// The method that was asked for, or the one that `auto` begins with.
+    /// The method of the spec, or the first one of `auto`.
     pub method: String,
     pub why: String,
-    /// What `auto` is expected to choose; absent where a method is asked for or no estimate can choose.
+    /// The expected choice of `auto`; absent for other methods or if no estimate can choose.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub auto: Option<ExpectationDocument>,
     /// Segments that the plan moves, for navigation.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub movements: Vec<MovementReportDocument>,
-    /// Bones that the plan moves into each other.
+    /// Collisions of bones under the plan.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub collisions: Vec<CollisionDocument>,
-    /// Where bones that the plan moves against each other touch, before and as planned: the occlusion, of jaws with their
+    /// Contact of bones that the plan moves against each other, before and as planned: the occlusion, of jaws with their
     /// teeth.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub contacts: Vec<BoneContactDocument>,
-    /// Measures of the head before and as planned, of the landmarks that the case states.
+    /// Cephalometric measures before and as planned, from the landmarks of the case.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub cephalometry: Vec<MeasureDocument>,
-    /// Pairs of landmarks and landmarks of the middle against the mid-sagittal plane, before and as planned.
+    /// Paired and midline landmarks relative to the mid-sagittal plane, before and as planned.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub symmetry: Vec<SymmetryDocument>,
     pub warnings: Vec<WarningDocument>,
 }
 
-/// How many nodes are held by what; each node is counted once, by the strongest that holds it.
+/// The number of nodes in each class; each node counts once, in its strongest class.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 pub struct ClassCounts {
     pub prescribed: u64,
@@ -85,7 +85,7 @@ pub struct ClassCounts {
     pub free: u64,
 }
 
-/// The surface whose movement is the answer.
+/// The skin, whose movement is the result.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct SkinSummary {
     pub nodes: u64,

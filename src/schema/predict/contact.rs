@@ -5,24 +5,24 @@ use utoipa::ToSchema;
 
 use mechanics::prediction::ContactKind;
 
-/// What happens at the sliding sets of the case, and where tissue meets other tissue or bone.
+/// Contact at the sliding sets of the case, and of tissue with other tissue or bone.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum ContactName {
-    /// Sliding sets are held across, and free along.
+    /// Sliding sets are constrained along normals, free tangentially.
     #[default]
     Sliding,
     /// Sliding sets are free.
     None,
-    /// As `sliding`, and no part of the boundary of the tissue passes through another one: closed gaps press, without
+    /// As `sliding`, and no part of the tissue boundary penetrates another: unilateral contact without
     /// friction. Of `fem_linear`, `mtm_ti` and `fem_nonlinear`.
     Unilateral,
-    /// `unilateral` where a gap closes, with a warning that says so; `sliding` elsewhere.
+    /// `unilateral` if a gap closes, with a warning; else `sliding`.
     Auto,
 }
 
 impl ContactName {
-    /// Whether what touches may press.
+    /// Whether contact may be unilateral.
     pub fn presses(self) -> bool {
         match self {
             ContactName::Unilateral | ContactName::Auto => true,

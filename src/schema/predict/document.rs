@@ -32,10 +32,10 @@ pub use super::estimate::EstimateName;
 pub use super::output::OutputName;
 pub use super::tolerance::ToleranceDocument;
 
-/// The displacement in mm at which colours end where nothing else is said.
+/// The default displacement in mm at the end of the colour scale.
 pub const USUAL_RANGE_MM: f64 = 10.0;
 
-/// Ranges of colours that make sense, in mm.
+/// Valid ranges of colours, in mm.
 pub const RANGES_MM: std::ops::RangeInclusive<f64> = 1e-3..=1e3;
 
 /// `predict`.
@@ -46,14 +46,14 @@ pub enum PredictKind {
     Predict,
 }
 
-/// A prediction: where the skin goes when a plan is carried out.
+/// A prediction of the skin under a plan.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PredictDocument {
     #[serde(default)]
     #[schema(required)]
     pub kind: PredictKind,
-    /// The id of the case. In files of the command line the case is beside the spec.
+    /// The id of the case. In files of the command line the case is next to the spec.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false, required)]
     pub case: Option<String>,
@@ -92,11 +92,11 @@ pub struct PredictDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub thickness_warp: Option<ThicknessWarpDocument>,
-    /// Over the materials of the case, field by field.
+    /// Overrides the materials of the case, by member.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false, value_type = Option<BTreeMap<String, MaterialDocument>>)]
     pub materials: Option<MaterialDocuments>,
-    /// Absent: the skin is tissue like the rest.
+    /// Absent: no membrane.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub membrane: Option<MembraneDocument>,
@@ -104,13 +104,13 @@ pub struct PredictDocument {
     pub contact: ContactName,
     #[serde(default)]
     pub tolerance: ToleranceDocument,
-    /// The mean error in mm that is accepted over the skin that moves (by more than a tenth of what moves farthest), of mesh
-    /// and model as far as they are estimated. Only with the method `auto`, which takes the cheapest model that is expected to meet it within the budget of time. Default: 0.1.
+    /// The accepted mean error in mm over the moving skin (by more than a tenth of the largest displacement), of mesh
+    /// and model as far as they are estimated. Only with the method `auto`, which takes the cheapest model expected to meet it within the time budget. Default: 0.1.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false, minimum = 0.001, maximum = 100.0)]
     pub accept_mm: Option<f64>,
-    /// Refines the mesh where the estimate of its error asks for it. Only with the methods `auto` and `fem_linear`. The result is
-    /// given at the nodes of the mesh of the case. Absent: the mesh is taken as it is.
+    /// Refines the mesh where its estimated error is large. Only with the methods `auto` and `fem_linear`. The result is
+    /// given at the nodes of the mesh of the case. Absent: no refinement.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub refine: Option<RefineDocument>,
@@ -120,10 +120,10 @@ pub struct PredictDocument {
     /// Whether the discretisation error of the skin is estimated.
     #[serde(default, skip_serializing_if = "EstimateName::is_default")]
     pub estimate: EstimateName,
-    /// Adds what the mesh leaves out, as far as that is estimated, to the displacement. Default: false.
+    /// Adds the estimated discretisation error to the displacement. Default: false.
     #[serde(default, skip_serializing_if = "is_false")]
     pub corrected: bool,
-    /// Adds stress and strain of cells and nodes to `volume.vtu`, which `outputs` then have to name, and stress by region to the
+    /// Adds stress and strain of cells and nodes to `volume.vtu`, required in `outputs`, and stress by region to the
     /// result. Default: false.
     #[serde(default, skip_serializing_if = "is_false")]
     pub stress: bool,
@@ -133,19 +133,19 @@ pub struct PredictDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub outputs: Option<Vec<OutputName>>,
-    /// The displacement at which the colours of `skin.glb` and `skin.ply` end, in mm; they begin at 0. Default: 10, for
-    /// every plan, so that files can be held side by side.
+    /// The displacement at the end of the colour scale of `skin.glb` and `skin.ply`, in mm; it begins at 0. Default: 10, for
+    /// every plan, so that files can be compared.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false, minimum = 0.001, maximum = 1000.0)]
     pub range_mm: Option<f64>,
-    /// Meshes of the result that are stored as if they had been uploaded. Default: none. Not on the command line.
+    /// Meshes of the result to be stored as if uploaded. Default: none. Not on the command line.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub keep: Vec<KeptName>,
     /// Compares the predicted skin with another surface in the same job.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub compare_to: Option<CompareToDocument>,
-    /// Corrects the skin by what was learned from operated cases, in a file of its own. Only with the method on whose predictions
+    /// Corrects the skin by a model learned from operated cases, in a separate file. Only with the method on whose predictions
     /// the model was learned, and without `accept_mm`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
@@ -155,7 +155,7 @@ pub struct PredictDocument {
 }
 
 impl PredictDocument {
-    /// What only a spec that arrives over HTTP must have: the case by id and one plan.
+    /// Required members of a spec over HTTP: the case by id and one plan.
     pub fn check_for_service(&self, faults: &mut Faults) {
         let root = Pointer::root();
         if self.case.is_none() {
@@ -165,7 +165,7 @@ impl PredictDocument {
         faults.check_one_of(&root, given, "`plan`, `plan_id`");
     }
 
-    /// The settings of the path; pointers start at `/spec`.
+    /// The settings of the numerics; pointers start at `/spec`.
     pub fn to_settings(&self, limits: &Limits, faults: &mut Faults) -> Settings {
         let at = Pointer::root().key("spec");
         let residual = self.tolerance.relative_residual;
@@ -184,7 +184,7 @@ impl PredictDocument {
             compare_to.check(&at.key("compare_to"), limits, faults);
         }
         if self.corrected && self.estimate == EstimateName::None {
-            let what = "an answer cannot be corrected by an error that is not estimated: `estimate` is \"none\"";
+            let what = "a correction needs an estimated error, and `estimate` is \"none\"";
             faults.add(&at.key("corrected"), ErrorCode::OneOf, what);
         }
         let membrane = self.membrane.as_ref();
@@ -203,7 +203,7 @@ impl PredictDocument {
         }
     }
 
-    /// What `auto` is to meet; none for a method that was asked for, and where nothing is estimated that could choose.
+    /// The accepted errors of `auto`; none for other methods, and if no estimate can choose.
     pub fn accepted(&self) -> Option<Accepted> {
         let chooses = self.method == MethodName::Auto
             && self.estimate == EstimateName::Auto
@@ -225,7 +225,7 @@ impl PredictDocument {
         let others: Vec<String> = others.map(|other| format!("`{}`", other.name())).collect();
         let detail = match others.is_empty() {
             true => {
-                format!("{} has no choice of elements: `auto` is what it is made of", method.title)
+                format!("{} has no choice of elements, only `auto`", method.title)
             }
             false => format!(
                 "{} has no element `{}`: there are `auto` and {}",
@@ -238,7 +238,7 @@ impl PredictDocument {
         faults.add(&at, ErrorCode::MethodNotAvailable, detail);
     }
 
-    /// Refuses an accepted error that is out of range, or that nothing chooses by.
+    /// Refuses an accepted error that is out of range, or not used.
     pub fn check_accepted(&self, at: &Pointer, faults: &mut Faults) {
         let place = at.key("accept_mm");
         if let Some(accepted) = self.accept_mm {
@@ -254,13 +254,13 @@ impl PredictDocument {
         }
         if self.method != MethodName::Auto {
             let detail = format!(
-                "an accepted error chooses the model, and the method is `{}`: leave one of them out",
+                "an accepted error chooses the model, and the method is `{}`: omit one of them",
                 self.method.name()
             );
             faults.add(&place, ErrorCode::MethodMismatch, detail);
         }
         if self.corrected || self.estimate == EstimateName::None {
-            let detail = "a model is chosen by its estimated errors, and corrected where that does: leave out `corrected` and \
+            let detail = "a model is chosen by its estimated errors, and corrected if sufficient: omit `corrected` and \
                           `estimate`";
             faults.add(&place, ErrorCode::OneOf, detail);
         }
@@ -280,29 +280,29 @@ impl PredictDocument {
         }
         if self.element.choice() == ElementChoice::Quadratic {
             let detail =
-                "meshes are refined for elements of first order: leave out `element` or `refine`";
+                "meshes are refined for elements of first order only: omit `element` or `refine`";
             faults.add(at, ErrorCode::OneOf, detail);
         }
         if self.contact.presses() {
             let detail =
-                "meshes are not refined where tissue presses: leave out `contact` or `refine`";
+                "meshes are not refined with unilateral contact: omit `contact` or `refine`";
             faults.add(at, ErrorCode::OneOf, detail);
         }
         if self.accept_mm.is_some() || self.estimate == EstimateName::None {
-            let detail = "a mesh is refined by the estimate of its error, and a model chosen for the mesh as it is: leave out \
+            let detail = "a mesh is refined by the estimate of its error, and a model chosen for a fixed mesh: omit \
                           `estimate`, and either `accept_mm` or `refine`";
             faults.add(at, ErrorCode::OneOf, detail);
         }
     }
 
-    /// Refines the mesh to another accepted error; limits and bounds that are stated stay.
+    /// Refines the mesh to another accepted error; stated limits and bounds remain.
     pub fn refine_to(&mut self, accept_mm: f64) {
         let stated = self.refine.take();
         let usual = || RefineDocument::new(accept_mm);
         self.refine = Some(stated.map_or_else(usual, |own| RefineDocument { accept_mm, ..own }));
     }
 
-    /// The displacement at which colours end, in mm.
+    /// The displacement at the end of the colour scale, in mm.
     pub fn range_mm(&self) -> f64 {
         self.range_mm.unwrap_or(USUAL_RANGE_MM)
     }
@@ -331,7 +331,7 @@ impl PredictDocument {
         files
     }
 
-    /// The meshes to keep, each once.
+    /// The meshes to store, each once.
     pub fn kept(&self) -> Vec<KeptName> {
         let mut kept = self.keep.clone();
         kept.sort_unstable();
@@ -339,7 +339,7 @@ impl PredictDocument {
         kept
     }
 
-    /// What decides the numbers, for the hash of the job: no tags, no ids, the plan in full.
+    /// Everything that determines the numbers, for the hash of the job: no tags, no ids, the plan in full.
     pub fn content(&self) -> Value {
         let mut plain = self.clone();
         plain.tags.clear();

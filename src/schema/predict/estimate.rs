@@ -1,9 +1,9 @@
-//! Setting that errors of the mesh are estimated, or not.
+//! Setting of the estimate of mesh errors.
 
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-/// `auto` estimates the discretisation error with every method for which that is possible; `none` saves the time.
+/// `auto` estimates the discretisation error for every method that supports it; `none` skips it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum EstimateName {
@@ -13,7 +13,7 @@ pub enum EstimateName {
 }
 
 impl EstimateName {
-    /// What is not written down.
+    /// The default, which is not serialised.
     pub(super) fn is_default(&self) -> bool {
         *self == EstimateName::Auto
     }

@@ -1,11 +1,11 @@
-//! Meshes that a prediction keeps: stored as if they had been uploaded, for use in other cases.
+//! Meshes that a prediction stores as if uploaded, for use in other cases.
 
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 use crate::schema::link::Link;
 
-/// A mesh of a prediction that can be kept, in mm in the frame of the case.
+/// A mesh of a prediction that can be stored, in mm in the frame of the case.
 #[derive(
     Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, ToSchema,
 )]
@@ -13,12 +13,12 @@ use crate::schema::link::Link;
 pub enum KeptName {
     /// The predicted skin, a surface.
     Skin,
-    /// The volume mesh of the case with every node where the prediction has it. Sets, labels and fibre directions are
+    /// The deformed volume mesh of the case. Sets, labels and fibre directions are
     /// those of the case.
     Volume,
 }
 
-/// A mesh that a job leaves, in mm.
+/// A mesh that a job stores, in mm.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum MadeName {
@@ -47,11 +47,11 @@ impl From<KeptName> for MadeName {
     }
 }
 
-/// A mesh that was kept. It goes with the job or its case, unless something else refers to it.
+/// A stored mesh. It is erased with the job or its case, unless something else refers to it.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 pub struct KeptMeshDocument {
     pub what: MadeName,
-    /// Of a bone, that of its segment.
+    /// Of a bone, the name of its segment.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub name: Option<String>,

@@ -1,4 +1,4 @@
-//! Newton's method at finite strain: how tissue came to rest.
+//! Report of Newton's method at finite strain.
 
 use std::collections::BTreeMap;
 
@@ -8,46 +8,46 @@ use utoipa::ToSchema;
 use super::pressing::StepContactDocument;
 use crate::schema::Triple;
 
-/// How tissue at finite strain came to rest.
+/// Report of Newton's method at finite strain.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct NewtonDocument {
     pub energy_mn_mm: f64,
-    /// The least det F of the points of all cells.
+    /// The least det F over the points of all cells.
     pub least_det_f: f64,
-    /// The share of movement and loads that was made before each step, and at rest; at most 200 of them.
+    /// The share of movement and loads applied before each step, and at equilibrium; at most 200 of them.
     pub path: Vec<f64>,
     pub inner_iterations: u64,
     pub hierarchies: u64,
-    /// Steps along which the tangent was not positive definite: tissue may then rest in another way too.
+    /// Steps with an indefinite tangent: tissue may then have another equilibrium too.
     pub indefinite_steps: u64,
-    /// Whether the tangent at rest is positive definite, as far as iterations see, pressures answering to displacements. Absent where
-    /// iterations ended before that was known, as with Poisson's ratios near 1/2, and where contact may hold what is not stable.
+    /// Whether the tangent at equilibrium is positive definite, as far as iterations see, pressures condensed out. Absent if
+    /// iterations ended before that was known, as with Poisson's ratios near 1/2, and if contact may stabilise the tissue.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub is_stable: Option<bool>,
-    /// The bulk modulus that stays in cells while a pressure carries the rest, as a multiple of the shear modulus; 0
+    /// The bulk modulus kept in cells beside a pressure unknown for the remainder, as a multiple of the shear modulus; 0
     /// without pressures.
     pub bulk_in_cells: f64,
-    /// How many cells keep it: those that are pressed to less than a fifth of their volume, or, where that jams, all.
+    /// Number of these cells: those compressed to less than a fifth of their volume, or, if that fails to converge, all.
     #[serde(default)]
     pub cells_with_bulk: u64,
-    /// Rest at the end of each part of a movement that found no rest at once, with more bulk modulus in the cells on the way.
+    /// Equilibrium after each part of a movement that did not converge in one, with more bulk modulus in cells until then.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub parts: Vec<RestOnTheWayDocument>,
 }
 
-/// Tissue at rest with a share of its movement and loads.
+/// Equilibrium under a share of movement and loads.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct RestOnTheWayDocument {
     pub share: f64,
     pub energy_mn_mm: f64,
-    /// The least det F of the points of all cells.
+    /// The least det F over the points of all cells.
     pub least_det_f: f64,
-    /// Steps since the rest before.
+    /// Steps since the previous equilibrium.
     pub steps: u64,
 }
 
-/// Tissue at rest at the end of a load step.
+/// Equilibrium at the end of a load step.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct LoadStepDocument {
     #[serde(flatten)]

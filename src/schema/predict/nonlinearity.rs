@@ -8,8 +8,8 @@ use utoipa::ToSchema;
 use mechanics::prediction::{Nonlinearity, Skin};
 use mechanics::validation::{Statistics, StatisticsError};
 
-/// The estimated length in mm of what linear elasticity leaves out: the second-order term of the same equilibrium at finite
-/// strain, with neo-Hookean tissue of the same constants at rest.
+/// The estimated linearisation error in mm: the second-order term of the same equilibrium at finite
+/// strain, with neo-Hookean tissue of the same constants at zero strain.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct NonlinearityDocument {
     /// Over the nodes of the skin.

@@ -38,7 +38,7 @@ pub enum OutputName {
     ResultJson,
 }
 
-/// A picture or a report, which the service draws when it is first asked for: pictures of predictions, reports of
+/// A picture or a report, which the service draws when first requested: pictures of predictions, reports of
 /// predictions, comparisons and studies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 pub enum PictureName {
@@ -62,7 +62,7 @@ impl PictureName {
     /// Those of comparisons and studies.
     pub const REPORTS: [PictureName; 2] = [PictureName::ReportHtml, PictureName::ReportPdf];
 
-    /// The file that it is where a spec asks for it.
+    /// Its file, if a spec names it.
     pub fn output(self) -> OutputName {
         match self {
             PictureName::Classes => OutputName::ClassesSvg,
@@ -72,7 +72,7 @@ impl PictureName {
         }
     }
 
-    /// What it is drawn from beside the input of a prediction.
+    /// The sources of the drawing beside the input of a prediction.
     pub fn drawn_from(self) -> Option<OutputName> {
         match self {
             PictureName::Classes => None,
@@ -82,7 +82,7 @@ impl PictureName {
         }
     }
 
-    /// Those that can be drawn of a prediction that has some files, and are not among them.
+    /// Those that can be drawn from a prediction with these files, and are not among them.
     pub fn beside(has: impl Fn(OutputName) -> bool) -> Vec<PictureName> {
         let is_left =
             |picture: &PictureName| !has(picture.output()) && picture.drawn_from().is_none_or(&has);

@@ -1,4 +1,4 @@
-//! Bones under a plan, before anything is predicted: movements for navigation, collisions, measures of the head.
+//! Bones under a plan, before any prediction: movements for navigation, collisions, cephalometric measures.
 
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
@@ -10,74 +10,74 @@ use mechanics::plan::{PlannedSegment, RigidMovement};
 use mechanics::validation::contact_map::ContactRegion;
 use mechanics::validation::penetration::Overlap;
 
-/// Most contact regions that are listed.
+/// The most listed contact regions.
 const MOST_REGIONS: usize = 50;
 
-/// A segment that moves. Every text gives the same bits when it is read again.
+/// A segment that moves. Its texts are read back bit for bit.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct MovementReportDocument {
     pub segment: String,
-    /// Moves bone, in the frame of the case: row-major, x' = R x + t in mm.
+    /// Movement of bone, in the frame of the case: row-major, x' = R x + t in mm.
     pub matrix4x4: Matrix4x4,
     pub rotation_deg: f64,
     /// The same as four lines of text.
     pub matrix_text: String,
-    /// An ITK transform file, `.tfm`: in LPS, and as files of ITK do it with the inverse, which resamples. Absent where
+    /// An ITK transform file, `.tfm`: in LPS, and by ITK's convention the inverse, which resamples. Absent if
     /// the case states no frame.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub itk_transform: Option<String>,
 }
 
-/// Two bones of which the plan moves one against the other, and that reach into each other.
+/// Two bones that the plan moves relative to each other, and that overlap.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct CollisionDocument {
     pub bones: [String; 2],
-    /// How deep, after the plan and before it; below 0.1 mm more than before there is no warning.
+    /// Depth after and before the plan; below 0.1 mm more than before there is no warning.
     pub depth_mm: f64,
     pub depth_before_mm: f64,
-    /// Of what both have in common after the plan, where both are closed; some percent of error.
+    /// Of the overlap after the plan, if both are closed; some per cent of error.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub overlap: Option<OverlapDocument>,
 }
 
-/// What two bones have in common.
+/// The overlap of two bones.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct OverlapDocument {
     pub volume_mm3: f64,
-    /// Its middle, with the second bone where the plan takes it.
+    /// Its centre, with the second bone as planned.
     pub middle_mm: Triple,
     pub radius_mm: f64,
 }
 
-/// Where two bones, such as jaws with their teeth, are near to each other or in each other: before the plan, and as
+/// Contact or overlap of two bones, such as jaws with their teeth: before the plan, and as
 /// planned.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct BoneContactDocument {
     /// Areas are of the first.
     pub bones: [String; 2],
-    /// Nearer than this is contact.
+    /// The distance below which bones are in contact.
     pub within_mm: f64,
     pub before: ContactMapDocument,
     pub planned: ContactMapDocument,
 }
 
-/// What of a bone touches another.
+/// The part of a bone in contact with another.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct ContactMapDocument {
     pub area_mm2: f64,
-    /// What of it lies inside the other bone.
+    /// The part of it inside the other bone.
     pub overlap_area_mm2: f64,
-    /// How deep; 0 where nothing does.
+    /// Depth; 0 if nothing is inside.
     pub depth_mm: f64,
-    /// How many stretches of contact there are.
+    /// The number of contact regions.
     pub count: u64,
     /// The largest of them, the largest first, at most 50.
     pub regions: Vec<ContactRegionDocument>,
 }
 
-/// A stretch of contact.
+/// A contact region.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct ContactRegionDocument {
     pub area_mm2: f64,
@@ -85,7 +85,7 @@ pub struct ContactRegionDocument {
     pub depth_mm: f64,
     /// The smallest distance; negative inside.
     pub least_gap_mm: f64,
-    /// Its middle, where the bones are then.
+    /// Its centre, with the bones at that stage.
     pub middle_mm: Triple,
 }
 
@@ -98,41 +98,41 @@ pub enum TissueName {
     Skin,
 }
 
-/// A cephalometric measure; one whose landmarks are not all there is left out.
+/// A cephalometric measure; one with missing landmarks is omitted.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct MeasureDocument {
     pub name: String,
     /// `deg`, `mm` or `1`.
     pub unit: String,
-    /// Whether landmarks of bone or of skin make it.
+    /// Whether it is of landmarks of bone or of skin.
     pub tissue: TissueName,
     /// Who defined it.
     pub source: String,
-    /// What is usual, where it is built in or the case states it.
+    /// Its norm, if built in or stated by the case.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub norm: Option<NormOfMeasureDocument>,
     pub before: f64,
-    /// Of bone, where the plan takes it.
+    /// Of bone, as planned.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub planned: Option<f64>,
-    /// Of skin, where it is predicted.
+    /// Of skin, as predicted.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub predicted: Option<f64>,
-    /// Of bone, where an operation took it, of a reproduction.
+    /// Of bone after the operation, in a reproduction.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub performed: Option<f64>,
 }
 
-/// The norm of a measure, and how many standard deviations each value is above its mean.
+/// The norm of a measure, and the standard score of each value.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct NormOfMeasureDocument {
     pub mean: f64,
     pub sd: f64,
-    /// Whose norm it is.
+    /// Source of the norm.
     pub source: String,
     pub before_z: f64,
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -146,41 +146,41 @@ pub struct NormOfMeasureDocument {
     pub performed_z: Option<f64>,
 }
 
-/// How a landmark of the middle, or a pair, lies to the mid-sagittal plane of the head before the operation.
+/// The asymmetry of a midline landmark, or a pair, about the mid-sagittal plane of the head before the operation.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct SymmetryDocument {
-    /// The landmark, or the pair without what says left or right.
+    /// The landmark, or the pair without its suffix of the side.
     pub landmark: String,
     pub tissue: TissueName,
-    /// Whose landmarks make the plane: those of the skin where `Po_L`, `Po_R`, `Or_L`, `Or_R`, `N` or `Me` of bone are missing.
+    /// The landmarks of the plane: those of the skin if `Po_L`, `Po_R`, `Or_L`, `Or_R`, `N` or `Me` of bone are missing.
     #[serde(default)]
     #[schema(required)]
     pub plane: TissueName,
     pub before: AsymmetryDocument,
-    /// Of bone, where the plan takes it.
+    /// Of bone, as planned.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub planned: Option<AsymmetryDocument>,
-    /// Of skin, where it is predicted.
+    /// Of skin, as predicted.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub predicted: Option<AsymmetryDocument>,
-    /// Of bone, where an operation took it, of a reproduction.
+    /// Of bone after the operation, in a reproduction.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub performed: Option<AsymmetryDocument>,
 }
 
-/// Of a landmark of the middle: how far it is beside the plane. Of a pair: what lies between the left one, mirrored, and the right one.
+/// Of a midline landmark: its offset from the plane. Of a pair: the difference of the mirrored left one and the right one.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct AsymmetryDocument {
-    /// To the patient's left; of a pair twice what its middle is beside the plane.
+    /// To the patient's left; of a pair twice the offset of its midpoint from the plane.
     pub left_mm: f64,
-    /// How much higher the left one is; 0 of a landmark of the middle.
+    /// Height of the left one above the right one; 0 for a midline landmark.
     pub up_mm: f64,
-    /// How much farther in front the left one is; 0 of a landmark of the middle.
+    /// Distance of the left one in front of the right one; 0 for a midline landmark.
     pub forwards_mm: f64,
-    /// The length of all three.
+    /// The length of the vector of all three.
     pub length_mm: f64,
 }
 
@@ -193,7 +193,7 @@ impl From<Asymmetry> for AsymmetryDocument {
 }
 
 impl MovementReportDocument {
-    /// `None` of a segment that stays.
+    /// `None` for a segment that stays.
     pub fn new(segment: &PlannedSegment, frame: Frame) -> Option<Self> {
         let movement = &segment.movement;
         if *movement == RigidMovement::default() {

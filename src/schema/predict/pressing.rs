@@ -5,34 +5,34 @@ use utoipa::ToSchema;
 
 use mechanics::prediction::{ContactPair, StepTouch, Touch};
 
-/// How tissue presses on what it touches.
+/// Contact of tissue.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct ContactDocument {
     /// In mm², of all pairs.
     pub area_mm2: f64,
     pub largest_pressure_kpa: f64,
-    /// How deep a part of the boundary is left behind what it faces, deeper than at rest: 0 but for rounding, or more at edges.
+    /// Remaining penetration of the boundary, beyond that at rest: 0 except for rounding, or more at edges.
     pub largest_penetration_mm: f64,
     pub pairs: Vec<ContactPairDocument>,
-    /// Solutions for a set of pressing points, how many of them changed the set, and how often closest points were looked for.
+    /// Solutions for an active set, changes of the set, and searches of closest points.
     pub passes: u64,
     pub set_changes: u64,
     pub rounds: u64,
-    /// How far the answer moved in the last round.
+    /// Change of the solution in the last round.
     pub last_moved_mm: f64,
     pub iterations: u64,
 }
 
-/// Two parts of the boundary that press on each other.
+/// Two parts of the boundary in contact.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct ContactPairDocument {
-    /// Two names, of segments, of bones and of `skin_regions`; `fixed`, `skin` and `inner` for the rest.
+    /// Two names, of segments, of bones and of `skin_regions`; `fixed`, `skin` and `inner` for other parts.
     pub between: Vec<String>,
-    /// Nodes that are pressed, on both sides.
+    /// Nodes under pressure, on both sides.
     pub nodes: u64,
     pub area_mm2: f64,
     pub largest_pressure_kpa: f64,
-    /// The sum of what presses, across the surfaces.
+    /// The total normal force.
     pub force_mn: f64,
 }
 

@@ -10,18 +10,18 @@ use crate::schema::wire::fault::{Faults, Pointer};
 use crate::schema::wire::limits::Limits;
 use mechanics::prediction::{AdaptivePrediction, Level, RefinementGoal, Stop};
 
-/// Errors that may be accepted, in mm.
+/// Valid accepted errors, in mm.
 pub const ACCEPTED_MM: std::ops::RangeInclusive<f64> = 1e-3..=1e2;
 
-/// Until the estimated error of the skin is accepted, or a bound is met. Only tetrahedra, of linear finite elements.
+/// Refinement until the estimated error of the skin is accepted, or a bound is met. Linear tetrahedra only.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RefineDocument {
-    /// The mean error in mm that is accepted over the skin nodes of the case that move (by more than a tenth of what moves
-    /// farthest).
+    /// The accepted mean error in mm over the skin nodes of the case that move (by more than a tenth of the largest
+    /// displacement).
     #[schema(minimum = 0.001, maximum = 100.0)]
     pub accept_mm: f64,
-    /// The same for some of `skin_regions`, by name.
+    /// The same for parts of `skin_regions`, by name.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub regions: BTreeMap<String, f64>,
     /// The most cells of a mesh.
@@ -34,30 +34,30 @@ fn default_cells() -> u64 {
     400_000
 }
 
-/// Report of `check` on the mesh that may be refined.
+/// Report of `check` on a mesh to be refined.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct RefineBoundDocument {
-    /// The most cells of a mesh: those of the spec, or fewer where the memory of a job holds no more.
+    /// The most cells of a mesh: those of the spec, or fewer if limited by the memory of a job.
     pub cells: u64,
-    /// What the process of the job is expected to take with so many.
+    /// Expected memory of the process with this number.
     pub memory_mb: f64,
 }
 
-/// How the mesh was refined.
+/// The refinement of the mesh.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct RefinementDocument {
     pub accepted_mm: f64,
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub accepted_regions_mm: BTreeMap<String, f64>,
-    /// Whether the estimates on the last mesh are within what was accepted.
+    /// Whether the estimates on the last mesh are accepted.
     pub met: bool,
-    /// Why no finer mesh was made: `met`, or the bound `cells`, `time` or `memory`.
+    /// Why refinement stopped: `met`, or the bound `cells`, `time` or `memory`.
     pub stopped: String,
-    /// The meshes, the first one that of the case.
+    /// The meshes, beginning with that of the case.
     pub levels: Vec<RefinementLevelDocument>,
 }
 
-/// A mesh that was solved on, with the estimated error at the skin nodes of the case.
+/// A mesh of the refinement, with the estimated error at the skin nodes of the case.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct RefinementLevelDocument {
     pub cells: u64,
@@ -65,7 +65,7 @@ pub struct RefinementLevelDocument {
     pub unknowns: u64,
     pub mean_mm: f64,
     pub p95_mm: f64,
-    /// The mean over each part of the skin with a limit of its own.
+    /// The mean over each part of the skin with its own limit.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub regions_mm: BTreeMap<String, f64>,
     /// Of solving, estimating and marking, in s.
@@ -88,7 +88,7 @@ impl RefineDocument {
         }
     }
 
-    /// What the path is asked for, with the bounds that hold.
+    /// The settings of the numerics, with the effective bounds.
     pub fn wanted(&self, cells: usize, time_s: f64) -> RefinementGoal {
         let regions_mm = self.regions.clone();
         RefinementGoal { skin_mm: self.accept_mm, regions_mm, cells, time_s }
@@ -108,7 +108,7 @@ impl RefinementDocument {
 
     /// In words.
     pub fn summary(&self) -> String {
-        let Some(last) = self.levels.last() else { return "no mesh was solved on".to_owned() };
+        let Some(last) = self.levels.last() else { return "no mesh was solved".to_owned() };
         let verdict = match self.met {
             true => "within".to_owned(),
             false => format!("short of (bound: {})", self.stopped),

@@ -36,20 +36,20 @@ use mechanics::prediction::ConditionReaction;
 pub use super::timing::TimingDocument;
 pub use crate::schema::engine::EngineDocument;
 
-/// What every result says about its use.
+/// The notice in every result.
 pub const NOT_A_DEVICE: &str =
     "not a medical device: a research computation, not to be used for treatment decisions";
 
-/// The result of a prediction or a comparison. Lengths are mm in the frame that `provenance` names.
+/// The result of a job. Lengths are mm in the frame of `provenance`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct ResultDocument {
-    /// The id of the job; absent from results of the command line.
+    /// The id of the job; absent in results of the command line.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub job: Option<String>,
     /// The files beside this one.
     pub files: Vec<FileDocument>,
-    /// Of a job: pictures and reports that are no files, and are drawn when they are first asked for, as if they were.
+    /// Of a job: pictures and reports that are drawn when first requested, available like files.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub pictures: Vec<PictureName>,
     /// Absent from comparisons.
@@ -71,7 +71,7 @@ pub struct ResultDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub meshing: Option<MeshingResultDocument>,
-    /// What an operation did, of a job that reproduces one.
+    /// The movements of an operation, of a job that reproduces one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub reproduction: Option<ReproductionDocument>,
@@ -79,49 +79,49 @@ pub struct ResultDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub conformation: Option<ConformationDocument>,
-    /// Methods against each other over subjects, of a job of kind `cohort`.
+    /// Comparison of methods over subjects, of a job of kind `cohort`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub cohort: Option<CohortResultDocument>,
-    /// What was learned from operated cases, of a job of kind `learn`.
+    /// The learned model and its validation, of a job of kind `learn`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub learning: Option<LearningDocument>,
-    /// The meshes that the spec asked to keep.
+    /// The meshes stored at the request of the spec.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub kept: Vec<KeptMeshDocument>,
-    /// Measures of the head before, as planned and as predicted, of the landmarks that the case states.
+    /// Cephalometric measures before, as planned and as predicted, from the landmarks of the case.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub cephalometry: Vec<MeasureDocument>,
-    /// Pairs of landmarks and landmarks of the middle against the mid-sagittal plane of the head before the operation.
+    /// Paired and midline landmarks relative to the mid-sagittal plane of the head before the operation.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub symmetry: Vec<SymmetryDocument>,
-    /// What presses on what; absent where nothing does or contact was not asked for.
+    /// Contact of tissue; absent without any, or if the spec does not request it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub contact: Option<ContactDocument>,
-    /// Stress in the tissue, where the spec asks for it.
+    /// Stress in the tissue, if requested by the spec.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub stress: Option<StressDocument>,
-    /// How the model was chosen, where an accepted error was stated.
+    /// The choice of the model, if an accepted error was stated.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub adequacy: Option<AdequacyDocument>,
-    /// What a learned model made of the prediction, where a correction was asked for.
+    /// The correction by a learned model, if requested.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub correction: Option<CorrectedDocument>,
-    /// How the mesh was refined, where that was asked for. Whatever else the result has stands at the nodes of the case.
+    /// The refinement of the mesh, if requested. All else in the result is at the nodes of the case.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub refinement: Option<RefinementDocument>,
-    /// Null where it was not estimated.
+    /// Null if it was not estimated.
     pub numerical_error_mm: Option<NumericalErrorDocument>,
-    /// What linear elasticity leaves out; null where `nonlinearity_unknown` says why it is not estimated.
+    /// The linearisation error; null if `nonlinearity_unknown` says why it is not estimated.
     #[serde(default)]
     pub nonlinearity_mm: Option<NonlinearityDocument>,
-    /// Of a prediction without an estimate of what linear elasticity leaves out: why.
+    /// Of a prediction without an estimate of the linearisation error: why.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub nonlinearity_unknown: Option<String>,
@@ -130,18 +130,18 @@ pub struct ResultDocument {
     #[schema(nullable = false)]
     pub numerical_error_unknown: Option<String>,
     /// The forces in mN that the nodes of each segment, and all `fixed`, `sliding` and `prescribed` nodes, exert on the
-    /// tissue: what pulls tissue upwards points upwards.
+    /// tissue: a force that pulls tissue upwards points upwards.
     #[serde(default)]
     pub reaction_millinewton: BTreeMap<String, Triple>,
-    /// `reaction_millinewton` under its earlier name, until the next version of this document.
+    /// Former name of `reaction_millinewton`, until the next version of this document.
     #[serde(default)]
     #[schema(deprecated)]
     pub reaction_mn: BTreeMap<String, Triple>,
-    /// The same for each condition of the case and the plan by itself, and for each bone that tissue presses on: with the loads they
+    /// The same for each boundary condition of case and plan, and for each bone in contact with tissue: with the loads they
     /// add up to zero.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub reactions: Vec<ReactionDocument>,
-    /// Rest at the end of each load step, where `fem_nonlinear.load_steps` of the spec asks for them.
+    /// Equilibrium after each load step, if `fem_nonlinear.load_steps` is in the spec.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub load_steps: Vec<LoadStepDocument>,
     pub provenance: ProvenanceDocument,
@@ -149,7 +149,7 @@ pub struct ResultDocument {
 }
 
 impl ResultDocument {
-    /// A result with files only; what a kind of job has beside them is put in its place.
+    /// A result with files only; the other members are set by the kind of job.
     pub fn new(
         job: Option<String>,
         files: &[FileDocument],
@@ -201,22 +201,22 @@ pub struct FileDocument {
     pub sha256: String,
 }
 
-/// The force that one condition exerts on the tissue.
+/// The force that one boundary condition exerts on the tissue.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct ReactionDocument {
     /// Its place in the case or the plan, e.g. `/case/sliding/0`, `/plan/prescribed/1` or `/case/bones/0`.
     pub condition: String,
-    /// The segment that moves it; absent of what no segment moves.
+    /// The segment that moves it; absent if no segment does.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub segment: Option<String>,
-    /// The nodes of which it holds a direction that no stronger condition holds; of a bone the points that press on it.
+    /// The nodes with a direction constrained by it and no stronger condition; of a bone the points in contact with it.
     pub nodes: u64,
     /// In mN.
     pub force_mn: Triple,
 }
 
-/// How far the skin moves, in mm.
+/// Displacement of the skin, in mm.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct StatisticsDocument {
     pub skin: DisplacementDocument,
@@ -224,7 +224,7 @@ pub struct StatisticsDocument {
     pub regions: BTreeMap<String, DisplacementDocument>,
     /// The displacement of each landmark.
     pub landmarks: BTreeMap<String, Triple>,
-    /// What an image showed of the mesh, where materials come from one.
+    /// Tissues of the mesh by an image, if materials come from one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub imaged: Option<ImagedTissueDocument>,
@@ -233,13 +233,13 @@ pub struct StatisticsDocument {
 /// The length of the displacement over skin nodes, in mm.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct DisplacementDocument {
-    /// Every node counts the same.
+    /// Unweighted.
     pub nodes: StatDocument,
-    /// Every node counts by the area around it.
+    /// Weighted by the area around each node.
     pub area: StatDocument,
 }
 
-/// What the mesh leaves out of the displacement, as an estimate: lengths over nodes that count the same, in mm.
+/// The estimated discretisation error of the displacement: unweighted lengths over nodes, in mm.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct NumericalErrorDocument {
     /// Over the skin.
@@ -250,7 +250,7 @@ pub struct NumericalErrorDocument {
     pub regions: BTreeMap<String, ErrorLengthsDocument>,
     /// At each landmark.
     pub landmarks: BTreeMap<String, f64>,
-    /// Whether it has been added to the displacement, because `corrected` asked for that.
+    /// Whether it was added to the displacement, by `corrected` of the spec.
     pub corrected: bool,
 }
 
@@ -262,14 +262,14 @@ pub struct ErrorLengthsDocument {
     pub max: f64,
 }
 
-/// Where numbers come from.
+/// Provenance of the numbers.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct ProvenanceDocument {
     pub engine: EngineDocument,
-    /// SHA-256 over everything that decides the numbers.
+    /// SHA-256 over everything that determines the numbers.
     pub spec_hash: String,
     pub inputs: Vec<InputDocument>,
-    /// What was predicted: the plan as it was then, and the stored plan that it came from.
+    /// The plan at that time, and the id of the stored plan.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub plan: Option<PlanDocument>,
@@ -279,7 +279,7 @@ pub struct ProvenanceDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub method: Option<String>,
-    /// Of `auto`, which goes beyond `method`: the model that was taken, as `adequacy.taken`. With `second_order` the numbers are not
+    /// Of `auto`, in addition to `method`: the chosen model, as `adequacy.taken`. With `second_order` the numbers are not
     /// those of `fem_linear` alone.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
@@ -297,10 +297,10 @@ pub struct ProvenanceDocument {
     /// Of methods of finite strain: the law of each region, or of each tissue of an image, with its constants.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub laws: BTreeMap<String, TissueLawDocument>,
-    /// Materials of the literature that were used, written out: by region of the case, or tissue of its image.
+    /// Materials of the literature in use, in full: by region of the case, or tissue of its image.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub presets: BTreeMap<String, UsedPresetDocument>,
-    /// How the scan of the case was taken, as the case says.
+    /// How the scan of the case was taken, from the case.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub acquisition: Option<AcquisitionDocument>,
@@ -308,7 +308,7 @@ pub struct ProvenanceDocument {
     /// `bitwise`: the same input gives the same bits on any number of threads.
     pub determinism: String,
     pub timing: TimingDocument,
-    /// Of the whole process so far; absent where the system does not report it.
+    /// Of the whole process so far; absent if the system does not report it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub peak_rss_mb: Option<f64>,
@@ -319,7 +319,7 @@ pub struct ProvenanceDocument {
     pub statement: String,
 }
 
-/// A mesh or an image that went in.
+/// An input mesh or image.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 pub struct InputDocument {
     /// `volume`, `bone NAME`, `surface`, `image`, `prediction` or `actual`.
@@ -346,12 +346,12 @@ pub struct SolverDocument {
     pub why: String,
     pub unknowns: u64,
     pub iterations: u64,
-    /// |f - K u| / |f_D| of the free rows, computed from scratch at the end; with pressures, of both equations.
+    /// |f - K u| / |f_D| of the free rows, recomputed at the end; with pressures, of both equations.
     pub relative_residual: f64,
     pub wanted_residual: f64,
     pub elements: Vec<String>,
-    /// The relative residual after each iteration, at most 200 of them, of methods that have their own
-    /// iterations to show.
+    /// The relative residual after each iteration, at most 200 of them, of methods with their own
+    /// iterations.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub history: Vec<f64>,
     /// Steps of load or time.
@@ -362,7 +362,7 @@ pub struct SolverDocument {
     pub newton: Option<NewtonDocument>,
 }
 
-/// The mesh that was computed on.
+/// The mesh of the computation.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct MeshSummaryDocument {
     pub nodes: u64,

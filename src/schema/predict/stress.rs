@@ -7,13 +7,13 @@ use utoipa::ToSchema;
 
 use crate::schema::compare::result::StatDocument;
 
-/// Which strain the arrays `strain` of `volume.vtu` hold, as tensor components: shear is half of the change of an angle.
+/// The strain measure of the arrays `strain` of `volume.vtu`, as tensor components: shear is half of the change of an angle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum StrainMeasure {
     /// (grad u + grad u^T) / 2.
     Small,
-    /// Green's (F^T F - 1) / 2, along the axes at rest.
+    /// Green-Lagrange, (F^T F - 1) / 2, along the undeformed axes.
     Green,
 }
 
@@ -26,7 +26,7 @@ impl StrainMeasure {
     }
 }
 
-/// Cauchy's stress in the tissue, as means over cells, weighted by their volumes at rest.
+/// Cauchy stress in the tissue, as means over cells, weighted by their undeformed volumes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct StressDocument {
     pub strain: StrainMeasure,
@@ -37,8 +37,8 @@ pub struct StressDocument {
 /// Of the cells of a region.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct RegionStressDocument {
-    /// Mises' stress in kPa.
+    /// Von Mises stress in kPa.
     pub von_mises_kpa: StatDocument,
-    /// Minus a third of the trace of the stress in kPa: positive where tissue is pressed.
+    /// Minus a third of the trace of the stress in kPa: positive under compression.
     pub pressure_kpa: StatDocument,
 }

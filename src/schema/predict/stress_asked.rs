@@ -1,4 +1,4 @@
-//! Further requirements of a spec that asks for stress.
+//! Further requirements of a spec that requests stress.
 
 use super::document::{OutputName, PredictDocument};
 use crate::schema::code::ErrorCode;
@@ -6,7 +6,7 @@ use crate::schema::wire::fault::{Faults, Pointer};
 use mechanics::prediction::MethodKind;
 
 impl PredictDocument {
-    /// Asks for stress, and for the file that it stands in.
+    /// Requests stress, and its file.
     pub fn request_stress(&mut self) {
         self.stress = true;
         let mut outputs = self.files();
@@ -14,7 +14,7 @@ impl PredictDocument {
         self.outputs = Some(outputs);
     }
 
-    /// Refuses stress of a method that has none, without the file that it stands in, and of cells that the case does not have.
+    /// Refuses stress of a method without it, without its file, and of cells that the case does not have.
     pub(super) fn check_stress(&self, at: &Pointer, faults: &mut Faults) {
         if !self.stress {
             return;
@@ -22,18 +22,19 @@ impl PredictDocument {
         let method = self.method.chosen().properties();
         if !method.gives_stress {
             let detail = format!(
-                "{} gives no stress of cells: {} do",
+                "{} gives no stress of cells, only {} do",
                 method.title,
                 listed(MethodKind::ALL.iter().copied())
             );
             faults.add(at, ErrorCode::MethodMismatch, detail);
         }
         if !self.files().contains(&OutputName::VolumeVtu) {
-            let detail = "stress stands in `volume.vtu`: name it among `outputs`";
+            let detail = "stress is in `volume.vtu`: name it in `outputs`";
             faults.add(at, ErrorCode::OneOf, detail);
         }
         if self.refine.is_some() {
-            let detail = "a refined mesh has other cells than that of the case: leave out `stress` or `refine`";
+            let detail =
+                "a refined mesh has other cells than that of the case: omit `stress` or `refine`";
             faults.add(at, ErrorCode::OneOf, detail);
         }
     }

@@ -6,7 +6,7 @@ use utoipa::ToSchema;
 /// Wall time of each phase.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct TimingDocument {
-    /// From acceptance to the start; absent from results of the command line.
+    /// From acceptance to start; absent in results of the command line.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub queue_s: Option<f64>,
@@ -14,13 +14,13 @@ pub struct TimingDocument {
     pub mesh_s: f64,
     pub assemble_s: f64,
     pub solve_s: f64,
-    /// Of estimating errors; 0 of results from before there were estimates.
+    /// Of error estimates; 0 in results older than these.
     #[serde(default)]
     pub estimate_s: f64,
     pub contact_s: f64,
     pub surface_s: f64,
     pub compare_s: f64,
-    /// Of correcting a prediction by what was learned, its file too; 0 where that was not asked for.
+    /// Of a correction by a learned model, with its file; 0 without one.
     #[serde(default)]
     pub correction_s: f64,
     pub write_s: f64,

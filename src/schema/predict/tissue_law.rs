@@ -6,17 +6,17 @@ use utoipa::ToSchema;
 use crate::schema::case::law::LawDocument;
 use mechanics::material::hyperelastic::{Fibres, Hyperelastic};
 
-/// What a tissue followed at finite strain.
+/// The law of a tissue at finite strain.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct TissueLawDocument {
     pub law: LawDocument,
-    /// Of fibres that only pull; absent where there are none.
+    /// Of tension-only fibres, if any.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub fibres: Option<PullingFibresDocument>,
 }
 
-/// W = k1/(2 k2) (exp(k2 (I4 - 1)^2) - 1) where fibres are stretched.
+/// W = k1/(2 k2) (exp(k2 (I4 - 1)^2) - 1) if fibres are stretched.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct PullingFibresDocument {
     pub k1_kpa: f64,

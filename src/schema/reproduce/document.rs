@@ -1,4 +1,4 @@
-//! The spec of a reproduction: bone before and after an operation, what stayed, and which segments moved.
+//! The spec of a reproduction: bone before and after an operation, the fixed base, and the moved segments.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -23,7 +23,7 @@ pub enum ReproduceKind {
     Reproduce,
 }
 
-/// The movements that an operation performed, found from bone before and after it. The answer is a plan in the frame
+/// The movements that an operation performed, found from bone before and after it. The result is a plan in the frame
 /// before the operation.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
@@ -33,19 +33,19 @@ pub struct ReproduceDocument {
     pub kind: ReproduceKind,
     /// All bone before the operation.
     pub before: MeshReference,
-    /// All bone after it, wherever its scan lies.
+    /// All bone after it, in the frame of its scan.
     pub after: MeshReference,
-    /// Bone that nothing was done to.
+    /// Bone that was not operated on.
     pub base: BaseDocument,
     pub segments: Vec<ReproducedSegmentDocument>,
-    /// What had been planned, in the frame before the operation: each segment is held against it.
+    /// The plan, in the frame before the operation: each segment is compared with it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub planned: Option<PlanDocument>,
     /// Named points of bone before the operation, each with its segment, for cephalometric measures before, planned and performed.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub bone_landmarks: BTreeMap<String, BoneLandmarkOfCaseDocument>,
-    /// What is usual of these measures, by their names, in place of what is built in.
+    /// Norms of these measures, by their names; they replace built-in ones.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     #[schema(value_type = BTreeMap<String, NormDocument>)]
     pub norms: NormDocuments,
@@ -53,22 +53,22 @@ pub struct ReproduceDocument {
     pub tags: Vec<String>,
 }
 
-/// How both scans are brought together.
+/// The registration of both scans.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct BaseDocument {
-    /// The part of `before` that nothing was done to; without it all of `before` decides, and what moved has to be little.
+    /// The part of `before` not operated on; by default all of `before` is used, of which little may have moved.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub mask: Option<PlaceDocument>,
     #[serde(default)]
     pub start: StartName,
-    /// At least three for a `start` of `landmarks`.
+    /// At least three, for a `start` of `landmarks`.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub landmarks: BTreeMap<String, BoneLandmarkDocument>,
 }
 
-/// A segment that moved: a part of `before`, or a surface of its own.
+/// A segment that moved: a part of `before`, or a separate surface.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ReproducedSegmentDocument {
@@ -77,23 +77,23 @@ pub struct ReproducedSegmentDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub before: Option<MeshReference>,
-    /// Its surface after the operation; absent: it is looked for in all of `after`.
+    /// Its surface after the operation; absent: it is searched for in all of `after`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub after: Option<MeshReference>,
-    /// Only the part of the segment before the operation in it decides.
+    /// Restricts the registration to this part of the segment before the operation.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub mask: Option<PlaceDocument>,
-    /// `none`: as if it had not moved. `boxes` and `inertia` join the segment with its own `after`.
+    /// `none`: as if it had not moved. `boxes` and `inertia` align the segment with its own `after`.
     #[serde(default)]
     pub start: StartName,
-    /// At least three for a `start` of `landmarks`.
+    /// At least three, for a `start` of `landmarks`.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub landmarks: BTreeMap<String, BoneLandmarkDocument>,
 }
 
-/// The same place of bone in both scans.
+/// A pair of corresponding points of bone in both scans.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct BoneLandmarkDocument {
@@ -101,14 +101,14 @@ pub struct BoneLandmarkDocument {
     pub after_mm: Triple,
 }
 
-/// What base and segments start from.
+/// The initial positions of base and segments.
 struct Started<'a> {
     start: StartName,
     landmarks: &'a BTreeMap<String, BoneLandmarkDocument>,
 }
 
 impl ReproduceDocument {
-    /// Adds what is wrong with it; pointers start at `/spec`.
+    /// Adds its faults; pointers start at `/spec`.
     pub fn check(&self, limits: &Limits, faults: &mut Faults) {
         let at = Pointer::root().key("spec");
         check_tags(&self.tags, &at.key("tags"), limits, faults);
@@ -160,14 +160,14 @@ impl ReproducedSegmentDocument {
     fn check(&self, at: &Pointer, limits: &Limits, faults: &mut Faults) {
         faults.check_name(&at.key("name"), self.name.trim(), limits.name_characters as usize);
         if self.before.is_none() && self.mask.is_none() {
-            let detail = "a segment is a surface of its own, `before`, or the part in a `mask`";
+            let detail = "a segment is a separate surface, `before`, or the part in a `mask`";
             faults.add(at, ErrorCode::MissingField, detail);
         }
         if let Some(mask) = &self.mask {
             mask.check(&at.key("mask"), faults);
         }
         if matches!(self.start, StartName::Boxes | StartName::Inertia) && self.after.is_none() {
-            let detail = "this start joins the segment with its own `after`, which is not given";
+            let detail = "this start aligns the segment with its own `after`, which is not given";
             faults.add(&at.key("start"), ErrorCode::MissingField, detail);
         }
         Started { start: self.start, landmarks: &self.landmarks }.check(at, limits, faults);

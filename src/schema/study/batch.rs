@@ -1,4 +1,4 @@
-//! The items of a batch: a study over an explicit list of predictions in place of all combinations.
+//! The items of a batch: a study over an explicit list of predictions instead of all combinations.
 
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use serde_json::{Map, Value};
@@ -7,13 +7,13 @@ use crate::schema::case::material::MaterialDocuments;
 use crate::schema::plan::document::PlanDocument;
 use crate::schema::predict::document::PredictKind;
 
-/// A `predict` spec, taken apart: what it is about, and how it is to be modelled.
+/// A `predict` spec in parts: its subject, and its model.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ItemDocument {
     pub case: String,
     pub plan: Option<PlanDocument>,
     pub plan_id: Option<String>,
-    /// Over the materials of the case, field by field.
+    /// Overrides the materials of the case, by member.
     pub materials: Option<MaterialDocuments>,
     /// Everything else: the method and its parameters; `label`, its name in rows.
     pub variant: Value,

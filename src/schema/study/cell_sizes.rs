@@ -1,11 +1,11 @@
-//! Convergence of the skin over cell sizes, as a report has it.
+//! Convergence of the skin over cell sizes, in a report.
 
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 use mechanics::study::cell_sizes::{CellSizes, MeshPoint};
 
-/// One face on meshes of several cell sizes, solved in one way on one plan.
+/// One face on meshes of several cell sizes, by one variant on one plan.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct CellSizesDocument {
     pub series: String,
@@ -15,8 +15,8 @@ pub struct CellSizesDocument {
     pub label: String,
     /// Coarsest first.
     pub meshes: Vec<CellSizeDocument>,
-    /// p of m(h) = m* + c h^p, fitted in least squares to as many of the finest meshes as show one, at least four where there are as
-    /// many; absent with fewer than three sizes, and where they show none.
+    /// p of m(h) = m* + c h^p, a least-squares fit to as many of the finest meshes as are consistent, at least four if there are as
+    /// many; absent with fewer than three sizes, and without convergence.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub order: Option<f64>,
@@ -24,15 +24,15 @@ pub struct CellSizesDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub limit_mm: Option<f64>,
-    /// Root of the mean squared distance of the meshes from the fit.
+    /// Root mean square distance of the meshes from the fit.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub fit_rms_mm: Option<f64>,
-    /// How many of the finest meshes the fit is of.
+    /// The number of the finest meshes in the fit.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub fit_meshes: Option<u64>,
-    /// The coarsest size from which on no finer mesh changes the mean movement of the skin by more than .3 %; absent where the last
+    /// The coarsest size below which no mesh changes the mean movement of the skin by more than .3 %; absent if the last
     /// step does.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
@@ -48,9 +48,9 @@ pub struct CellSizeDocument {
     pub cells: u64,
     pub unknowns: u64,
     pub wall_s: f64,
-    /// How far the skin moves, mean by area.
+    /// Mean displacement of the skin, by area.
     pub skin_mean_mm: f64,
-    /// Share of it by which it differs from the mesh before; absent of the coarsest.
+    /// Relative change from the mesh before; absent for the coarsest.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub change: Option<f64>,

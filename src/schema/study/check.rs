@@ -1,4 +1,4 @@
-//! Errors in the spec of a study, before any scene is made.
+//! Checks of the spec of a study, before any scene is made.
 
 use std::collections::BTreeSet;
 
@@ -11,13 +11,13 @@ use crate::schema::wire::limits::Limits;
 use crate::schema::wire::names::check_tags;
 use mechanics::study::scenes::SCENES;
 
-/// Halving every edge once more makes eight cells of one.
+/// Each further level multiplies the cells by eight.
 const MOST_LEVEL: u32 = 4;
 const MOST_REPEATS: u32 = 20;
 const MOST_SWEPT_VALUES: usize = 100;
 
 impl StudyDocument {
-    /// Adds what is wrong with it, but for what scenes, methods and meshes tell; pointers start at `/spec`.
+    /// Adds its faults, except those that need scenes, methods and meshes; pointers start at `/spec`.
     pub fn check(&self, limits: &Limits, faults: &mut Faults) {
         let at = Pointer::root().key("spec");
         match self.kind {
@@ -56,7 +56,7 @@ impl StudyDocument {
         check_tags(&self.tags, &at.key("tags"), limits, faults);
     }
 
-    /// A batch says everything item by item.
+    /// A batch has all in its items.
     fn check_items(&self, at: &Pointer, faults: &mut Faults) {
         if self.items.is_empty() {
             faults.add(&at.key("items"), ErrorCode::MissingField, "at least one item is needed");
@@ -92,7 +92,7 @@ impl StudyDocument {
             }
             match scene {
                 SceneReference::Name(name) if !SCENES.contains(&name.as_str()) => {
-                    let detail = format!("no scene is called {name:?}; {}", SCENES.join(", "));
+                    let detail = format!("there is no scene {name:?}; {}", SCENES.join(", "));
                     faults.add(&place, ErrorCode::UnknownScene, detail);
                 }
                 SceneReference::Case(reference) => reference.check(&place, limits, faults),
@@ -113,7 +113,7 @@ impl StudyDocument {
                     "no case is left for this plan: every case of `scenes` states `plans` of its own"
                 }
                 false => {
-                    "no scene is a case that this plan could move: scenes by name have plans of their own, which are asked for \
+                    "no scene is a case for this plan: scenes by name have their own plans, which are selected \
                      by name"
                 }
             };
@@ -154,7 +154,7 @@ impl StudyDocument {
             faults.add(&at.key("job"), ErrorCode::WrongType, detail);
         }
         if truth.mesh.is_some() && !(one_plan || self.is_of_one_plan() || self.is_one_series()) {
-            let detail = "a mesh shows what one plan did to the skin of one case";
+            let detail = "a mesh is the outcome of one plan of one case";
             faults.add(&at.key("mesh"), ErrorCode::WrongType, detail);
         }
     }
@@ -197,7 +197,7 @@ impl StudyDocument {
         }
     }
 
-    /// What decides the outcome and the budget.
+    /// Checks of outcome rules and budget.
     fn check_gate(&self, at: &Pointer, limits: &Limits, faults: &mut Faults) {
         if let Some(thresholds) = &self.thresholds {
             let place = at.key("thresholds");

@@ -1,4 +1,4 @@
-//! Distance from a scan over swept constants, as a report has it.
+//! Distance from a scan over swept constants, in a report.
 
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
@@ -18,11 +18,11 @@ pub struct ConstantMapDocument {
     pub label: String,
     pub level: u32,
     pub axes: Vec<SweptAxisDocument>,
-    /// Those that were solved, the last axis fastest.
+    /// The solved ones, the last axis fastest.
     pub cells: Vec<ConstantCellDocument>,
-    /// With the least distance, the first of equal ones.
+    /// The one of least distance, the first of equal ones.
     pub best: ConstantCellDocument,
-    /// Error of the registration, which limits how well values are distinguished; absent where it is not known.
+    /// Error of the registration, which limits the resolution of values; absent if unknown.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub noise_mm: Option<f64>,
@@ -36,8 +36,8 @@ pub struct SweptAxisDocument {
     pub region: String,
     pub constant: ConstantName,
     pub values: Vec<f64>,
-    /// The values that the scan cannot distinguish from the best one: the least distance with them, over all other
-    /// constants, lies above the least of all by no more than `noise_mm`.
+    /// The values that the scan does not distinguish from the best one: the least distance with them, over all other
+    /// constants, is above the least of all by at most `noise_mm`.
     pub as_good: Vec<f64>,
     /// Whether the scan distinguishes any of the values from the best one.
     pub is_determined: bool,
@@ -59,7 +59,7 @@ pub struct ConstantCellDocument {
 }
 
 impl ConstantMapDocument {
-    /// The document of a map; none where nothing was solved.
+    /// The document of a map; none if nothing was solved.
     pub fn new(map: &ConstantMap) -> Option<Self> {
         let cell = |at: usize| {
             let mean_mm = map.distances[at]?;
@@ -95,7 +95,7 @@ impl SweptAxisDocument {
         }
     }
 
-    /// As charts and sentences call it.
+    /// Its name in charts and sentences.
     pub fn words(&self) -> String {
         let of = if self.region == "*" { "all" } else { &self.region };
         match self.constant {
@@ -106,12 +106,12 @@ impl SweptAxisDocument {
     }
 }
 
-/// What a reader of a map has to know.
+/// Warnings on a map.
 fn warnings(map: &ConstantMap) -> Vec<Warning> {
     let mut found = Vec::new();
     if map.leaves_growth_out() {
         let detail = format!(
-            "{}: Poisson's ratio is looked for as if no tissue gained volume or lost it, and 5 % of volume may shift it by .3: sweep \
+            "{}: Poisson's ratio is estimated as if tissue kept its volume, and 5 % of volume may shift it by .3: sweep \
              `volume_change` with it",
             map.label
         );
@@ -123,7 +123,7 @@ fn warnings(map: &ConstantMap) -> Vec<Warning> {
         if let (false, Some(noise)) = (map.is_determined(at), map.noise) {
             let most = map.profile(at).into_iter().flatten().fold(least, f64::max);
             let detail = format!(
-                "{}: over all values of {name} the distance varies by {:.3} mm, and registration left {noise:.3} mm: the \
+                "{}: over all values of {name} the distance varies by {:.3} mm, and registration has {noise:.3} mm: the \
                  scan does not determine it",
                 map.label,
                 most - least

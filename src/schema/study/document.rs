@@ -1,4 +1,4 @@
-//! Spec of a study: scenes, plans, models, materials and mesh levels, in all combinations, against a reference
+//! Spec of a study: all combinations of scenes, plans, models, materials and mesh levels against a reference
 //! solution; and the criteria of its outcome.
 
 use std::collections::BTreeMap;
@@ -29,7 +29,7 @@ pub enum StudyKind {
     Batch,
 }
 
-/// Methods side by side: every scene with each of its plans, method, material and mesh level. Rows are solved one
+/// A comparison of methods: every scene with each of its plans, method, material and mesh level. Rows are solved one
 /// after the other on one thread, so that their times can be compared.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
@@ -37,40 +37,40 @@ pub struct StudyDocument {
     #[serde(default)]
     #[schema(required)]
     pub kind: StudyKind,
-    /// At least one, but for a batch.
+    /// At least one, except in a batch.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub scenes: Vec<SceneReference>,
-    /// Of a batch, in place of `scenes`, `plans`, `methods`, `elements`, `materials` and `sweep`: `predict` specs without
+    /// Of a batch, instead of `scenes`, `plans`, `methods`, `elements`, `materials` and `sweep`: `predict` specs without
     /// `budget`, `outputs`, `keep`, `compare_to`, `tags`, `accept_regions_mm`, `corrected` and `range_mm`, of which each is a row
-    /// at each level; `label` is what rows call its model. Items of the same case, plan and materials are one scene.
+    /// at each level; `label` is the name of its model in rows. Items of the same case, plan and materials are one scene.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     #[schema(value_type = Vec<PredictDocument>)]
     pub items: Vec<ItemDocument>,
-    /// For cases without plans of their own, which need at least one, plans in full; for scenes by name those of their plans that are
-    /// wanted, by name (default: all).
+    /// For cases without plans of their own, at least one plan in full; for scenes by name, names of their plans to
+    /// use (default: all).
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub plans: Vec<PlanReference>,
-    /// Default: every method that is built, each in its usual variants, and `auto`, which takes the cheapest model whose
+    /// Default: every available method, each in its usual variants, and `auto`, which takes the cheapest model whose
     /// estimated error is accepted (`accept_mm`).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false, value_type = Option<Vec<MethodReference>>, min_items = 1)]
     pub methods: Option<Vec<Value>>,
-    /// For methods given by a name that know elements, in place of their usual variants.
+    /// For methods given by name that have elements, instead of their usual variants.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub elements: Vec<ElementName>,
-    /// Each entry over the materials of a case, field by field; in scenes by name it stands for all regions. At most
+    /// Each entry overrides the materials of a case, by member; in scenes by name it applies to all regions. At most
     /// one of `materials` and `sweep`; default: those of the scene.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     #[schema(value_type = Vec<BTreeMap<String, MaterialDocument>>)]
     pub materials: Vec<MaterialDocuments>,
-    /// Every combination of these values, by region or by tissue of the case's `hounsfield`; `*` for regions without an entry.
+    /// All combinations of these values, by region or by tissue of the case's `hounsfield`; `*` for regions without an entry.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub sweep: BTreeMap<String, SweepDocument>,
     /// Level n halves every edge n times; from 0 to 4.
     #[serde(default = "default_levels")]
     #[schema(default = json!([0]), min_items = 1)]
     pub levels: Vec<u32>,
-    /// Default: that of the scene; of a case, linear finite elements on halved edges.
+    /// Default: that of the scene; for a case, linear finite elements on halved edges.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub truth: Option<TruthDocument>,
@@ -81,14 +81,14 @@ pub struct StudyDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub thresholds: Option<ThresholdsDocument>,
-    /// An earlier study, by its job: where a row is worse than there, the outcome is `worse`.
+    /// An earlier study, by its job: if a row is worse than there, the outcome is `worse`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub baseline: Option<String>,
     #[serde(default)]
     pub tolerances: TolerancesDocument,
     /// Labels of variants that may fail without making the outcome `worse`, beside two of the program's own: the
-    /// `mtm jacobi` of `mtm`, which is there to show that it diverges, and the `msm direct` of `msm`, which is slow.
+    /// `mtm jacobi` of `mtm`, included to show its divergence, and the `msm direct` of `msm`, which is slow.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub expected_failures: Vec<String>,
     #[serde(default)]
@@ -105,7 +105,7 @@ fn usual_repeats() -> u32 {
     3
 }
 
-/// A method by its name, or with its parameters. Only described here: read as a `predict` spec.
+/// A method by its name, or with its parameters, as in a `predict` spec.
 #[derive(Clone, Debug, Serialize, ToSchema)]
 #[serde(untagged)]
 pub enum MethodReference {
@@ -113,11 +113,11 @@ pub enum MethodReference {
     Variant(VariantDocument),
 }
 
-/// A model as in a `predict` spec, with the field of its own parameters.
+/// A model as in a `predict` spec, with the field of its parameters.
 #[derive(Clone, Debug, Serialize, ToSchema)]
 pub struct VariantDocument {
     pub method: MethodName,
-    /// As rows and charts call it. Default: the method, and the element where one is given.
+    /// Its name in rows and charts. Default: the method, and the element if one is given.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub label: Option<String>,
@@ -130,7 +130,7 @@ pub struct VariantDocument {
     pub tolerance: ToleranceDocument,
 }
 
-/// Values that the constants of a region take, and changes of its volume; without a list a constant stays what it is.
+/// Values of the constants of a region, and changes of its volume; a constant without a list keeps its value.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SweepDocument {
@@ -138,7 +138,7 @@ pub struct SweepDocument {
     pub young_modulus_kpa: Vec<f64>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub poisson_ratio: Vec<f64>,
-    /// As `volume_change` of a plan, which it stands over.
+    /// As `volume_change` of a plan, which it overrides.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub volume_change: Vec<f64>,
 }
@@ -166,12 +166,12 @@ pub struct ThresholdsDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false, exclusive_minimum = 0.0)]
     pub wall_s: Option<f64>,
-    /// Labels of the variants that they hold for. Default: all.
+    /// Labels of the variants that they apply to. Default: all.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub labels: Vec<String>,
 }
 
-/// How much a row may grow over the same row of the baseline. Above rounding and the jitter of clocks: a p95 error is
+/// Allowed growth of a row over the same row of the baseline. Beyond rounding and timing jitter: a p95 error is
 /// worse from 1e-4 mm more, iterations from 5 more, a time from 20 ms more.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
@@ -179,11 +179,11 @@ pub struct TolerancesDocument {
     #[serde(default = "usual_p95_ratio")]
     #[schema(default = 1.05, minimum = 1.0, maximum = 1000.0)]
     pub p95_ratio: f64,
-    /// Of the solver, whose number is the same on every machine.
+    /// Of solver iterations, whose number is the same on every machine.
     #[serde(default = "usual_iterations_ratio")]
     #[schema(default = 1.5, minimum = 1.0, maximum = 1000.0)]
     pub iterations_ratio: f64,
-    /// Of the time, which is another on every machine and where others are at work: without it no time is judged.
+    /// Of the time, which depends on the machine and its load: without it no time is judged.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false, minimum = 1.0, maximum = 1000.0)]
     pub wall_ratio: Option<f64>,
@@ -207,16 +207,16 @@ impl Default for TolerancesDocument {
     }
 }
 
-/// What a study may take.
+/// The limits of a study.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct StudyBudgetDocument {
-    /// After this time no further row is begun, and the study ends as incomplete with the rows it has; the truth of
-    /// those is still found, for at most as long again and a minute.
+    /// After this time no further row is begun, and the study ends as incomplete with the rows it has; their reference
+    /// solutions are still computed, for at most as long again and a minute.
     #[serde(default = "default_wall_s")]
     #[schema(default = 3600.0, exclusive_minimum = 0.0)]
     pub wall_s: f64,
-    /// A solve that takes longer is given up, and its row fails with `budget-exceeded`, as do those of the scene's later
+    /// A solve that takes longer is cancelled, and its row fails with `budget-exceeded`, as do those of the scene's later
     /// plans with that variant and level, which are not tried.
     #[serde(default = "default_row_s")]
     #[schema(default = 60.0, exclusive_minimum = 0.0)]
@@ -337,14 +337,14 @@ impl StudyDocument {
         shared.chain(own.flatten()).chain(of_items).collect()
     }
 
-    /// The meshes of its truth, with their places.
+    /// The meshes of its reference, with their places.
     pub fn truth_meshes_mut(&mut self) -> Vec<(Pointer, &mut String)> {
         let at = Pointer::root().key("spec").key("truth");
         let truth = self.truth.iter_mut();
         truth.flat_map(|truth| truth.mesh_references_mut(&at)).collect()
     }
 
-    /// The names of wanted plans of scenes by name, with their places in `plans`.
+    /// The names of plans of scenes by name, with their places in `plans`.
     pub fn plan_names(&self) -> Vec<(usize, &str)> {
         let plans = self.plans.iter().enumerate();
         plans
@@ -355,7 +355,7 @@ impl StudyDocument {
             .collect()
     }
 
-    /// Without the rules by which its rows are judged.
+    /// Without the rules of the outcome.
     pub fn without_rules(&self) -> StudyDocument {
         StudyDocument {
             thresholds: None,
@@ -366,7 +366,7 @@ impl StudyDocument {
         }
     }
 
-    /// What decides the report, for the hash of the job: no tags, no ids of cases.
+    /// Everything that determines the report, for the hash of the job: no tags, no ids of cases.
     pub fn content(&self) -> Value {
         let mut plain = self.clone();
         plain.tags.clear();

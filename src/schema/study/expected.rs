@@ -1,4 +1,4 @@
-//! Expected cost of a study, reported when it is accepted.
+//! Expected cost of a study, reported on acceptance.
 
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
@@ -8,20 +8,20 @@ use crate::schema::predict::time_band::TimeBandDocument;
 use mechanics::prediction::NEWTON_MAY_TAKE;
 use mechanics::study::{Strain, Study, StudyScene, TruthCost, truth_cost};
 
-/// The cost of the truth of one scene that is solved on finer meshes; no part of any row.
+/// The cost of the reference solution of one scene on finer meshes; not part of any row.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct TruthCostDocument {
     pub scene: String,
-    /// The finest mesh, and one or two before it that tell its error.
+    /// The finest mesh, and one or two before it to estimate its error.
     pub meshes: u64,
-    /// With which it is solved: `fem_linear`, or `fem_nonlinear` at finite strain.
+    /// Its method: `fem_linear`, or `fem_nonlinear` at finite strain.
     #[serde(default = "linear")]
     pub method: String,
     /// Of the finest.
     pub cells: u64,
     /// Of the finest.
     pub unknowns: u64,
-    /// On each mesh, for all plans and materials, with contact and without as rows are.
+    /// On each mesh, for all plans and materials, with and without contact like the rows.
     pub solves: u64,
     /// Of all solves on one thread, in s.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -33,7 +33,7 @@ fn linear() -> String {
     Strain::Small.method().kind().name().to_owned()
 }
 
-/// The truths of scenes that are solved for.
+/// The computed reference solutions of scenes.
 pub fn truth_costs(study: &Study) -> Vec<TruthCostDocument> {
     let cost = |(place, scene): (usize, &StudyScene)| {
         Some(document(&scene.name, &truth_cost(scene, study.variants_of(place))?))
@@ -65,7 +65,7 @@ fn time_s(cost: &TruthCost) -> Option<TimeBandDocument> {
     Some(all)
 }
 
-/// Of one solve. Where Newton's method was not measured, as many linear solves as it may take.
+/// Of one solve. If Newton's method was not measured, the linear solves that it may take.
 fn of_one(strain: Strain, unknowns: u64) -> Option<TimeBandDocument> {
     let method = strain.method().kind().name();
     time_band(method, unknowns).or_else(|| {

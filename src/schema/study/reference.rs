@@ -6,7 +6,7 @@ use utoipa::ToSchema;
 use crate::schema::plan::document::PlanDocument;
 use crate::schema::wire::text_or_object::TextOrObject;
 
-/// A scene that the program makes itself, by its name (`sphere`, `slab`, `slab_hex`, `half_head`, and moved by up to 25 mm
+/// A built-in scene, by its name (`sphere`, `slab`, `slab_hex`, `half_head`, and moved by up to 25 mm
 /// `slab_far` and `half_head_far`), or a case.
 #[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
 #[serde(untagged)]
@@ -20,16 +20,16 @@ pub enum SceneReference {
 #[serde(deny_unknown_fields)]
 pub struct CaseReference {
     pub case: String,
-    /// As rows and charts call it. Default: the name of the case, or its place in the list.
+    /// Its name in rows and charts. Default: the name of the case, or its place in the list.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub name: Option<String>,
-    /// The face that this case is a mesh of. Cases of one series are the same face on meshes of different cell sizes: the report
-    /// says how the skin converges over them (`cell_sizes`).
+    /// The series of this case. Cases of one series are the same face on meshes of different cell sizes: the report
+    /// has the convergence of the skin over them (`cell_sizes`).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub series: Option<String>,
-    /// Those of this case alone. Default: the plans in full of the study.
+    /// Plans of this case only. Default: the plans in full of the study.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub plans: Vec<PlanDocument>,
 }

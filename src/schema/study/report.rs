@@ -12,23 +12,23 @@ pub use super::scene::{StudySceneDocument, TruthErrorDocument};
 pub use super::verdict::{FailingRowDocument, OutcomeName, VerdictDocument};
 use crate::schema::engine::EngineDocument;
 
-/// The report of a study. Errors are distances at the skin nodes of level 0 from where the truth has them, by area; of a
-/// scan they are distances between it and the predicted skin, both ways, where the skin moves and both are there.
+/// The report of a study. Errors are distances at the skin nodes of level 0 from the reference solution, by area; of a
+/// scan they are distances between it and the predicted skin, both ways, where the skin moves and both exist.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct ReportDocument {
     /// The version of this document: 1.
     pub schema: u32,
-    /// The id of the job; absent from reports of the command line.
+    /// The id of the job; absent in reports of the command line.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub job: Option<String>,
     pub spec_hash: String,
-    /// The same where everything but the rules of the outcome is: thresholds, baseline, tolerances, expected failures.
+    /// Equal if all but the rules of the outcome is: thresholds, baseline, tolerances, expected failures.
     /// A study with the key of an earlier one takes its rows and judges them again.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     #[schema(required = false)]
     pub rows_key: String,
-    /// The study whose rows these are; absent where they were solved for this report.
+    /// The study of these rows; absent if they were solved for this report.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub rows_of: Option<RowsOfDocument>,
@@ -39,34 +39,34 @@ pub struct ReportDocument {
     pub rules: RulesDocument,
     pub scenes: Vec<StudySceneDocument>,
     pub rows: Vec<RowDocument>,
-    /// Of a study with a scan for its truth and swept constants.
+    /// Of a study with a scan as reference and swept constants.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     #[schema(required = false)]
     pub constant_maps: Vec<ConstantMapDocument>,
-    /// What has no rows and judges nothing: variants that do not serve a scene, and levels at which a variant is the truth itself or
+    /// Combinations without rows: variants that do not support a scene, and levels at which a variant is the reference itself or
     /// finer.
     #[serde(default)]
     #[schema(required = false)]
     pub skipped: Vec<SkippedDocument>,
     /// Every two variants on the scenes that both solved.
     pub comparisons: Vec<VariantComparisonDocument>,
-    /// What a reader of many comparisons has to know.
+    /// A note on multiple comparisons.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub comparisons_note: Option<String>,
     pub convergence: Vec<ConvergenceDocument>,
-    /// Of a study with scenes of one `series`: how the skin converges over the cell sizes of their meshes.
+    /// Of a study with scenes of one `series`: the convergence of the skin over the cell sizes of their meshes.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     #[schema(required = false)]
     pub cell_sizes: Vec<CellSizesDocument>,
-    /// What the program answers for these numbers.
+    /// The disclaimer of these numbers.
     pub statement: String,
 }
 
-/// An earlier study whose rows were taken.
+/// An earlier study whose rows were reused.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 pub struct RowsOfDocument {
-    /// Absent from reports of the command line.
+    /// Absent in reports of the command line.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub job: Option<String>,
@@ -74,7 +74,7 @@ pub struct RowsOfDocument {
     pub created: String,
 }
 
-/// A variant that does not serve a scene, or is the truth itself at a level.
+/// A variant that does not support a scene, or is the reference itself at a level.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 pub struct SkippedDocument {
     pub scene: String,
@@ -87,7 +87,7 @@ pub struct SkippedDocument {
     pub rows: u64,
 }
 
-/// By which rules rows were judged.
+/// The rules of the outcome.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct RulesDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -97,14 +97,14 @@ pub struct RulesDocument {
     pub expected_failures: Vec<String>,
 }
 
-/// What came of a row.
+/// The status of a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum RowStatus {
     Solved,
     /// Refused or failed; `error` says why.
     Failed,
-    /// The time of the study ran out before.
+    /// The time of the study had run out.
     NotRun,
 }
 
@@ -118,16 +118,16 @@ impl RowStatus {
     }
 }
 
-/// How a row is judged.
+/// The verdict on a row.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum RowVerdict {
     Pass,
     /// Above a threshold or worse than in the baseline.
     Worse,
-    /// Failed, and nothing says that it may.
+    /// Failed unexpectedly.
     Failed,
-    /// Failed as it may: expected, or as in the baseline.
+    /// Failed as expected, or as in the baseline.
     KnownFailure,
     #[default]
     NotRun,
@@ -153,7 +153,7 @@ pub struct RowDocument {
     pub method: String,
     /// The variant.
     pub label: String,
-    /// The elements in use; empty where there are none.
+    /// The elements in use; empty without any.
     pub element: String,
     pub material: String,
     pub level: u32,
@@ -166,15 +166,15 @@ pub struct RowDocument {
     /// Codes.
     #[serde(default)]
     pub warnings: Vec<String>,
-    /// Whether no other row of the same scene, plan and material is both faster and nearer to the truth.
+    /// Whether no other row of the same scene, plan and material is both faster and more accurate.
     pub on_front: bool,
     pub verdict: RowVerdict,
-    /// Why it is no pass, in sentences with the numbers.
+    /// Why it does not pass, in sentences with the numbers.
     #[serde(default)]
     pub reasons: Vec<String>,
 }
 
-/// What a solved row measured; absent from rows without numbers.
+/// The measurements of a solved row; absent in rows without numbers.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct NumbersDocument {
     #[schema(required = false)]
@@ -186,7 +186,7 @@ pub struct NumbersDocument {
     pub wall_s: f64,
     #[schema(required = false)]
     pub repeats: u64,
-    /// The most memory of the process during the row; absent where the system does not report it.
+    /// The peak memory of the process during the row; absent if the system does not report it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub peak_mb: Option<f64>,
@@ -196,46 +196,46 @@ pub struct NumbersDocument {
     pub p95_mm: f64,
     #[schema(required = false)]
     pub max_mm: f64,
-    /// From the predicted skin to the closest point of the true one.
+    /// From the predicted skin to the closest point of the reference.
     #[schema(required = false)]
     pub closest_point_mm: ErrorsDocument,
     /// By the names of the parts of the skin.
     #[schema(required = false)]
     pub regions_mm: BTreeMap<String, ErrorsDocument>,
-    /// How far the skin moves, mean by area.
+    /// Mean displacement of the skin, by area.
     #[schema(required = false)]
     pub skin_mean_mm: f64,
-    /// What the mesh leaves out of the answer, as estimated without the truth; absent where that is not estimated.
+    /// The discretisation error, estimated without the reference; absent without an estimate.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub numerical_error_mm: Option<ErrorsDocument>,
-    /// What linearity leaves out of the answer, as estimated without the truth; absent where that is not estimated.
+    /// The linearisation error, estimated without the reference; absent without an estimate.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub linearity_error_mm: Option<ErrorsDocument>,
-    /// The mean error that is expected of the answer, over the true one: of its mesh, and of linearity too where the truth is
-    /// one of finite strain; of `auto` over the skin that moves. Absent where one of the two is not known.
+    /// The expected mean error of the result, over the true one: of its mesh, and also of linearity if the reference is
+    /// one of finite strain; of `auto` over the moving skin. Absent if one of the two is unknown.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub effectivity: Option<f64>,
-    /// Of `auto`: the model that it took, as in `adequacy` of a prediction.
+    /// Of `auto`: the chosen model, as in `adequacy` of a prediction.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub chosen: Option<String>,
-    /// Absent where there are no cells.
+    /// Absent without cells.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub smallest_det_f: Option<f64>,
-    /// Error of the reference solution of this plan and these materials; absent where it is a formula or a scan, or
-    /// that is not known.
+    /// Error of the reference solution of this plan and these materials; absent if it is a formula or a scan, or
+    /// unknown.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub truth_error_mm: Option<TruthErrorDocument>,
-    /// Whether that truth was solved with contact: absent where it was not.
+    /// Whether the reference was solved with contact; absent if not.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     #[schema(required = false)]
     pub truth_contact: bool,
-    /// Share of the moving skin's area that has a scan opposite; absent without a scan.
+    /// Share of the moving skin's area covered by the scan; absent without a scan.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub covered_share: Option<f64>,
@@ -268,19 +268,19 @@ pub struct VariantComparisonDocument {
     pub scenes: u64,
     /// Pairs of rows behind them.
     pub rows: u64,
-    /// Pairs of rows left out because one failed.
+    /// Pairs of rows omitted because one failed.
     pub unsolved: u64,
-    /// Pairs of rows left out because the truth of one has contact and that of the other has none.
+    /// Pairs of rows omitted because the truth of one has contact and that of the other has none.
     #[serde(default)]
     #[schema(required = false)]
     pub other_truths: u64,
     /// Of first minus second.
     pub median_difference_mm: f64,
-    /// Absent where there is nothing to rank.
+    /// Absent if there is nothing to rank.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub test: Option<SignedRankDocument>,
-    /// What the numbers allow to say.
+    /// The conclusion from the numbers.
     pub sentence: String,
 }
 
@@ -290,19 +290,19 @@ pub struct SignedRankDocument {
     pub differing: u64,
     pub w_positive: f64,
     pub w_negative: f64,
-    /// Scenes without a difference left out before the ranking (Wilcoxon).
+    /// Scenes without a difference omitted before the ranking (Wilcoxon).
     pub p_two_sided: f64,
-    /// The same left out after the ranking (Pratt).
+    /// The same omitted after the ranking (Pratt).
     pub p_two_sided_pratt: f64,
-    /// Counted out and not approximated.
+    /// Exact, not approximated.
     pub exact: bool,
-    /// The smallest p that so many scenes can give.
+    /// The smallest p possible with this number of scenes.
     pub smallest_p: f64,
     /// Matched-pairs rank biserial correlation, -1 to 1.
     pub rank_biserial: f64,
 }
 
-/// The movement of the skin on meshes that follow each other.
+/// The movement of the skin on successively refined meshes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct ConvergenceDocument {
     pub scene: String,
@@ -312,11 +312,11 @@ pub struct ConvergenceDocument {
     pub levels: Vec<u32>,
     /// Mean over the skin on each.
     pub skin_mean_mm: Vec<f64>,
-    /// Share of the last by which it changed on the last step.
+    /// Relative change on the last step.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub last_change: Option<f64>,
-    /// Observed; absent with fewer than three meshes, or where steps do not shrink.
+    /// Observed order; absent with fewer than three meshes, or if steps do not decrease.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub order: Option<f64>,
@@ -334,13 +334,13 @@ pub struct StudySummaryDocument {
 }
 
 impl ReportDocument {
-    /// Where its rows were solved.
+    /// The study that solved its rows.
     pub fn source(&self) -> RowsOfDocument {
         let own = RowsOfDocument { job: self.job.clone(), created: self.created.clone() };
         self.rows_of.clone().unwrap_or(own)
     }
 
-    /// Whether every row had its time.
+    /// Whether no row was left out for lack of time.
     pub fn is_complete(&self) -> bool {
         self.rows.iter().all(|row| row.status != RowStatus::NotRun)
     }

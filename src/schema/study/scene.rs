@@ -1,4 +1,4 @@
-//! A scene of a study, as a report has it.
+//! A scene of a study, in a report.
 
 use std::collections::BTreeMap;
 
@@ -7,7 +7,7 @@ use utoipa::ToSchema;
 
 use crate::schema::wire::warning::WarningDocument;
 
-/// A scene at level 0, and what is held for true in it.
+/// A scene at level 0, and its reference.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct StudySceneDocument {
     pub name: String,
@@ -18,33 +18,33 @@ pub struct StudySceneDocument {
     #[schema(nullable = false)]
     pub cell_mm: Option<f64>,
     pub skin_nodes: u64,
-    /// Of a case: the SHA-256 of each of its plans as it was stated, by its name.
+    /// Of a case: the SHA-256 of each of its plans as stated, by name.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     #[schema(required = false)]
     pub plans: BTreeMap<String, String>,
-    /// Of a case: the SHA-256 of what it states, contents of meshes in place of their ids, names and tags left out.
+    /// Of a case: the SHA-256 of its document, contents of meshes instead of their ids, without names and tags.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub case: Option<String>,
     pub truth: String,
-    /// What the truth itself is off by, mean and p95 over the skin, by extrapolation; absent where it is a formula or
-    /// not known.
+    /// The error of the reference itself, mean and p95 over the skin, by extrapolation; absent if it is a formula or
+    /// unknown.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub truth_error_mm: Option<TruthErrorDocument>,
-    /// Of a scan: how far the skin at rest is from it, measured as rows are.
+    /// Of a scan: its distance from the skin before the movement, measured like rows.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub unmoved_mm: Option<f64>,
-    /// Of a scan: root of the mean squared distance that its registration left, where that is known.
+    /// Of a scan: root mean square distance left by its registration, if known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub noise_mm: Option<f64>,
-    /// What speaks against a scan.
+    /// Objections to a scan.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     #[schema(required = false)]
     pub warnings: Vec<WarningDocument>,
-    /// Making the truth; part of no row.
+    /// Time of the reference; not part of any row.
     pub truth_s: f64,
 }
 

@@ -13,7 +13,7 @@ use crate::schema::wire::fault::{Faults, Pointer};
 use crate::schema::wire::limits::Limits;
 use mechanics::study::Strain;
 
-/// Halving every edge once more makes eight cells of one.
+/// Each further level multiplies the cells by eight.
 const MOST_LEVEL: u32 = 4;
 
 /// Of a spline.
@@ -22,21 +22,21 @@ const FEWEST_LANDMARKS: usize = 5;
 /// No skin moves farther, in mm.
 const FARTHEST_MM: f64 = 100.0;
 
-/// What is held for true: exactly one of `refine` with `element`, `closed_form`, `job`, and `mesh` with `align`,
+/// The truth (reference): exactly one of `refine` with `element`, `closed_form`, `job`, and `mesh` with `align`,
 /// `moved_by_more_than_mm`, `metric` with `landmarks_mm`, and `noise_mm`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TruthDocument {
-    /// Finite elements with every edge of level 0 halved so often.
+    /// Finite elements with every edge of level 0 halved this many times.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false, minimum = 0, maximum = 4)]
     pub refine: Option<u32>,
-    /// Of `refine`. Default: of `fem_linear` `quadratic` where all cells are tetrahedra, else `mean_dilatation`; of
+    /// Of `refine`. Default: of `fem_linear` `quadratic` if all cells are tetrahedra, else `mean_dilatation`; of
     /// `fem_nonlinear` the usual one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub element: Option<ElementName>,
-    /// Of `refine`. A linear truth is none where movements are large. Default: `fem_linear`.
+    /// Of `refine`. A linear reference is wrong for large movements. Default: `fem_linear`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub method: Option<TruthMethodName>,
@@ -47,41 +47,41 @@ pub struct TruthDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub job: Option<String>,
-    /// A surface that shows where the skin of one case went after one plan, such as a scan after the operation: errors
-    /// are distances between it and the predicted skin, both ways, where the skin moves and both are there.
+    /// A surface of the skin of one case after one plan, such as a scan after the operation: errors
+    /// are distances between it and the predicted skin, both ways, where the skin moves and both exist.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub mesh: Option<String>,
-    /// Of `mesh` onto the skin of the case, by anything but `icp`, which would take back from each answer what tells it
-    /// from others. Default: `none`.
+    /// Of `mesh` onto the skin of the case, by anything but `icp`, which would remove the differences between
+    /// results. Default: `none`.
     #[serde(default, skip_serializing_if = "is_default", deserialize_with = "align")]
     #[schema(value_type = AlignReference, required = false)]
     pub align: AlignDocument,
-    /// Of `mesh`: only skin counts that some answer moves by more than this. Default: 0.5.
+    /// Of `mesh`: only skin counts that some result moves by more than this. Default: 0.5.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false, minimum = 0.0, maximum = 100.0)]
     pub moved_by_more_than_mm: Option<f64>,
-    /// Of `mesh`: how far an answer is from it. Default: `both`.
+    /// Of `mesh`: the distance of a result from it. Default: `both`.
     #[serde(default, skip_serializing_if = "is_both")]
     pub metric: TruthMetric,
-    /// Of `mesh` with a `metric` of `tps_cp`, by their names in the case: where the scan has them, before it is aligned.
+    /// Of `mesh` with a `metric` of `tps_cp`, by their names in the case: their positions on the scan, before alignment.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub landmarks_mm: BTreeMap<String, Triple>,
-    /// Of `mesh`: root of the mean squared distance that its registration left. Default: what `align` leaves where it
-    /// fits `surfaces` or `landmarks`, else not known.
+    /// Of `mesh`: root mean square distance left by its registration. Default: that of `align` if it
+    /// fits `surfaces` or `landmarks`, else unknown.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false, minimum = 0.0, maximum = 100.0)]
     pub noise_mm: Option<f64>,
 }
 
-/// How far an answer is from a scan.
+/// The distance of a result from a scan.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum TruthMetric {
     /// Closest points, from the skin to the scan and back.
     #[default]
     Both,
-    /// Points that correspond: by the node ids of both, or in their order where the triangles are the same.
+    /// Corresponding points: by the node ids of both, or in their order if the triangles are the same.
     NodeWise,
     /// Thin-plate spline of landmarks and closest point: from a point of the skin to that of the scan which is closest to where the
     /// spline takes it.
@@ -92,7 +92,7 @@ fn is_both(metric: &TruthMetric) -> bool {
     *metric == TruthMetric::Both
 }
 
-/// The method of a truth that is solved for.
+/// The method of a computed reference.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum TruthMethodName {
@@ -119,7 +119,7 @@ fn is_default(align: &AlignDocument) -> bool {
 }
 
 impl TruthDocument {
-    /// Adds what is wrong with it, but for what scenes and meshes tell.
+    /// Adds its faults, except those that need scenes and meshes.
     pub(super) fn check(&self, at: &Pointer, limits: &Limits, faults: &mut Faults) {
         let forms =
             [self.refine.is_some(), self.closed_form, self.job.is_some(), self.mesh.is_some()];
@@ -152,8 +152,8 @@ impl TruthDocument {
         match (self.metric, count) {
             (TruthMetric::TpsCp, 0..FEWEST_LANDMARKS) => {
                 let detail = format!(
-                    "a thin-plate spline needs {FEWEST_LANDMARKS} landmarks that lie in no plane, here are {count}; four of them meet \
-                     every affine map, so that nothing would show a wrong one"
+                    "a thin-plate spline needs {FEWEST_LANDMARKS} landmarks, not coplanar, here are {count}; four of them fit \
+                     every affine map, so that a wrong one would not be detected"
                 );
                 faults.add(&place, ErrorCode::AlignmentFailed, detail);
             }
@@ -165,7 +165,7 @@ impl TruthDocument {
         }
         self.align.check(&at.key("align"), limits, faults);
         if self.align.method == AlignMethod::Icp {
-            let detail = "fitted to each answer the scan shows no difference between them: align it by `surfaces`, \
+            let detail = "fitted to each result the scan shows no difference between them: align it by `surfaces`, \
                           such as bone, by `landmarks` or by a `matrix`";
             faults.add(&at.key("align").key("method"), ErrorCode::AlignmentFailed, detail);
         }

@@ -1,20 +1,20 @@
-//! Outcome of a study, its reasons, and the rows that keep it from passing.
+//! Outcome of a study, its reasons, and the rows that prevent a pass.
 
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-/// Whether a change may pass.
+/// The outcome of a study.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum OutcomeName {
-    /// Everything ran, and nothing is worse.
+    /// All rows ran, and none is worse.
     Pass,
     /// A row is above a threshold, worse than in the baseline, or failed.
     Worse,
     /// Rows did not run, or none was solved, or the baseline has rows that this study lacks.
     #[default]
     Incomplete,
-    /// A baseline was asked for, and there is none to compare with.
+    /// A baseline was requested, and is missing.
     NoBaseline,
 }
 
@@ -28,7 +28,7 @@ impl OutcomeName {
         }
     }
 
-    /// With which the command line ends.
+    /// The exit code of the command line.
     pub fn exit_code(self) -> u8 {
         match self {
             OutcomeName::Pass => 0,
@@ -39,7 +39,7 @@ impl OutcomeName {
     }
 }
 
-/// The outcome and what led to it.
+/// The outcome and its reasons.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct VerdictDocument {
     pub outcome: OutcomeName,
@@ -50,7 +50,7 @@ pub struct VerdictDocument {
     pub failed: u64,
     pub worse: u64,
     pub not_run: u64,
-    /// Rows that there would be if every variant served every scene and none were the truth itself.
+    /// Number of rows if every variant supported every scene and none were the reference itself.
     #[serde(default)]
     #[schema(required = false)]
     pub skipped: u64,
@@ -58,13 +58,13 @@ pub struct VerdictDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub baseline: Option<String>,
-    /// The rows that are worse than allowed or failed, with what each exceeds: one entry for each measure.
+    /// The rows that are worse than allowed or failed, with each exceeded limit: one entry for each measure.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     #[schema(required = false)]
     pub failing: Vec<FailingRowDocument>,
 }
 
-/// A row that keeps an outcome from being a pass.
+/// A row that prevents a pass.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct FailingRowDocument {
     pub scene: String,
@@ -72,15 +72,15 @@ pub struct FailingRowDocument {
     pub label: String,
     pub material: String,
     pub level: u32,
-    /// `mean_mm`, `p95_mm`, `wall_s` or `iterations`; absent where the row has no numbers, or its plan moves nothing.
+    /// `mean_mm`, `p95_mm`, `wall_s` or `iterations`; absent if the row has no numbers, or its plan moves nothing.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub measure: Option<String>,
-    /// What the row has.
+    /// The value of the row.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub value: Option<f64>,
-    /// What it may have at most, by a threshold or by the baseline.
+    /// The largest allowed value, by a threshold or by the baseline.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub limit: Option<f64>,

@@ -1,4 +1,4 @@
-//! Canonical JSON and its hash: the same content has the same hash, however it was written down.
+//! Canonical JSON and its hash: the same content has the same hash, however it is formatted.
 
 use serde::Serialize;
 use serde_json::{Value, json};
@@ -24,7 +24,7 @@ pub fn hex(bytes: &[u8]) -> String {
     bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
-/// The hash of what documents say, and of the program as far as its numbers go: another one finds other results.
+/// The hash of documents and of the numerics revision of the program, since another revision gives other results.
 pub fn hash(mut content: Value) -> String {
     content["engine"] =
         json!({ "version": env!("CARGO_PKG_VERSION"), "numerics": NUMERICS_REVISION });

@@ -7,10 +7,10 @@ use super::problem::Problem;
 use crate::schema::code::ErrorCode;
 use mechanics::prediction::SceneErrors;
 
-/// How many faults of one document are reported.
+/// The most reported faults of one document.
 const REPORTED_FAULTS: usize = 50;
 
-/// Codes that name a whole problem when nothing else is wrong with a document.
+/// Codes that name a whole problem if a document has no other faults.
 const CATALOGUE: &[ErrorCode] = &[
     ErrorCode::AlignmentFailed,
     ErrorCode::BoneOutsideSkin,
@@ -33,7 +33,7 @@ const CATALOGUE: &[ErrorCode] = &[
     ErrorCode::UnknownSegment,
 ];
 
-/// Collects what is wrong, so that a client hears all of it at once.
+/// Collects faults, so that a client gets all of them at once.
 #[derive(Debug, Default)]
 pub struct Faults {
     errors: Vec<FieldError>,
@@ -53,7 +53,7 @@ impl Faults {
         self.errors.push(error);
     }
 
-    /// Whether the same was said before; a member that is null is not missing on top of it.
+    /// Whether the same was reported before; a member that is null is not also missing.
     fn is_told(&self, error: &FieldError) -> bool {
         self.errors.iter().any(|told| {
             let is_null =
@@ -66,7 +66,7 @@ impl Faults {
         self.errors.is_empty()
     }
 
-    /// `Ok` where nothing is wrong. A problem is called by the code of its faults if all share one
+    /// `Ok` without faults. A problem has the code of its faults if all share one
     /// of the catalogue, else `validation-failed`.
     pub fn into_result(self) -> Result<(), Problem> {
         match self.errors.is_empty() {
@@ -90,7 +90,7 @@ impl Faults {
         problem
     }
 
-    /// Takes over what a problem holds; one without places is a mistake of the whole document.
+    /// Adds the faults of a problem; one without places is a mistake of the whole document.
     pub fn join(&mut self, problem: Problem) {
         if problem.errors.is_empty() {
             self.add(&Pointer::root(), problem.code, problem.detail);
@@ -101,7 +101,7 @@ impl Faults {
         }
     }
 
-    /// Refuses a number outside a closed range, and whatever is not a number.
+    /// Refuses a number outside a closed range, and NaN.
     pub fn check_range(
         &mut self,
         at: &Pointer,
@@ -122,7 +122,7 @@ impl Faults {
         inside
     }
 
-    /// Refuses names that are empty, longer than 128 characters, or hold control characters.
+    /// Refuses names that are empty, too long, or contain control characters.
     pub fn check_name(&mut self, at: &Pointer, name: &str, longest: usize) {
         let characters = name.trim().chars().count();
         if characters == 0 || characters > longest {
@@ -132,7 +132,7 @@ impl Faults {
                 format!("a name has 1 to {longest} characters, this one {characters}"),
             );
         } else if name.chars().any(char::is_control) {
-            self.add(at, ErrorCode::BadName, "a name holds no control characters");
+            self.add(at, ErrorCode::BadName, "a name has no control characters");
         }
     }
 
@@ -146,7 +146,7 @@ impl Faults {
         }
     }
 
-    /// Refuses a choice of which not exactly one form is given.
+    /// Refuses a choice without exactly one form.
     pub fn check_one_of(&mut self, at: &Pointer, given: usize, forms: &str) -> bool {
         if given != 1 {
             self.add(
@@ -168,7 +168,7 @@ impl Problem {
     }
 }
 
-/// What a scene refuses; its pointers start at `/case` or `/plan`.
+/// The refusal of a scene; its pointers start at `/case` or `/plan`.
 impl From<SceneErrors> for Problem {
     fn from(errors: SceneErrors) -> Problem {
         let mut faults = Faults::default();

@@ -1,11 +1,11 @@
-//! `GET /v1/limits`: every bound that is enforced.
+//! `GET /v1/limits`: every enforced bound.
 
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 use mechanics::format::ReadLimits;
 
-/// Bounds on what is accepted. Defaults are those of the API's first version.
+/// Bounds of requests. Defaults are those of the API's first version.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Limits {
     /// Largest mesh upload.
@@ -23,47 +23,47 @@ pub struct Limits {
     pub image_voxels: u64,
     /// Corners of one polygon of a surface file.
     pub polygon_corners: u32,
-    /// Distinct values of an integer array that divides a mesh into regions, or whose values select nodes; an
-    /// array with more is ignored, and the report of the mesh says so.
+    /// Distinct values of an integer array of regions, or of one whose values select nodes; an
+    /// array with more is ignored, as the report of the mesh states.
     pub label_values: u32,
     /// Decoded size of a file.
     pub decoded_bytes: u64,
-    /// Decoded size of a file in multiples of the file.
+    /// Decoded size of a file as a multiple of its size.
     pub decoded_ratio: u32,
     /// Longest wait for a result within a request.
     pub wait_s: u32,
     /// Characters of a name.
     pub name_characters: u32,
     pub tags: u32,
-    /// Segments, bones, sliding sets, prescribed sets, loads or steps of a sequence: of each.
+    /// Segments, bones, sliding sets, prescribed sets, loads, steps of a sequence: of each.
     pub list_entries: u32,
     /// Landmarks, named regions and materials: of each.
     pub map_entries: u32,
     /// Length of the translation of one movement, and each component of a prescribed displacement.
     pub translation_mm: f64,
-    /// Each angle of one movement, and the angle of the whole movement of a segment.
+    /// Each angle of one movement, and the angle of the total movement of a segment.
     pub rotation_deg: f64,
-    /// How far the whole movement of a segment may displace the centre of the mesh's bounding box.
+    /// Displacement of the centre of the mesh's bounding box by the total movement of a segment.
     pub centre_displacement_mm: f64,
     /// Largest budget of time of one job.
     pub wall_s: f64,
     /// Largest budget of memory of one job.
     pub memory_mb: f64,
-    /// Memory of the process of one job; a job that is expected to need more is refused.
+    /// Memory of the process of one job; a job expected to need more is refused.
     pub slot_memory_mb: f64,
     pub samples_per_mm2: f64,
     /// Scenes times plans times materials times levels times variants of a study.
     pub study_rows: u32,
-    /// Requests of one client in a minute; 0 for no limit.
+    /// Requests of one client per minute; 0 for no limit.
     pub requests_per_minute: u32,
     /// Streams of events that one client may have open.
     pub event_streams: u32,
-    /// Keys in force that a tenant may have.
+    /// Valid keys of a tenant.
     pub keys: u32,
-    /// Requests of one tenant that may wait for their turn at the parser, as many for their turn at the check of jobs, as
-    /// many for theirs to list jobs, and as many for theirs to write.
+    /// Requests of one tenant that may wait for a permit to parse, as many for one to check jobs, as
+    /// many for one to list jobs, and as many for one to write.
     pub waiting_requests: u32,
-    /// Bytes of bodies that one client may have under way at the same time.
+    /// Bytes of bodies of one client in flight at the same time.
     pub client_bodies_bytes: u64,
 }
 

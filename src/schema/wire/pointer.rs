@@ -1,4 +1,4 @@
-//! Places in a document as JSON pointers, and one thing wrong at a place.
+//! Places in a document as JSON pointers, and a fault at a place.
 
 use std::fmt;
 
@@ -17,7 +17,7 @@ impl Pointer {
         Pointer::default()
     }
 
-    /// A pointer that is already written out.
+    /// A pointer in its text form.
     pub fn from_text(text: &str) -> Self {
         Pointer(text.to_owned())
     }
@@ -44,12 +44,12 @@ impl fmt::Display for Pointer {
     }
 }
 
-/// One thing wrong with a document.
+/// A fault of a document.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, ToSchema)]
 pub struct FieldError {
     /// JSON pointer (RFC 6901) to the place.
     pub pointer: String,
-    /// A stable word for the kind of mistake.
+    /// The stable code of the mistake.
     #[schema(value_type = String)]
     pub code: ErrorCode,
     /// One sentence with the numbers.

@@ -7,13 +7,13 @@ use utoipa::ToSchema;
 use super::pointer::FieldError;
 use crate::schema::code::ErrorCode;
 
-/// What stands before the code in the `type` of a problem: the page of codes, beside what was asked for.
+/// The prefix of the code in the `type` of a problem: the page of codes, relative to the request.
 const KIND_BASE: &str = "/errors#";
 
-/// Why something was refused.
+/// The reason of a refusal.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Problem {
-    /// The last word of the problem's `type`, e.g. `validation-failed`.
+    /// The fragment of the problem's `type`, e.g. `validation-failed`.
     pub code: ErrorCode,
     pub detail: String,
     pub errors: Vec<FieldError>,
@@ -38,7 +38,7 @@ impl Problem {
     }
 
     /// The same problem with pointers that start at `from` starting at `to` instead: a body that is
-    /// itself the plan knows nothing of `/plan`. The sentence that names the first place names it anew.
+    /// itself the plan has no `/plan`. The first place in the sentence is replaced too.
     pub fn moved(mut self, from: &str, to: &str) -> Self {
         let first = self.errors.first().map(FieldError::sentence);
         for error in &mut self.errors {
@@ -55,7 +55,7 @@ impl Problem {
         self
     }
 
-    /// The body of an answer with this problem and this HTTP status.
+    /// The body of a response with this problem and this HTTP status.
     pub fn into_document(self, status: u16, instance: Option<String>) -> ProblemDocument {
         ProblemDocument {
             kind: format!("{KIND_BASE}{}", self.code),
@@ -73,25 +73,25 @@ impl Problem {
 /// `application/problem+json` (RFC 9457).
 #[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
 pub struct ProblemDocument {
-    /// Where the kind of problem is explained, relative to the service; ends with `code`.
+    /// The address of the explanation, relative to the service; ends with `code`.
     #[serde(rename = "type")]
     pub kind: String,
     /// The kind of problem in a few words.
     pub title: String,
     /// The HTTP status.
     pub status: u16,
-    /// A stable word for the kind of problem.
+    /// The stable code of the kind of problem.
     pub code: String,
-    /// What was wrong here, in one sentence with the numbers.
+    /// The fault of this request, in one sentence with the numbers.
     pub detail: String,
     /// The request, by its id.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub instance: Option<String>,
-    /// Everything wrong with the document, at most 50 entries.
+    /// All faults of the document, at most 50.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub errors: Vec<FieldError>,
-    /// Further members that belong to the code, e.g. `line` and `column` of `malformed-json`.
+    /// Further members of the code, e.g. `line` and `column` of `malformed-json`.
     #[serde(flatten)]
     #[schema(value_type = Object)]
     pub members: Map<String, Value>,

@@ -1,7 +1,7 @@
-//! The reader of documents: JSON values to typed documents, with each mistake in JSON's own terms and at its place.
+//! The reader of documents: JSON values to typed documents, with each mistake in JSON terms and at its place.
 //!
-//! Readers derived by serde speak of the types of the program, and take an array for an object by the order of its
-//! members. This one says object, array, string, number, true or false, and takes an object for an object only.
+//! Readers derived by serde name Rust types, and accept an array for an object by the order of its
+//! members. This one names JSON types: object, array, string, number, true or false, and accepts only objects as objects.
 
 use std::fmt;
 
@@ -15,12 +15,12 @@ use serde_json::{Value, map};
 use super::pointer::Pointer;
 use crate::schema::code::ErrorCode;
 
-/// What a detail begins with where a word is known and what it stands for is not built.
+/// The prefix of a detail on a known word without an implementation.
 pub const NOT_AVAILABLE: &str = "not available: ";
-/// Characters of a string that a message repeats.
+/// The most characters of a string repeated in a message.
 const REPEATED: usize = 40;
 
-/// Why a value is not the document that is asked for.
+/// Why a value is not the expected document.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mistake {
     pub code: ErrorCode,
@@ -31,7 +31,7 @@ pub struct Mistake {
     path: Vec<String>,
 }
 
-/// The document that a value is.
+/// Reads a value as a document.
 pub fn read<T: DeserializeOwned>(value: &Value) -> Result<T, Mistake> {
     T::deserialize(Json(value))
 }
@@ -105,7 +105,7 @@ impl Error for Mistake {
     }
 }
 
-/// Words as a sentence lists them.
+/// Words as listed in a sentence.
 fn listed(words: &[&str]) -> String {
     let quoted: Vec<String> = words.iter().map(|word| format!("`{word}`")).collect();
     match quoted.as_slice() {
@@ -119,7 +119,7 @@ fn array_of(length: usize) -> String {
     format!("an array of {length}")
 }
 
-/// What serde's readers expect, in JSON's terms.
+/// The expectation of serde's readers, in JSON terms.
 fn in_json(expected: &str) -> String {
     let length = expected.strip_prefix("an array of length ");
     if let Some(length) = length.or_else(|| expected.strip_prefix("a tuple of size ")) {
@@ -141,7 +141,7 @@ fn in_json(expected: &str) -> String {
     known.to_owned()
 }
 
-/// What stands there, in JSON's terms.
+/// The value found, in JSON terms.
 fn json_type_name(found: Unexpected) -> String {
     match found {
         Unexpected::Bool(value) => value.to_string(),
@@ -174,7 +174,7 @@ fn found(value: &Value) -> String {
     }
 }
 
-/// A value that is read.
+/// A value being read.
 struct Json<'de>(&'de Value);
 
 impl<'de> Deserializer<'de> for Json<'de> {
@@ -262,7 +262,7 @@ impl<'de> Deserializer<'de> for Json<'de> {
     }
 }
 
-/// The entries of an array that are left.
+/// The remaining entries of an array.
 struct Entries<'de>(std::iter::Enumerate<std::slice::Iter<'de, Value>>);
 
 impl<'de> SeqAccess<'de> for Entries<'de> {
@@ -278,7 +278,7 @@ impl<'de> SeqAccess<'de> for Entries<'de> {
     }
 }
 
-/// The members of an object that are left, and the one whose name was read last.
+/// The remaining members of an object, and the one whose name was read last.
 struct Members<'de> {
     left: map::Iter<'de>,
     entered: Option<(&'de String, &'de Value)>,

@@ -1,4 +1,4 @@
-//! Strict JSON: what a lenient reader would drop or guess is refused, with the place.
+//! Strict JSON: anything that a lenient reader would drop or guess is refused, with its place.
 //!
 //! Syntax (RFC 8259), size, depth and encoding are refused as `malformed-json` with line and column;
 //! repeated keys, nulls and anything a document does not know as `validation-failed` with JSON pointers.
@@ -49,8 +49,8 @@ pub fn parse_value(bytes: &[u8], limits: &Limits) -> Result<Value, Problem> {
     Ok(value)
 }
 
-/// A document of a known shape out of JSON that `parse_value` let through.
-/// Every unknown field is reported; of other mistakes in the shape the first.
+/// A document of a known type from JSON accepted by `parse_value`.
+/// Every unknown field is reported, and the first of other type errors.
 pub fn from_value<T: DeserializeOwned>(mut value: Value) -> Result<T, Problem> {
     let mut faults = Faults::default();
     remove_nulls(&mut value, &Pointer::root(), &mut faults);
@@ -75,7 +75,7 @@ pub fn from_value<T: DeserializeOwned>(mut value: Value) -> Result<T, Problem> {
     }
 }
 
-/// A member that is null says nothing a missing one does not; entries of arrays are judged by their type.
+/// A null member is equivalent to a missing one; entries of arrays are checked by their type.
 fn remove_nulls(value: &mut Value, at: &Pointer, faults: &mut Faults) {
     match value {
         Value::Object(members) => {
@@ -125,7 +125,7 @@ enum Step {
     Index(usize),
 }
 
-/// Where the reader stands and what it found.
+/// The position of the reader and its findings.
 struct Scan {
     depth_limit: usize,
     path: RefCell<Vec<Step>>,
@@ -140,7 +140,7 @@ impl Scan {
         })
     }
 
-    /// Steps into a member or entry; where the step is refused the path keeps pointing at it.
+    /// Descends into a member or entry; if that is refused the path still points at it.
     fn enter<E: Error>(&self, step: Step) -> Result<(), E> {
         self.path.borrow_mut().push(step);
         let depth = self.path.borrow().len();

@@ -1,4 +1,4 @@
-//! A place of a document that takes a name or an object; what is wrong inside the object keeps its own place, which an
+//! A place of a document that takes a name or an object; faults in the object keep their places, which an
 //! untagged enum would lose.
 
 use std::fmt;
@@ -7,7 +7,7 @@ use std::marker::PhantomData;
 use serde::de::value::MapAccessDeserializer;
 use serde::de::{Deserialize, Deserializer, Error, MapAccess, Visitor};
 
-/// What stood there.
+/// The value found there.
 pub enum TextOrObject<T> {
     Text(String),
     Object(T),

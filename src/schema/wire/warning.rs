@@ -1,4 +1,4 @@
-//! Warnings: facts that a reader needs although the work went on.
+//! Warnings: facts that a reader needs although the work was not refused.
 
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};

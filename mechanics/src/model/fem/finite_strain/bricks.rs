@@ -82,7 +82,7 @@ pub(super) struct Bricks<'a> {
     fibres: FibreField<'a>,
     inner: Arc<InnerStress>,
     bricks: Vec<Brick>,
-    /// Their places in the order of the numbering, and for each cell of the mesh its brick.
+    /// Their places in the order of the degree-of-freedom map, and for each cell of the mesh its brick.
     own_elements: Vec<usize>,
     of_cell: Vec<u32>,
 }

@@ -35,13 +35,13 @@ pub(super) struct Simplex {
     pub carried: f64,
 }
 
-/// The tetrahedra of a mesh, in the order of its numbering.
+/// The tetrahedra of a mesh, in the order of the degree-of-freedom map.
 pub(super) struct Simplices<'a> {
     laws: &'a [Law],
     fibres: FibreField<'a>,
     inner: Arc<InnerStress>,
     pub cells: Vec<Simplex>,
-    /// For each element of the numbering its tetrahedron, or `u32::MAX`; empty where all elements are tetrahedra.
+    /// For each element of the degree-of-freedom map its tetrahedron, or `u32::MAX`; empty where all elements are tetrahedra.
     of_element: Vec<u32>,
 }
 
