@@ -87,11 +87,11 @@ impl PredictInput {
         let (scene, quality) =
             rayon::join(|| Scene::new(case, plan, settings), || quality(&case.volume));
         let scene = scene.map_err(|errors| JobError::Refused(errors.into()))?;
-        if let Some(refine) = &self.spec.refine {
-            check_refinable(refine, &scene)?;
-        }
         if let Some(model) = &model {
             self.check_model(&model.document, case, plan, &scene)?;
+        }
+        if let Some(refine) = &self.spec.refine {
+            check_refinable(refine, &scene)?;
         }
         let meshes_read = stored.values().chain(compared.iter().map(|meshes| &meshes.actual));
         let mut warnings: Vec<Warning> =

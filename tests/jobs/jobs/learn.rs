@@ -553,11 +553,12 @@ fn scans_of_before_the_operation_and_beside_the_case_are_suspected_with_their_pl
     };
     let (sources, input) = operated();
     assert_eq!(told(&sources, input), []);
-    let (mut sources, input) = operated();
+    let beside = |number: usize, _| match number {
+        2 => Vector::new(60.0, 0.0, 0.0),
+        _ => Vector::new(0.0, 0.0, 0.5),
+    };
+    let (mut sources, input) = operated_beside(&beside);
     sources.meshes.insert("after 3".to_owned(), volume(block([4, 4, 2])));
-    let mut beside = block([4, 4, 2]);
-    beside.nodes.iter_mut().for_each(|node| node.x += 60.0);
-    sources.meshes.insert("after 2".to_owned(), volume(beside));
     let at = |code: &str, place: &str| (code.to_owned(), place.to_owned());
     let expected = [
         at("unregistered-suspect", "/spec/cases/1"),
