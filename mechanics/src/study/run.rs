@@ -135,11 +135,9 @@ impl<'a> SceneWork<'a> {
                     None => truths.of(self.scene, skin, (of_plan, place)),
                 };
                 for attempt in attempts.next().into_iter().flatten() {
-                    let variant = attempt.variant;
-                    let row = self.row(plan, materials, attempt, &truth);
-                    match is_of_the_truth(&row) {
-                        true => skipped.push(self.skipped(variant, CHOSE_THE_TRUTH.to_owned())),
-                        false => rows.push(row),
+                    match self.row(plan, materials, attempt, &truth) {
+                        Ok(row) => rows.push(row),
+                        Err(none) => skipped.push(none),
                     }
                 }
             }
@@ -272,14 +270,24 @@ impl<'a> SceneWork<'a> {
         self.bench.answer(&case, &materials.plan(plan), variant, skin.nodes())
     }
 
-    fn row(&self, plan: &str, materials: &Materials, attempt: Attempt, truth: &TrueSkins) -> Row {
+    /// The row of an answer, or why it has none.
+    fn row(
+        &self,
+        plan: &str,
+        materials: &Materials,
+        attempt: Attempt,
+        truth: &TrueSkins,
+    ) -> Result<Row, Skipped> {
         let Attempt { level, variant, answer } = attempt;
         let element = answer.as_ref().map_or_else(|_| String::new(), |a| a.elements.clone());
         let outcome = match answer.and_then(|answer| truth.judge(variant, answer)) {
             Ok(solved) => Outcome::Solved(Box::new(solved)),
             Err(Refusal { code, detail }) => Outcome::Failed { code, detail },
         };
-        Row {
+        if is_of_the_truth(&outcome) {
+            return Err(self.skipped(variant, CHOSE_THE_TRUTH.to_owned()));
+        }
+        Ok(Row {
             scene: self.scene.name.clone(),
             plan: plan.to_owned(),
             method: variant.method.clone(),
@@ -288,13 +296,13 @@ impl<'a> SceneWork<'a> {
             material: materials.name.clone(),
             level,
             outcome,
-        }
+        })
     }
 }
 
 /// Whether a model was chosen that is the one that is held for true, on its mesh: what its error would be is not known.
-fn is_of_the_truth(row: &Row) -> bool {
-    let Outcome::Solved(solved) = &row.outcome else { return false };
+fn is_of_the_truth(outcome: &Outcome) -> bool {
+    let Outcome::Solved(solved) = outcome else { return false };
     let is_same = |[own, _]: [f64; 2]| solved.error.mean <= ROUNDING * own;
     solved.chosen.is_some() && solved.truth_error.is_some_and(is_same)
 }
