@@ -60,9 +60,11 @@ impl TerminalProgress {
 
 /// Does a job, and shows where it is.
 pub fn run_with_progress(input: &JobInput, place: &JobContext) -> Result<JobOutput, JobError> {
-    // A folder that cannot be made is known before anything is solved.
-    let failed = |source| JobError::Write { file: place.out.display().to_string(), source };
-    std::fs::create_dir_all(place.out).map_err(failed)?;
+    // A file in the place of the folder is known before anything is solved.
+    if place.out.is_file() {
+        let source = std::io::ErrorKind::NotADirectory.into();
+        return Err(JobError::Write { file: place.out.display().to_string(), source });
+    }
     let progress = TerminalProgress::start();
     let done = work(input, place, &progress);
     progress.finish();

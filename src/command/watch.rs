@@ -86,7 +86,7 @@ mod tests {
         assert_eq!(bounds.broken(now, Some(149e6)), None);
         assert_eq!(bounds.broken(now, None), None);
         let time = bounds.broken(later + LOOK, Some(1.0)).unwrap();
-        assert_eq!(time, "wall ran out: 5 s are allowed");
+        assert_eq!(time, "wall ran out: 5 s are allowed by `budget`");
         let memory = bounds.broken(now, Some(151e6)).unwrap();
         assert!(memory.contains("100 MB") && memory.contains("took 151 MB"), "{memory}");
     }

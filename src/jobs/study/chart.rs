@@ -16,7 +16,7 @@ const REASON: usize = 110;
 pub const MARKED: [(&str, &str); 3] = [
     (
         LINEAR_TRUTH,
-        "Results of finite strain are compared with a linear truth: its linearisation error counts as their error.",
+        "results of finite strain are compared with a linear truth: its linearisation error counts as their error.",
     ),
     (
         TRUTH_WITHOUT_CONTACT,

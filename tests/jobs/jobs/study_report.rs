@@ -160,7 +160,7 @@ fn what_does_not_apply_judges_nothing_and_is_listed() {
     let rules = json!({"tolerances": {}, "expected_failures": [], "thresholds": bounds});
     let held = judged(rules, &Baseline::NotAsked);
     assert_eq!(held.verdict.outcome, OutcomeName::Incomplete);
-    assert_eq!(held.verdict.reasons, ["the thresholds hold for quadratic, which applies nowhere"]);
+    assert_eq!(held.verdict.reasons, ["the thresholds are for quadratic, which applies nowhere"]);
     let mut nothing = with_skipped(&[], usual(), "quadratic");
     judge(&mut nothing, &Baseline::NotAsked);
     assert_eq!(nothing.verdict.outcome, OutcomeName::Incomplete);
@@ -378,8 +378,7 @@ fn charts_speak_in_words() {
         assert!(words.contains(&"mass-tensor, damped Jacobi"), "{words:?}");
     }
     let words = chart(&report, None);
-    for wanted in ["half head", "nonlinear FEM, plain", "no-equilibrium", "against a linear truth"]
-    {
+    for wanted in ["half head", "nonlinear FEM, plain", "no-equilibrium", "with a linear truth"] {
         assert!(words.contains(wanted), "{wanted}");
     }
 }
