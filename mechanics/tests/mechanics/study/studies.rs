@@ -673,7 +673,7 @@ fn a_truth_of_finite_strain_is_near_finite_strain_and_far_from_linearity() {
         let settings = Settings { method: Method::FemNonlinear, element, ..Settings::default() };
         Variant { settings, ..variant(label, element) }
     };
-    let tolerant = Accepted { skin_mm: 0.3, ..Accepted::default() };
+    let tolerant = Accepted { skin_mm: 0.13, ..Accepted::default() };
     let variants = vec![
         variant("linear", element),
         nonlinear("nonlinear", element),
