@@ -54,14 +54,6 @@ pub enum StoreError {
 }
 
 impl StoreError {
-    /// The same error, with the server of the database that it arose from.
-    pub(super) fn of_server(self, server: String) -> StoreError {
-        match self {
-            StoreError::Database(source) => StoreError::CannotConnect { server, source },
-            other => other,
-        }
-    }
-
     /// The same error, with the file of the embedded database that it arose from.
     pub(super) fn of_file(self, file: &std::path::Path) -> StoreError {
         match self {

@@ -192,7 +192,8 @@ fn described(scene: &Scene, answer: Answer, progress: &dyn Progress) -> Predicti
     warnings.extend(scene.nothing_moves());
     warnings.extend(equilibrium.warnings.iter().cloned());
     warnings.extend(contact.iter().flat_map(|touch| touch.warnings(scene)));
-    warnings.extend(inverted_cells(&deformation));
+    let det_f: Vec<f64> = deformation.iter().map(|cell| cell.det_f).collect();
+    warnings.extend(inverted_cells(&det_f));
     warnings.extend(far_skin::outrun(scene, &equilibrium.displacement));
     warnings.extend(small_strain::left(scene, &deformation, &nonlinearity));
     warnings.extend(exponential_tissue::warnings(scene, &equilibrium.displacement));
@@ -229,13 +230,13 @@ fn described(scene: &Scene, answer: Answer, progress: &dyn Progress) -> Predicti
 }
 
 /// An answer that turns cells inside out says so.
-pub(crate) fn inverted_cells(deformation: &[CellDeformation]) -> Option<Warning> {
-    let inverted = deformation.iter().filter(|cell| cell.det_f <= 0.0).count();
-    let smallest = deformation.iter().map(|cell| cell.det_f).fold(f64::INFINITY, f64::min);
+pub(crate) fn inverted_cells(determinants: &[f64]) -> Option<Warning> {
+    let inverted = determinants.iter().filter(|det_f| **det_f <= 0.0).count();
+    let smallest = determinants.iter().copied().fold(f64::INFINITY, f64::min);
     let detail = format!("the displacement turns {inverted} cells inside out");
     let warning = Warning::new("cells-inverted", detail)
         .with("cells", inverted as f64)
-        .with("share", inverted as f64 / deformation.len().max(1) as f64);
+        .with("share", inverted as f64 / determinants.len().max(1) as f64);
     (inverted > 0).then(|| warning.with("smallest_det_f", smallest))
 }
 

@@ -10,7 +10,7 @@ use super::deadline::Deadline;
 use super::estimated::Estimates;
 use super::variant::{Strain, Variant};
 use crate::mesh::{CellShape, Vector};
-use crate::model::fem::strain::deformations;
+use crate::model::fem::strain::determinants;
 use crate::model::problem::{Equilibrium, ModelError};
 use crate::prediction::{
     Accepted, Adequate, Case, ElementChoice, Laws, Method, Plan, Rung, Scene, SceneErrorCode,
@@ -152,12 +152,12 @@ impl Bench<'_> {
         let ((scene, equilibrium), time) =
             self.timed(|deadline| solve(case, plan, settings, deadline))?;
         check_sane(&scene, &equilibrium.displacement)?;
-        let deformation = deformations(&scene.mesh, &equilibrium.displacement);
+        let determinants = determinants(&scene.mesh, &equilibrium.displacement);
         let warnings = scene
             .warnings
             .iter()
             .chain(&equilibrium.warnings)
-            .chain(&inverted_cells(&deformation))
+            .chain(&inverted_cells(&determinants))
             .chain(&scene.nothing_moves())
             .map(|warning| warning.code.to_owned())
             .collect();
@@ -169,7 +169,7 @@ impl Bench<'_> {
             elements: scene.elements().join(", "),
             unknowns: equilibrium.solver.unknowns,
             iterations: equilibrium.solver.iterations,
-            smallest_det_f: deformation.iter().map(|c| c.det_f).fold(f64::INFINITY, f64::min),
+            smallest_det_f: determinants.into_iter().fold(f64::INFINITY, f64::min),
             chosen: None,
             warnings: distinct(warnings),
             time,

@@ -60,6 +60,7 @@ impl PredictInput {
             .map_err(|error| refused(ErrorCode::NotCorresponding, error.to_string()))?;
         Ok(Some(fitted))
     }
+
     /// Refuses a case in another frame, or with other nodes, than those that the model was learned from, and a prediction of
     /// another kind.
     pub(super) fn check_model(

@@ -90,8 +90,10 @@ impl Database {
             // A step may take longer than any request is allowed to.
             Address::Server { options, .. } => {
                 let connected = postgres::unlimited(&options).await;
-                let pool = connected
-                    .map_err(|error| StoreError::from(error).of_server(postgres::name(&options)))?;
+                let pool = connected.map_err(|source| StoreError::CannotConnect {
+                    server: postgres::name(&options),
+                    source,
+                })?;
                 let pool = Arc::new(Pool::Postgres(pool));
                 let address = Address::Server { options, connections: 1 };
                 Database::of_pools(address, (pool.clone(), pool), "write")
@@ -118,14 +120,16 @@ impl Database {
         let (writer, reader) = match &address {
             Address::File(file) => {
                 let connected = sqlite::connect(file).await;
-                let (writer, reader) =
-                    connected.map_err(|error| StoreError::from(error).of_file(file))?;
+                let (writer, reader) = connected
+                    .map_err(|source| StoreError::CannotOpen { file: file.clone(), source })?;
                 (Arc::new(Pool::Sqlite(writer)), Arc::new(Pool::Sqlite(reader)))
             }
             Address::Server { options, connections } => {
                 let connected = postgres::connect(options, *connections).await;
-                let pool = connected
-                    .map_err(|error| StoreError::from(error).of_server(postgres::name(options)))?;
+                let pool = connected.map_err(|source| StoreError::CannotConnect {
+                    server: postgres::name(options),
+                    source,
+                })?;
                 let pool = Arc::new(Pool::Postgres(pool));
                 (pool.clone(), pool)
             }

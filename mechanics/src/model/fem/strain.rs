@@ -30,18 +30,26 @@ pub fn deformations(mesh: &VolumeMesh, displacement: &[Vector]) -> Vec<CellDefor
         .collect()
 }
 
-fn deformation(mesh: &VolumeMesh, displacement: &[Vector], cell: usize) -> CellDeformation {
-    let reference = reference_cell(mesh.cells.shape(cell));
+/// The smallest det F of every cell over its quadrature points, in cell order: of its deformation that part alone.
+pub fn determinants(mesh: &VolumeMesh, displacement: &[Vector]) -> Vec<f64> {
+    let cells = (0..mesh.cells.len()).into_par_iter();
+    cells.map(|cell| determinant(mesh, displacement, cell)).collect()
+}
+
+/// The same of one cell; infinite where it has no volume at rest.
+pub fn determinant(mesh: &VolumeMesh, displacement: &[Vector], cell: usize) -> f64 {
     let corners: Vec<Vector> = mesh.corners(cell).collect();
-    let gradient = |point: &PhysicalPoint| gradient_of(mesh, displacement, cell, point);
-    let det_f = reference
-        .points
-        .iter()
+    let points = reference_cell(mesh.cells.shape(cell)).points.iter();
+    points
         .filter_map(|point| point.at(&corners))
-        .map(|point| (Matrix3::identity() + gradient(&point)).determinant())
-        .fold(f64::INFINITY, f64::min);
-    let at_centre =
-        reference.centre.at(&corners).map_or(Matrix3::zeros(), |point| gradient(&point));
+        .map(|point| gradient_of(mesh, displacement, cell, &point))
+        .map(|gradient| (Matrix3::identity() + gradient).determinant())
+        .fold(f64::INFINITY, f64::min)
+}
+
+fn deformation(mesh: &VolumeMesh, displacement: &[Vector], cell: usize) -> CellDeformation {
+    let det_f = determinant(mesh, displacement, cell);
+    let at_centre = gradient_at_centre(mesh, displacement, cell);
     let strain = (at_centre + at_centre.transpose()) * 0.5;
     let mut principal_strain: [f64; 3] = strain.symmetric_eigenvalues().into();
     principal_strain.sort_by(|a, b| b.total_cmp(a));

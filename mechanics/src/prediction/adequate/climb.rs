@@ -8,7 +8,7 @@ use super::objection::{Found, Objection};
 use super::rung::{Considered, Errors, Rung};
 use crate::mesh::Vector;
 use crate::model::fem::finite_strain::Advance;
-use crate::model::fem::strain::deformations;
+use crate::model::fem::strain::determinants;
 use crate::model::problem::ModelError;
 use crate::prediction::answer::{self, Answer, Linear};
 use crate::prediction::case::{Case, Plan, Settings};
@@ -345,8 +345,7 @@ impl Climb<'_> {
 
 /// Of the cell that a displacement presses most, or turns inside out.
 fn least_det_f(scene: &Scene, displacement: &[Vector]) -> f64 {
-    let cells = deformations(&scene.mesh, displacement);
-    cells.iter().map(|cell| cell.det_f).fold(f64::INFINITY, f64::min)
+    determinants(&scene.mesh, displacement).into_iter().fold(f64::INFINITY, f64::min)
 }
 
 fn at_finite_strain(

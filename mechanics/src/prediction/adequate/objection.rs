@@ -14,7 +14,7 @@
 
 use super::accepted::Accepted;
 use crate::mesh::{Vector, Warning};
-use crate::model::fem::strain::deformations;
+use crate::model::fem::strain::determinants;
 use crate::model::problem::Equilibrium;
 use crate::prediction::answer::{Answer, Linear};
 use crate::prediction::contact::Touch;
@@ -73,7 +73,7 @@ impl<'a> Found<'a> {
         }
         let is_small_strain = scene.settings.method.properties().is_small_strain;
         let outruns = far_skin::outrun(scene, &displacement).filter(|_| is_small_strain);
-        let inverted = inverted_cells(&deformations(&scene.mesh, &displacement));
+        let inverted = inverted_cells(&determinants(&scene.mesh, &displacement));
         let of_model = inverted.into_iter().chain(outruns);
         let newton = equilibrium.solver.newton.as_ref();
         let is_unstable = newton.is_some_and(|newton| newton.is_stable == Some(false));

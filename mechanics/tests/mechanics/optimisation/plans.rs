@@ -16,16 +16,17 @@ use crate::optimisation::scenes::{
 const SURGERY: [[f64; 6]; 2] =
     [[4.0, -6.0, 1.5, 7.0, -5.0, 11.0], [-1.0, -3.0, 2.0, -4.0, 2.0, 3.0]];
 
+/// Of movements alone, to first order.
+fn asked<'a>(
+    response: &'a Response,
+    bounds: &'a [SegmentBounds],
+    targets: &'a [Target],
+) -> Question<'a> {
+    Question { response, bounds, targets, inner: &[], constants: &[], second_order: None }
+}
+
 fn found(response: &Response, bounds: &[SegmentBounds], targets: &[Target]) -> Optimum {
-    let optimum = optimise(&Question {
-        response,
-        bounds,
-        targets,
-        inner: &[],
-        constants: &[],
-        second_order: None,
-    })
-    .unwrap();
+    let optimum = optimise(&asked(response, bounds, targets)).unwrap();
     check(&optimum, bounds);
     optimum
 }
@@ -292,15 +293,7 @@ fn a_question_without_an_answer_is_refused() {
     let response = response(&skin());
     let wanted = every_node(&skin(), 1.0);
     let ask = |response: &Response, bounds: &[SegmentBounds], targets: &[Target]| {
-        optimise(&Question {
-            response,
-            bounds,
-            targets,
-            inner: &[],
-            constants: &[],
-            second_order: None,
-        })
-        .unwrap_err()
+        optimise(&asked(response, bounds, targets)).unwrap_err()
     };
     let free = bounds(25.0, 30.0);
     let held = bounds(0.0, 0.0);
@@ -327,15 +320,7 @@ fn targets_far_from_any_skin_have_a_nearest_plan_or_say_that_it_was_not_found() 
             let wanted: Vec<Vector> =
                 (0..points).map(|_| Vector::from_fn(|_, _| 60.0 * random.normal())).collect();
             let (bounds, targets) = (bounds(25.0, 90.0), [every_node(&wanted, 1.0)]);
-            let question = Question {
-                response: &response,
-                bounds: &bounds,
-                targets: &targets,
-                inner: &[],
-                constants: &[],
-                second_order: None,
-            };
-            match optimise(&question) {
+            match optimise(&asked(&response, &bounds, &targets)) {
                 Ok(found) => {
                     check(&found, &bounds);
                     assert!(found.weighted_square_sum.is_finite());

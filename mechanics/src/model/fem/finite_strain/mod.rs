@@ -41,9 +41,8 @@ use crate::model::dofs::{Constrained, nodes_of_cells, number};
 use crate::model::fem::contact::Contact;
 use crate::model::fem::displacement::check_finite;
 use crate::model::fem::edge_nodes::WithEdges;
-use crate::model::fem::strain::deformations;
-use crate::model::problem::{Equilibrium, InvertedCell, LoadCase, ModelError};
-use crate::model::reference_cell;
+use crate::model::fem::strain::{determinant, determinants};
+use crate::model::problem::{Equilibrium, LoadCase, ModelError};
 use crate::progress::{Phase, Progress};
 use crate::solver::SolverError;
 use crate::solver::element_connectivity::ElementConnectivity;
@@ -150,7 +149,7 @@ impl<'a> FiniteStrain<'a> {
         finer: &FinerProblem,
         progress: &dyn Progress,
     ) -> Result<MeshError, ModelError> {
-        if deformations(self.mesh, displacement).iter().any(|cell| cell.det_f <= 0.0) {
+        if determinants(self.mesh, displacement).iter().any(|det_f| *det_f <= 0.0) {
             return Ok(Err(NoMeshError::Inverted));
         }
         let dof_map = number(&nodes_of_cells(self.mesh), self.nodes, self.constraints);
@@ -342,28 +341,21 @@ impl<'a> FiniteStrain<'a> {
 
     /// No movement of bones may turn a cell inside out, in one of its quadrature points, all of whose nodes they hold.
     fn check_held_cells(&self, case: &LoadCase) -> Result<(), ModelError> {
-        let mut held: Vec<Option<Vector>> = vec![None; self.nodes.len()];
-        for (constraint, value) in self
-            .constraints
-            .iter()
-            .zip(&case.held)
-            .filter(|(constraint, _)| constraint.count() == 3)
-        {
-            held[constraint.node as usize] = Some(constraint.axes() * value);
+        let mut displacement = vec![Vector::zeros(); self.nodes.len()];
+        let mut is_held = vec![false; self.nodes.len()];
+        for (constraint, value) in self.constraints.iter().zip(&case.held) {
+            if constraint.count() == 3 {
+                displacement[constraint.node as usize] = constraint.axes() * value;
+                is_held[constraint.node as usize] = true;
+            }
         }
-        for (cell, (shape, nodes)) in self.mesh.cells.iter().enumerate() {
-            let moved: Option<Vec<Vector>> =
-                nodes.iter().map(|&node| held[node as usize]).collect();
-            let Some(moved) = moved else { continue };
-            let corners: Vec<Vector> = self.mesh.corners(cell).collect();
-            for point in &reference_cell(shape).points {
-                let at = point.at(&corners).ok_or(InvertedCell { cell })?;
-                let stretch: Matrix3<f64> =
-                    moved.iter().zip(&at.gradients).map(|(u, g)| u * g.transpose()).sum();
-                let det_f = (Matrix3::identity() + stretch).determinant();
-                if det_f <= 0.0 {
-                    return Err(ModelError::Folded { cell, det_f });
-                }
+        for (cell, (_, nodes)) in self.mesh.cells.iter().enumerate() {
+            if !nodes.iter().all(|&node| is_held[node as usize]) {
+                continue;
+            }
+            let det_f = determinant(self.mesh, &displacement, cell);
+            if det_f <= 0.0 {
+                return Err(ModelError::Folded { cell, det_f });
             }
         }
         Ok(())

@@ -6,7 +6,7 @@
 use crate::boundary::Constraint;
 use crate::mesh::Vector;
 use crate::model::dofs::Constrained;
-use crate::model::fem::strain::deformations;
+use crate::model::fem::strain::determinants;
 use crate::model::parts::Parts;
 use crate::model::problem::{Equilibrium, LoadCase, ModelError};
 use crate::progress::{Inner, Progress};
@@ -207,8 +207,8 @@ impl Search<'_> {
     }
 
     fn standstill(&self, made: f64, at: &State, tally: &Tally) -> ModelError {
-        let cells = deformations(self.tetrahedra.mesh, &at.u);
-        let least_det_f = cells.iter().map(|cell| cell.det_f).fold(f64::INFINITY, f64::min);
+        let cells = determinants(self.tetrahedra.mesh, &at.u);
+        let least_det_f = cells.into_iter().fold(f64::INFINITY, f64::min);
         ModelError::Standstill { made, steps: tally.history.len(), least_det_f }
     }
 
