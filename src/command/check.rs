@@ -28,6 +28,7 @@ pub struct Arguments {
 /// Prints the counts of every class of nodes, and draws them where a folder is given.
 pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
     let asked = arguments.scene.documents(arguments.plan.plan.as_deref())?;
+    asked.file.refuse_beside_spec(&asked.path)?;
     let report = check(&asked.file.to_input(), &asked.sources, &Limits::default())?;
     print_check(&report.document);
     if let Some(out) = &arguments.out {

@@ -46,19 +46,11 @@ pub fn read<T: DeserializeOwned>(path: &Path) -> Result<T, CommandError> {
 /// What the spec of a case file says of how tissue is computed, and every kind of job of one case may say.
 const OF_TISSUE: [&str; 6] = ["method", "element", "materials", "membrane", "tolerance", "budget"];
 
-/// What it says of the job and its files, and decides no number.
-const OF_FILES: [&str; 10] = [
-    "accept_mm",
-    "accept_regions_mm",
-    "kind",
-    "case",
-    "estimate",
-    "outputs",
-    "range_mm",
-    "refine",
-    "keep",
-    "tags",
-];
+/// What it says of the files of a prediction and of its estimates, and decides no number of another kind of job: told, and not used.
+const OF_PREDICTION: [&str; 5] = ["estimate", "outputs", "range_mm", "keep", "tags"];
+
+/// What a file has beside its spec.
+const BESIDE_SPEC: [&str; 3] = ["case", "plan", "plan_id"];
 
 /// The spec of another kind of job on a case file, as it is posted but for `case`: what it does not say of the tissue it has
 /// from the spec of the case file, so that all commands compute the same tissue.
@@ -67,10 +59,10 @@ pub fn spec_beside<T: DeserializeOwned>(
     asked: &CaseDocuments,
 ) -> Result<T, CommandError> {
     let mut value = path.map_or_else(|| Ok(Value::Object(Map::new())), read::<Value>)?;
-    let stated = asked.file.stated();
+    let stated = asked.file.deciding(&asked.path)?;
     let (of_tissue, others): (Map<_, _>, Map<_, _>) =
         stated.into_iter().partition(|(name, _)| OF_TISSUE.contains(&name.as_str()));
-    refuse(&others, "only `predict` takes that", &asked.path)?;
+    refuse(&others, ONLY_PREDICT, &asked.path)?;
     if let Some(members) = value.as_object_mut() {
         members.entry("case").or_insert_with(|| "".into());
         for (name, stated) in of_tissue {
@@ -81,6 +73,10 @@ pub fn spec_beside<T: DeserializeOwned>(
     strict::from_value(value)
         .map_err(|problem| CommandError::Document { path: path.to_owned(), problem })
 }
+
+/// Why a member that decides numbers of a prediction is refused by another kind of job of the same tissue.
+const ONLY_PREDICT: &str = "only `predict` takes that, and without it this would be the answer of another model than that of the spec: \
+                            give a case file without it";
 
 /// Refuses members of the spec of a case file.
 fn refuse(stated: &Map<String, Value>, why: &str, path: &Path) -> Result<(), CommandError> {
@@ -143,7 +139,31 @@ impl CaseFile {
         Ok(path)
     }
 
-    /// What the spec says otherwise than one that says nothing, without what decides no number.
+    /// What the spec says of numbers; what it says of files and estimates of a prediction is told as not used.
+    fn deciding(&self, path: &Path) -> Result<Map<String, Value>, CommandError> {
+        self.refuse_beside_spec(path)?;
+        let (unused, deciding): (Map<_, _>, Map<_, _>) =
+            self.stated().into_iter().partition(|(name, _)| OF_PREDICTION.contains(&name.as_str()));
+        if !unused.is_empty() {
+            let names: Vec<String> = unused.keys().map(|name| format!("`{name}`")).collect();
+            eprintln!(
+                "not used   {} of the spec of {}: only `predict` takes that",
+                names.join(", "),
+                path.display()
+            );
+        }
+        Ok(deciding)
+    }
+
+    /// Refuses a case and a plan within a spec: a file has them beside it, and those within would be another case and another plan.
+    pub fn refuse_beside_spec(&self, path: &Path) -> Result<(), CommandError> {
+        let stated = self.stated().into_iter();
+        let within: Map<_, _> =
+            stated.filter(|(name, _)| BESIDE_SPEC.contains(&name.as_str())).collect();
+        refuse(&within, "in a file `case` and `plan` stand beside `spec`: state them there", path)
+    }
+
+    /// What the spec says otherwise than one that says nothing.
     fn stated(&self) -> Map<String, Value> {
         let members = |spec: &PredictDocument| match canonical::to_value(spec) {
             Value::Object(members) => members,
@@ -151,16 +171,12 @@ impl CaseFile {
         };
         let usual = members(&PredictDocument::default());
         let stated = members(&self.spec).into_iter();
-        stated
-            .filter(|(name, value)| {
-                !OF_FILES.contains(&name.as_str()) && usual.get(name) != Some(value)
-            })
-            .collect()
+        stated.filter(|(name, value)| usual.get(name) != Some(value)).collect()
     }
 
     /// Refuses a spec that says how it is to be computed, where that is said by something else.
     pub fn refuse_spec(&self, why: &str, path: &Path) -> Result<(), CommandError> {
-        refuse(&self.stated(), why, path)
+        refuse(&self.deciding(path)?, why, path)
     }
 
     /// The job that these documents ask for; without a plan nothing moves.

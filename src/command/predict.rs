@@ -71,6 +71,7 @@ pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
         true => arguments.scene.documents_of_scan(&arguments.scan, plan, &arguments.out)?,
         false => arguments.scene.documents(plan)?,
     };
+    asked.file.refuse_beside_spec(&asked.path)?;
     asked.file.spec.outputs.get_or_insert_with(usual_outputs);
     asked.file.spec.method = arguments.method.unwrap_or(asked.file.spec.method);
     if arguments.load_steps.is_some() {
@@ -88,6 +89,9 @@ pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
     asked.file.spec.contact = arguments.contact.unwrap_or(asked.file.spec.contact);
     if arguments.no_estimate {
         asked.file.spec.estimate = EstimateName::None;
+    }
+    if !asked.file.spec.tags.is_empty() {
+        eprintln!("not used   `tags` of the spec: a command has no list of jobs");
     }
     if !asked.file.spec.keep.is_empty() {
         return Err(CommandError::Usage(NO_STORE.to_owned()));

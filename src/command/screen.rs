@@ -125,8 +125,9 @@ pub fn print_check(check: &CheckDocument) {
     let time = check.time_s.map(|time| format!(", {:.1} to {:.1} s", time.low, time.high));
     let (unknowns, time) = (check.unknowns, time.unwrap_or_default());
     println!("unknowns   {unknowns}, about {:.0} MB{time}", check.memory_mb);
-    if let Some(auto) = &check.auto {
-        print_expectation(auto);
+    match &check.auto {
+        Some(auto) => print_expectation(auto),
+        None => println!("model      {}, {}", check.method, check.why),
     }
     for contact in &check.contacts {
         let [one, other] = &contact.bones;

@@ -190,18 +190,47 @@ fn every_command_uses_the_spec_of_a_case_file_or_refuses_it() {
     assert_eq!(softer, stated);
     assert_ne!(softer, plain);
 
-    let case = block_with(folder.path(), &json!({"contact": "none", "tags": ["x"]}));
     let spec = ["--spec", path(&targets)];
-    for (command, more) in [
-        ("response", &[][..]),
-        ("optimise", &spec),
-        ("study", &["--method", "fem_linear", "--level", "0"]),
+    for (stated, place) in [
+        (json!({"contact": "none", "tags": ["x"]}), "contact"),
+        (json!({"refine": {"accept_mm": 0.1}, "tags": ["x"]}), "refine"),
+        (json!({"accept_mm": 0.2, "tags": ["x"]}), "accept_mm"),
+        (json!({"accept_regions_mm": {"chin": 0.2}, "tags": ["x"]}), "accept_regions_mm"),
+        (json!({"plan_id": "a", "tags": ["x"]}), "plan_id"),
     ] {
-        let asked = [command, "--case", path(&case), "--out", path(&out)];
-        let done = facies(&[&asked, more].concat());
+        let case = block_with(folder.path(), &stated);
+        for (command, more) in [
+            ("response", &[][..]),
+            ("optimise", &spec),
+            ("study", &["--method", "fem_linear", "--level", "0"]),
+        ] {
+            let asked = [command, "--case", path(&case), "--out", path(&out)];
+            let done = facies(&[&asked, more].concat());
+            let told = text(&done.stderr);
+            assert_eq!(done.status.code(), Some(2), "{command}: {told}");
+            let refused = format!("case.json: /spec/{place}: ");
+            assert!(told.contains(&refused) && !told.contains("/spec/tags"), "{told}");
+        }
+    }
+    // What decides no number of it is not used, which is said.
+    let case = block_with(folder.path(), &json!({"outputs": ["skin.vtp"], "estimate": "none"}));
+    let done = facies(&["response", "--case", path(&case), "--out", path(&out)]);
+    let told = text(&done.stderr);
+    assert_eq!(done.status.code(), Some(0), "{told}");
+    assert!(told.contains("not used   `estimate`, `outputs` of the spec of"), "{told}");
+}
+
+#[test]
+fn a_plan_within_the_spec_of_a_file_is_refused_where_the_file_has_its_own() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    let plan = json!({"segments": [{"name": "mandible", "translation_mm": [9, 0, 0]}]});
+    let case = block_with(folder.path(), &json!({"plan": plan}));
+    for command in ["predict", "check"] {
+        let done = facies(&[command, "--case", path(&case), "--out", path(&out)]);
         let told = text(&done.stderr);
         assert_eq!(done.status.code(), Some(2), "{command}: {told}");
-        assert!(told.contains("case.json: /spec/contact: ") && !told.contains("tags"), "{told}");
+        assert!(told.contains("case.json: /spec/plan: "), "{told}");
     }
 }
 

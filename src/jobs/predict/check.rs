@@ -11,7 +11,7 @@ use crate::jobs::result::warnings::warnings_after;
 use crate::jobs::source::MeshSource;
 use crate::schema::Limits;
 use crate::schema::case::muscle_mixing::MusclesDocument;
-use crate::schema::methods::WHY_ESTIMATED;
+use crate::schema::methods::{WHY_ESTIMATED, WHY_NOT_FORESEEN, WHY_REFINED};
 use crate::schema::predict::check::{CheckDocument, ClassCounts, SkinSummary};
 use mechanics::mesh::Warning;
 use mechanics::prediction::{NodeClass, Scene};
@@ -77,10 +77,7 @@ impl Prepared {
             time_s: cost::time_s(scene, input.spec.method),
             refine: None,
             method: input.spec.method.chosen().name().to_owned(),
-            why: match input.spec.accepted() {
-                Some(_) => WHY_ESTIMATED.to_owned(),
-                None => input.spec.method.why().to_owned(),
-            },
+            why: self.why(input),
             auto: self.expectation(input),
             movements: movements(scene, self.case.frame),
             collisions: collisions.iter().map(Collision::document).collect(),
@@ -88,6 +85,17 @@ impl Prepared {
             cephalometry: head.measures,
             symmetry: head.symmetry,
             warnings: warnings_after(&self.told, warnings),
+        }
+    }
+
+    /// Why that method, as far as that is known before anything is solved.
+    fn why(&self, input: &PredictInput) -> String {
+        let PredictInput { spec, .. } = input;
+        match (spec.accepted(), spec.refine.is_some(), self.is_foreseen()) {
+            (None, _, _) => spec.method.why().to_owned(),
+            (Some(_), true, _) => WHY_REFINED.to_owned(),
+            (Some(_), false, true) => WHY_ESTIMATED.to_owned(),
+            (Some(_), false, false) => format!("{WHY_ESTIMATED}{WHY_NOT_FORESEEN}"),
         }
     }
 

@@ -20,12 +20,16 @@ const TOO_LARGE: f64 = 6.0;
 const THIRD: f64 = 3.0;
 
 impl Prepared {
-    /// The models of `auto` with the expected cost of each; none for other methods, nor of growth
-    /// and muscles.
+    /// Whether movements alone tell the choice of `auto`: they say nothing of tissue that grows and of muscles that pull.
+    pub(super) fn is_foreseen(&self) -> bool {
+        self.scene.distributed.inner.is_empty()
+    }
+
+    /// The models of `auto` with the expected cost of each; none for other methods, of growth and muscles, and of a mesh that is
+    /// refined.
     pub fn expectation(&self, input: &PredictInput) -> Option<ExpectationDocument> {
         let accepted = input.spec.accepted()?;
-        // Movements alone say nothing of tissue that grows and of muscles that pull.
-        if !self.scene.distributed.inner.is_empty() {
+        if input.spec.refine.is_some() || !self.is_foreseen() {
             return None;
         }
         let rule = by_rule_of_thumb(&self.scene);

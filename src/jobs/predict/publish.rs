@@ -26,7 +26,7 @@ use crate::jobs::result::warnings::warnings_after;
 use crate::jobs::source::StoredShape;
 use crate::schema::Triple;
 use crate::schema::compare::result::{ComparisonDocument, StatDocument};
-use crate::schema::methods::MethodName;
+use crate::schema::methods::{MethodName, WHY_REFINED};
 use crate::schema::optimise::result::OptimisationDocument;
 use crate::schema::predict::adequacy::AdequacyDocument;
 use crate::schema::predict::document::OutputName;
@@ -262,6 +262,8 @@ impl Finished<'_> {
             provenance.method = Some(self.method().name().to_owned());
             provenance.model = Some(adequacy.taken.clone());
             provenance.why = Some(adequacy.why());
+        } else if self.refinement.is_some() && input.spec.method == MethodName::Auto {
+            provenance.why = Some(WHY_REFINED.to_owned());
         }
         provenance.laws = laws(&self.prepared.case, &self.prepared.scene);
         provenance.acquisition = input.case.acquisition.clone();

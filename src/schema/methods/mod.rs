@@ -23,7 +23,9 @@ pub use list::{
 pub use measured::{MeasuredDocument, time_band};
 use msm::MassSpringDocument;
 use mtm::MassTensorDocument;
-pub use name::{ElementName, MethodName, WHY_ASKED, WHY_ESTIMATED, WHY_LINEAR};
+pub use name::{
+    ElementName, MethodName, WHY_ASKED, WHY_ESTIMATED, WHY_LINEAR, WHY_NOT_FORESEEN, WHY_REFINED,
+};
 use thickness_warp::ThicknessWarpDocument;
 
 use crate::schema::code::ErrorCode;

@@ -288,9 +288,10 @@ impl PredictDocument {
                 "meshes are not refined with unilateral contact: omit `contact` or `refine`";
             faults.add(at, ErrorCode::OneOf, detail);
         }
-        if self.accept_mm.is_some() || self.estimate == EstimateName::None {
+        let chooses = self.accept_mm.is_some() || !self.accept_regions_mm.is_empty();
+        if chooses || self.estimate == EstimateName::None {
             let detail = "a mesh is refined by the estimate of its error, and a model chosen for a fixed mesh: omit \
-                          `estimate`, and either `accept_mm` or `refine`";
+                          `estimate`, and either `accept_mm` and `accept_regions_mm` or `refine`, which has `regions`";
             faults.add(at, ErrorCode::OneOf, detail);
         }
     }

@@ -55,8 +55,12 @@ fn a_bound_that_comes_first_is_reported() {
     assert!(told.levels.iter().all(|level| level.cells <= 1000));
     assert!(result.warnings.iter().any(|warning| warning.code == "tolerance-not-met"));
     let input = predict_input(CASE, PULL, spec);
-    let bound = check(&input, &meshes(), &Limits::default()).unwrap().document.refine.unwrap();
+    let checked = check(&input, &meshes(), &Limits::default()).unwrap().document;
+    let bound = checked.refine.unwrap();
     assert!(bound.cells == 1000 && bound.memory_mb > 30.0);
+    // No other model is chosen, before and after.
+    assert!(checked.auto.is_none() && checked.why.contains("refined"), "{}", checked.why);
+    assert_eq!(result.provenance.why, Some(checked.why));
 }
 
 #[test]
@@ -71,6 +75,7 @@ fn what_cannot_be_refined_is_refused_with_its_place() {
     for (spec, code) in [
         (r#"{"refine":{"accept_mm":0.1},"method":"fem_nonlinear"}"#, "method-mismatch"),
         (r#"{"refine":{"accept_mm":0.1},"accept_mm":0.1}"#, "one-of"),
+        (r#"{"refine":{"accept_mm":0.1},"accept_regions_mm":{"left":0.1}}"#, "one-of"),
         (r#"{"refine":{"accept_mm":0.1},"estimate":"none"}"#, "one-of"),
         (r#"{"refine":{"accept_mm":0.1},"element":"quadratic"}"#, "one-of"),
     ] {
