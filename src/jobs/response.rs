@@ -181,6 +181,7 @@ fn write_columns(
         key: origin.spec_hash.clone(),
         frame: origin.frame,
         mesh_centre: centre(&prepared.case.volume),
+        regions: prepared.scene.regions.clone(),
         staying: names.filter(|name| !moved(name)).collect(),
         columns: ColumnsDocument {
             file: COLUMNS_FILE.to_owned(),

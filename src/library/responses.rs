@@ -379,6 +379,7 @@ mod tests {
             key: String::new(),
             frame: mechanics::mesh::Frame::Lps,
             mesh_centre: Vector::zeros(),
+            regions: Vec::new(),
             staying: Vec::new(),
             columns: ColumnsDocument { file, layout, count: 12, bytes: 0, sha256 },
             second_order: None,

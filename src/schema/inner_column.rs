@@ -9,7 +9,7 @@ use crate::schema::plan::inner;
 use crate::schema::wire::fault::{Faults, Pointer};
 use crate::schema::wire::limits::Limits;
 use mechanics::mesh::ignored::listed;
-use mechanics::prediction::linear_strain;
+use mechanics::prediction::{linear_strain, nothing_left};
 use mechanics::response::InnerLoad;
 
 /// Subject of a column. It follows those of the segments: the k-th after S segments is column 12 S + k.
@@ -49,9 +49,9 @@ impl InnerColumnDocument {
 }
 
 /// The factors of the columns of growth and muscles for a plan; pointers start at `at`. A region or a muscle without
-/// a column is refused.
+/// a column is refused, and `*` where every one of `regions` has growth of its own.
 pub fn inner_amounts(
-    columns: &[InnerColumnDocument],
+    (columns, regions): (&[InnerColumnDocument], &[String]),
     plan: &PlanDocument,
     at: &Pointer,
     limits: &Limits,
@@ -59,9 +59,14 @@ pub fn inner_amounts(
 ) -> Vec<f64> {
     let growth = inner::to_growth(&plan.growth, &at.key("growth"), limits, faults);
     let pulls = inner::to_activations(&plan.activations, &at.key("activations"), limits, faults);
+    let names = growth.iter().map(|own| own.region.as_str());
+    let nothing_left = nothing_left(names, regions).filter(|_| !regions.is_empty());
+    let everything = growth.iter().position(|own| own.region == "*");
+    if let (Some(index), Some(detail)) = (everything, nothing_left) {
+        faults.add(&at.key("growth").index(index).key("region"), ErrorCode::UnknownRegion, detail);
+    }
     let mut amounts = Amounts { columns, values: vec![0.0; columns.len()] };
-    let everywhere = growth.iter().find(|own| own.region == "*");
-    let everywhere = everywhere.map_or(0.0, |own| linear_strain(own.volume_change));
+    let everywhere = everything.map_or(0.0, |index| linear_strain(growth[index].volume_change));
     for (index, own) in growth.iter().enumerate() {
         let strain = linear_strain(own.volume_change);
         let beyond = if own.region == "*" { strain } else { strain - everywhere };

@@ -41,6 +41,9 @@ pub struct ResponseDescription {
     /// Growth and muscles, a column each after those of the segments.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub inner_columns: Vec<InnerColumnDocument>,
+    /// The regions of the case; absent in responses of earlier programs.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub regions: Vec<String>,
     /// Segments of the case that are fixed.
     pub staying: Vec<String>,
     /// Nodes of the volume mesh, ascending: the order within a column.
@@ -103,6 +106,7 @@ pub struct ResponseOrigin {
     pub key: String,
     pub frame: Frame,
     pub mesh_centre: Vector,
+    pub regions: Vec<String>,
     pub staying: Vec<String>,
     pub columns: ColumnsDocument,
     pub second_order: Option<SecondOrderDocument>,
@@ -129,6 +133,7 @@ impl ResponseDescription {
                 })
                 .collect(),
             inner_columns: columns.inner.iter().map(InnerColumnDocument::new).collect(),
+            regions: origin.regions,
             staying: origin.staying,
             node_ids: columns.nodes.clone(),
             columns: origin.columns,
@@ -207,7 +212,8 @@ impl ResponseDescription {
             let place = at.key("segments").index(index).key("name");
             self.check_name(name, moves, &place, &mut faults);
         }
-        let inner = inner_amounts(&self.inner_columns, plan, &at, limits, &mut faults);
+        let known = (self.inner_columns.as_slice(), self.regions.as_slice());
+        let inner = inner_amounts(known, plan, &at, limits, &mut faults);
         faults.into_result()?;
         let by_name: BTreeMap<&str, RigidMovement> =
             planned.iter().map(|segment| (segment.name.as_str(), segment.movement)).collect();

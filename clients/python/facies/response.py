@@ -108,6 +108,9 @@ class Response:
         strain = {region: np.cbrt(1 + change) - 1 for region, change in growth.items()}
         # A region beside `*` grows by that and by the rest.
         everywhere = strain.get("*", 0.0)
+        regions = self.description.get("regions", [])
+        if "*" in strain and regions and set(regions) <= set(strain):
+            raise KeyError(f"every region has growth of its own, and no cell is left to `*`: {sorted(regions)}")
         amounts = {("growth", region): own if region == "*" else own - everywhere for region, own in strain.items()}
         amounts |= {("muscle", muscle): stress for muscle, stress in activations.items()}
         if unknown := sorted(set(amounts) - set(numbers)):

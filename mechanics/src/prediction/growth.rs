@@ -23,6 +23,19 @@ pub fn linear_strain(volume_change: f64) -> f64 {
     (1.0 + volume_change).cbrt() - 1.0
 }
 
+/// Why `*` among names that grow means no cell, where each region has growth of its own.
+pub fn nothing_left<'a>(
+    growing: impl IntoIterator<Item = &'a str>,
+    regions: &[String],
+) -> Option<String> {
+    let growing: BTreeSet<&str> = growing.into_iter().collect();
+    let is_stated = |region: &String| growing.contains(region.as_str());
+    (growing.contains("*") && regions.iter().all(is_stated)).then(|| {
+        let known = listed(regions.iter());
+        format!("every region has growth of its own, and no cell is left to `*`: omit it; there are: {known}")
+    })
+}
+
 impl Scene {
     /// Adds what growth and muscles exert on nodes, in mN; nothing at finite strain, where cells have them.
     pub fn add_inner_forces(
@@ -94,9 +107,13 @@ impl Check<'_> {
             };
             let meant: Vec<bool> = names.map(|name| is_meant(name)).collect();
             if !meant.contains(&true) {
-                let known = listed(scene.regions.iter());
-                let detail =
-                    format!("no region is called {region:?} or left to `*`; there are: {known}");
+                let unknown = || {
+                    let known = listed(scene.regions.iter());
+                    format!("no region is called {region:?}; there are: {known}")
+                };
+                let nothing_left = nothing_left(stated.iter().copied(), &scene.regions);
+                let nothing_left = nothing_left.filter(|_| region == "*");
+                let detail = nothing_left.unwrap_or_else(unknown);
                 let at = format!("{pointer}/region");
                 self.problems.add(at, SceneErrorCode::UnknownRegion, detail);
             }

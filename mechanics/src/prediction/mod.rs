@@ -55,7 +55,7 @@ pub use case::{
 pub use contact::{ContactPair, StepTouch, Touch};
 pub use element_choice::ElementChoice;
 pub use error_code::SceneErrorCode;
-pub use growth::{VOLUME_CHANGE, linear_strain};
+pub use growth::{VOLUME_CHANGE, linear_strain, nothing_left};
 pub use imaged_tissue::{ImagedTissue, TissueShare};
 pub use method::{Laws, Method, MethodKind, MethodProperties, Unknowns};
 pub use muscle::PULL;

@@ -54,6 +54,7 @@ impl OptimiseInput {
         let moving = moving.map_err(|error| self.judge(error))?.len();
         let inner = self.spec.to_response().inner_loads(&rest.scene);
         let inner = inner.map_err(|error| self.judge(error))?;
+        self.check_growth(&rest.scene)?;
         let inner_bounds = self.inner_bounds(&inner);
         let constants = self.constants(&rest)?;
         let mut warnings = Vec::new();

@@ -8,7 +8,7 @@ use crate::schema::optimise::result::NamedConstant;
 use crate::schema::{ErrorCode, Pointer, Problem};
 use mechanics::mesh::ignored::listed;
 use mechanics::optimisation::{ConstantBounds, ConstantError, ConstantKind, InnerBounds};
-use mechanics::prediction::Scene;
+use mechanics::prediction::{Scene, nothing_left};
 use mechanics::response::InnerLoad;
 
 /// An unknown constant, and its region.
@@ -45,6 +45,21 @@ impl OptimiseInput {
             }
         };
         inner.iter().map(bounds).collect()
+    }
+
+    /// Refuses growth of `*` where every region has growth of its own, as a prediction of the plan would at the end.
+    pub(super) fn check_growth(&self, scene: &Scene) -> Result<(), JobError> {
+        let growing = self.spec.growing();
+        let Some(detail) = nothing_left(growing.iter().map(String::as_str), &scene.regions) else {
+            return Ok(());
+        };
+        let spec = Pointer::root().key("spec");
+        let stated = self.spec.growth.iter().position(|own| own.region.trim() == "*");
+        let at = match stated {
+            Some(index) => spec.key("growth").index(index).key("region"),
+            None => spec.key("tissue_bounds").key("*").key("volume_change"),
+        };
+        Err(refused(&at, ErrorCode::UnknownRegion, detail))
     }
 
     /// The unknown constants; refuses those of regions that a case does not have, and of tissue that is not

@@ -169,7 +169,7 @@ impl OptimiseDocument {
     }
 
     /// The regions with a column of growth: first those of given growth, then those of unknown growth.
-    fn growing(&self) -> Vec<String> {
+    pub fn growing(&self) -> Vec<String> {
         let stated = self.growth.iter().map(|own| own.region.trim().to_owned());
         let free = self.tissue_bounds.iter().filter(|(_, own)| own.volume_change.is_some());
         stated.chain(free.map(|(region, _)| region.trim().to_owned())).collect()

@@ -99,6 +99,49 @@ async fn growth_and_activations_are_predicted_and_applied_alike() {
 }
 
 #[tokio::test]
+async fn growth_of_everything_else_is_refused_where_nothing_else_is_left() {
+    let server = Server::start();
+    let case = case(&server).await;
+    let both = json!([{"region": "tissue", "volume_change": -0.05}, {"region": "*", "volume_change": -0.1}]);
+    let plan = json!({"segments": plan()["segments"], "growth": both});
+    let response = json!({"kind": "response", "case": case, "growth": ["*", "tissue"]});
+    done(&server, &response).await;
+    let predict = json!({"kind": "predict", "case": case, "plan": plan, "method": "fem_linear"});
+    let optimise = json!({"kind": "optimise", "case": case, "growth": [both[0]],
+        "targets": [{"nodes": {"node_set": "z_max"}, "displacement_mm": [0, 0.5, 0.2]}], "bounds": {},
+        "tissue_bounds": {"*": {"volume_change": [-0.1, 0.1]}}});
+    for (answer, place) in [
+        (server.job(&predict).await, "/plan/growth/1/region"),
+        (apply(&server, &case, &plan).await, "/plan/growth/1/region"),
+        (server.job(&optimise).await, "/tissue_bounds/*/volume_change"),
+    ] {
+        let problem = answer.problem(422, "validation-failed");
+        let told = &problem["errors"][0];
+        assert_eq!((&told["pointer"], &told["code"]), (&json!(place), &json!("unknown-region")));
+        assert!(told["detail"].as_str().unwrap().contains("no cell is left to `*`"), "{told}");
+    }
+    // One of them alone is both a prediction and an applied plan.
+    let alone = json!({"segments": plan["segments"], "growth": [both[0]]});
+    apply(&server, &case, &alone).await.expect(StatusCode::OK);
+}
+
+#[tokio::test]
+async fn a_check_says_that_it_does_not_foresee_the_choice_where_tissue_grows() {
+    let server = Server::start();
+    let case = case(&server).await;
+    let why = async |plan: Value| {
+        let body = json!({"plan": plan, "method": "auto"});
+        let checked = ask(server.post(&format!("/v1/cases/{case}/check")).json(&body)).await;
+        let checked = checked.expect(StatusCode::OK);
+        (checked.get("auto").is_some(), checked["why"].as_str().unwrap().to_owned())
+    };
+    let (is_there, told) = why(json!({"segments": plan()["segments"]})).await;
+    assert!(is_there && !told.contains("not foreseen"), "{told}");
+    let (is_there, told) = why(plan()).await;
+    assert!(!is_there && told.contains("not foreseen here: movements alone"), "{told}");
+}
+
+#[tokio::test]
 async fn an_inverse_plan_holds_growth_and_activations_and_gives_them_back() {
     let server = Server::start();
     let case = case(&server).await;
