@@ -165,19 +165,24 @@ def broken(folder: pathlib.Path) -> None:
     (folder / "of-a-bone.json").write_text(json.dumps({"scenes": [{"case": case.name}]}))
     (told, _) = refused("a segment without nodes", folder, ["of-a-bone.json"], 2)
     expect("of its file, in words", "case-of-a-bone.json: POST /v1/cases: 422 /segments/0/nodes: missing field" in told and "{" not in told, True)
+    (folder / "contact.json").write_text(json.dumps({"case": usual, "spec": {"contact": "none"}}))
+    (folder / "two-mistakes.json").write_text(json.dumps({"scenes": [{"case": "case-of-a-bone.json"}, {"case": "contact.json"}]}))
+    (told, _) = refused("two files with a mistake each", folder, ["two-mistakes.json"], 2, lines=2)
+    expect("both told", "case-of-a-bone.json: " in told and "contact.json: its `spec` states `contact`" in told, True)
     refused("a report that cannot be written", folder, [str(STUDY), "--report", str(folder)], 2)
     for address in ("localhost:8080", "127.0.0.1:8080", "ftp://localhost", "http://", "http://localhost:x", ""):
         told, took_s = refused(f"the address {address!r}", folder, [str(STUDY)], 2, FACIES_ADDRESS=address)
         expect("refused at once", took_s < 5.0 and "FACIES_ADDRESS" in told, True)
 
 
-def refused(what: str, folder: pathlib.Path, arguments: list[str], code: int, **environment: str) -> tuple[str, float]:
-    """What the gate says of a mistake, which has to be one line, and how long it took in seconds."""
+def refused(what: str, folder: pathlib.Path, arguments: list[str], code: int, lines: int = 1,
+            **environment: str) -> tuple[str, float]:
+    """What the gate says of mistakes, which has to be one line for each, and how long it took in seconds."""
     begun = time.monotonic()
     done = subprocess.run(
         [sys.executable, str(HERE / "facies_gate.py"), *arguments], cwd=folder, timeout=60, check=False, text=True,
         env={**os.environ, **environment}, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
-    expect(what, (done.returncode, len(done.stderr.splitlines())), (code, 1))
+    expect(what, (done.returncode, len(done.stderr.splitlines())), (code, lines))
     return done.stderr, time.monotonic() - begun
 
 

@@ -150,6 +150,8 @@ def as_type(kind: type, value: object, what: str):
 def refuse_spec(path: pathlib.Path, file: dict) -> None:
     """A study computes each way that it names itself; a case file that says another one is not passed over."""
     spec = as_type(dict, file.get("spec", {}), f"{path}: /spec")
+    if unused := ", ".join(f"`{name}`" for name in spec if name in OF_FILES and name != "kind"):
+        say(f"{path}: {unused} of its `spec` is not used: a study writes a report")
     stated = ", ".join(f"`{name}`" for name in spec if name not in OF_FILES)
     if stated:
         why = (f"{path}: its `spec` states {stated}, and a study states itself how cases are computed: say so in an entry of "
@@ -177,6 +179,20 @@ class Cases:
 
     def __init__(self, service: Service) -> None:
         self.service = service
+
+    def scenes(self, scenes: list, folder: pathlib.Path, has_plans: bool) -> list:
+        """The scenes of a study, those that are files as cases of the service. What is refused of all of them is told together."""
+        found, mistakes = [], []
+        for scene in scenes:
+            try:
+                found.append(self.scene(scene, folder, has_plans) if isinstance(scene, dict) else scene)
+            except Stop as stop:
+                if stop.code != REFUSED:
+                    raise
+                mistakes.append(str(stop))
+        if mistakes:
+            raise Stop(REFUSED, "\n".join(dict.fromkeys(mistakes)))
+        return found
 
     def scene(self, scene: dict, folder: pathlib.Path, has_plans: bool) -> dict:
         """The scene of a study with the id of its case in place of the file's path, and the plan of the file unless the study
@@ -302,9 +318,7 @@ def run(arguments: argparse.Namespace) -> int:
     cases = Cases(service)
     # Plans in full are for cases, names for scenes of the program.
     has_plans = any(isinstance(plan, dict) for plan in as_type(list, study.get("plans", []), f"{path}: /plans"))
-    study["scenes"] = [
-        cases.scene(scene, path.parent, has_plans) if isinstance(scene, dict) else scene
-        for scene in as_type(list, study.get("scenes", []), f"{path}: /scenes")]
+    study["scenes"] = cases.scenes(as_type(list, study.get("scenes", []), f"{path}: /scenes"), path.parent, has_plans)
     # Before the study is posted: it must not become its own baseline.
     baseline = baseline_of(service, arguments)
     own = as_type(list, study.get("tags", []), f"{path}: /tags")

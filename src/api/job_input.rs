@@ -1,32 +1,26 @@
 //! Conversion of the body of `POST /v1/jobs` to a job for the queue: references resolved, everything checked.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 use super::Service;
-use super::accepted::{
-    Accepted, AcceptedStudy, fault, in_spec, prepared, require_compared, require_mesh,
-    successful_job,
-};
+use super::accepted::{Accepted, fault, in_spec, prepared, require_compared, require_mesh};
 use super::case_state::{CaseOfJob, case_of_job, whole};
 use super::cohort_input::of_cohort;
-use super::error::{ApiError, ApiResult};
+use super::error::ApiResult;
 use super::learn_input::{learned_from, of_learning};
-use super::parameters::id;
-use super::report;
+use super::named_rows::{PredictedSkin, plan_of, predicted_skin, require_case};
+use super::study_input::of_study;
 use super::waiting::Waiting;
 use crate::jobs::{
     CompareInput, ConformInput, JobInput, MeshSource, MeshingInput, OptimiseInput, PredictInput,
-    ReproduceInput, ResponseInput, StudyInput,
+    ReproduceInput, ResponseInput,
 };
 use crate::schema::ErrorCode;
 use crate::schema::hashes::reproduce_hash;
 use crate::schema::job_document::JobDocument;
-use crate::schema::study::document::SceneReference;
-use crate::schema::study::expected::truth_costs;
 use crate::schema::{
-    CompareDocument, ConformDocument, Faults, Limits, MeshingDocument, OptimiseDocument,
-    PlanDocument, Pointer, PredictDocument, ReportDocument, ReproduceDocument, ResponseDocument,
-    StudyDocument,
+    CompareDocument, ConformDocument, Faults, Limits, MeshingDocument, OptimiseDocument, Pointer,
+    PredictDocument, ReproduceDocument, ResponseDocument,
 };
 use crate::store::{CaseRow, NewJob};
 
@@ -94,7 +88,8 @@ async fn of_comparison(service: &Service, spec: CompareDocument) -> ApiResult<Ne
         mesh_ids.push(mesh.clone());
     }
     if let Some(job) = &spec.prediction.job {
-        let (skin, case) = predicted_skin(service, "/prediction/job", job).await?;
+        let PredictedSkin { blob: skin, case, .. } =
+            predicted_skin(service, "/prediction/job", job).await?;
         contents.insert(job.clone(), skin);
         case_id = case;
     }
@@ -210,86 +205,6 @@ async fn of_meshing(service: &Service, mut spec: MeshingDocument) -> ApiResult<N
     new.with(&JobInput::Meshing(input))
 }
 
-/// A study: its cases and its baseline in their present versions, its scenes made and checked.
-async fn of_study(service: &Service, mut spec: StudyDocument) -> ApiResult<NewJob> {
-    let mut cases = BTreeMap::new();
-    for (index, scene) in spec.scenes.iter_mut().enumerate() {
-        let SceneReference::Case(reference) = scene else { continue };
-        let row = require_case(service, &reference.case).await;
-        let at = format!("/scenes/{index}/case");
-        let row = row.map_err(|error| error.map_problem(|problem| problem.moved("/case", &at)))?;
-        reference.case.clone_from(&row.id);
-        let case = whole(&row)?;
-        cases.insert(row.id, case);
-    }
-    for (index, item) in spec.items.iter_mut().enumerate() {
-        let row = require_case(service, &item.case).await;
-        let at = format!("/items/{index}");
-        let row = row.map_err(|error| error.map_problem(|problem| problem.moved("", &at)))?;
-        item.case.clone_from(&row.id);
-        let named = item.plan_id.take();
-        if item.plan.is_none() {
-            let plan = stored_plan(service, &row.id, named.as_deref()).await;
-            item.plan =
-                plan.map_err(|error| error.map_problem(|problem| problem.moved("", &at)))?;
-        }
-        let case = whole(&row)?;
-        cases.insert(row.id, case);
-    }
-    // What it is held against is of patients too, and takes it with them.
-    let mut owners: BTreeSet<String> = cases.keys().cloned().collect();
-    let baseline = match &spec.baseline {
-        None => None,
-        Some(job) => {
-            let (report, of) = baseline(service, job).await?;
-            owners.extend(of);
-            Some(Box::new(report))
-        }
-    };
-    if let Some(job) = spec.truth.as_ref().and_then(|truth| truth.job.as_ref()) {
-        owners.extend(predicted_skin(service, "/truth/job", job).await?.1);
-    }
-    let ids: Vec<String> = owners.into_iter().collect();
-    let tags = spec.tags.clone();
-    let input = StudyInput { job: None, queue_s: None, cases, baseline, earlier: None, spec };
-    let mesh_ids = input.mesh_ids();
-    let prepare = |input: &StudyInput, sources: &dyn MeshSource, limits: &Limits| {
-        let prepared = input.prepare(sources, limits)?;
-        let truths = truth_costs(&prepared.study);
-        Ok((prepared.spec_hash, AcceptedStudy { rows_key: prepared.rows_key, truths }))
-    };
-    let (mut input, (spec_hash, mut study)) = prepared(service, input, prepare).await?;
-    input.earlier = report::with_rows(service, &study.rows_key, &ids).await?.map(Box::new);
-    if input.earlier.is_some() {
-        study.truths.clear();
-    }
-    let (case_id, shared_cases) = match ids.as_slice() {
-        [only] => (Some(only.clone()), Vec::new()),
-        _ => (None, ids),
-    };
-    let study = Some(study);
-    let new = Accepted { case_id, shared_cases, spec_hash, tags, mesh_ids, study };
-    new.with(&JobInput::Study(input))
-}
-
-/// The report of a baseline, and the cases of that study.
-async fn baseline(service: &Service, job: &str) -> ApiResult<(ReportDocument, Vec<String>)> {
-    const AT: &str = "/baseline";
-    let id = id(job).ok_or_else(|| fault(AT, ErrorCode::UnknownJob, "there is no such job"))?;
-    if service.store.job(&id).await?.is_none() {
-        return Err(fault(AT, ErrorCode::UnknownJob, "there is no such job"));
-    }
-    let found = report::stored_report(service, &id).await?;
-    let missing = || {
-        fault(
-            AT,
-            ErrorCode::NoSuchOutput,
-            "the job is not a successful study: name one of kind `study` or `batch` whose status is `successful`, or omit `baseline`",
-        )
-    };
-    Ok((found.ok_or_else(missing)?.1, service.store.cases_of_job(&id).await?))
-}
-
 /// The case and the plan of a spec in full; without a plan nothing moves.
 pub async fn predict_input(
     service: &Service,
@@ -299,72 +214,4 @@ pub async fn predict_input(
     let case = whole(row)?;
     let plan = plan_of(service, &row.id, &mut spec).await?;
     Ok(PredictInput { job: None, queue_s: None, case, plan, spec })
-}
-
-/// The plan of a spec, taken out of it; without one nothing moves.
-async fn plan_of(
-    service: &Service,
-    case: &str,
-    spec: &mut PredictDocument,
-) -> ApiResult<PlanDocument> {
-    let plan = match spec.plan.take() {
-        Some(plan) => Some(plan),
-        None => stored_plan(service, case, spec.plan_id.as_deref()).await?,
-    };
-    Ok(plan.unwrap_or_default())
-}
-
-/// The plan of a case that a document names, if it names one.
-async fn stored_plan(
-    service: &Service,
-    case: &str,
-    named: Option<&str>,
-) -> ApiResult<Option<PlanDocument>> {
-    let Some(text) = named else { return Ok(None) };
-    let found = match id(text) {
-        Some(id) => service.store.plan(case, &id).await?,
-        None => None,
-    };
-    let unknown = || {
-        fault(
-            "/plan_id",
-            ErrorCode::UnknownPlan,
-            "the case has no such plan: GET /v1/cases/{id}/plans lists those it has",
-        )
-    };
-    let found = found.ok_or_else(unknown)?;
-    serde_json::from_str(&found.document).map(Some).map_err(ApiError::internal)
-}
-
-/// A case that has to exist.
-async fn require_case(service: &Service, case: &str) -> ApiResult<CaseRow> {
-    let row = match id(case) {
-        Some(id) => service.store.case(&id).await?,
-        None => None,
-    };
-    row.ok_or_else(|| {
-        fault(
-            "/case",
-            ErrorCode::UnknownCase,
-            "there is no such case: GET /v1/cases lists the existing ones",
-        )
-    })
-}
-
-/// The hash of the skin that a job predicted, and the job's case.
-async fn predicted_skin(
-    service: &Service,
-    at: &str,
-    job: &str,
-) -> ApiResult<(String, Option<String>)> {
-    let row = successful_job(service, at, job).await?;
-    let skin = service.store.job_file(&row.id, "skin.vtp").await?;
-    let skin = skin.ok_or_else(|| {
-        fault(
-            at,
-            ErrorCode::NoSuchOutput,
-            "the job wrote no skin.vtp: name a prediction whose `outputs` have it",
-        )
-    })?;
-    Ok((skin.blob, row.case_id))
 }

@@ -37,6 +37,7 @@ mod keys;
 mod learn_input;
 mod meshes;
 mod middleware;
+mod named_rows;
 mod openapi;
 mod openapi_types;
 mod origins;
@@ -61,6 +62,7 @@ mod service;
 mod spool;
 mod stored_cohort;
 mod streams;
+mod study_input;
 mod time;
 mod waiting;
 

@@ -185,7 +185,8 @@ impl Arguments {
             *id = folder.join(&*id).to_string_lossy().into_owned();
         }
         let baseline = self.read_baseline(&mut spec)?;
-        Ok(StudyInput { job: None, queue_s: None, cases, baseline, earlier: None, spec })
+        let (job, queue_s, truth_method, earlier) = (None, None, None, None);
+        Ok(StudyInput { job, queue_s, cases, baseline, truth_method, earlier, spec })
     }
 
     /// The scenes of the arguments, or those of the document, or the usual ones; cases are read.

@@ -13,9 +13,8 @@ use crate::mesh::{CellShape, Vector};
 use crate::model::fem::strain::determinants;
 use crate::model::problem::{Equilibrium, ModelError};
 use crate::prediction::{
-    Accepted, Adequate, Case, ElementChoice, Laws, Method, Plan, Rung, Scene, SceneErrorCode,
-    SceneErrors, Settings, TimedProgress, equilibrium, estimates, inverted_cells,
-    predict_adequately,
+    Accepted, Adequate, Case, ElementChoice, Plan, Scene, SceneErrorCode, SceneErrors, Settings,
+    TimedProgress, equilibrium, estimates, inverted_cells, predict_adequately,
 };
 use crate::progress::Progress;
 use crate::solver::SolverError;
@@ -164,7 +163,7 @@ impl Bench<'_> {
         let displacement = at(nodes, &equilibrium.displacement);
         Ok(Answer {
             estimates: self.estimates(&scene, nodes)?,
-            strain: strain_of(&settings.method),
+            strain: Strain::of(settings.method.kind()),
             displacement,
             elements: scene.elements().join(", "),
             unknowns: equilibrium.solver.unknowns,
@@ -208,13 +207,7 @@ impl Bench<'_> {
                 linearity: linearity.map(|left| at(nodes, &left.left_out)),
                 of_moving: expected,
             },
-            strain: match rung {
-                Rung::Linear | Rung::Corrected => Strain::Small,
-                Rung::SecondOrder
-                | Rung::SecondOrderCorrected
-                | Rung::FiniteStrain
-                | Rung::FiniteStrainCorrected => Strain::Finite,
-            },
+            strain: Strain::of_rung(rung),
             elements: prediction.elements.join(", "),
             unknowns: prediction.solver.unknowns,
             iterations: prediction.solver.iterations,
@@ -301,14 +294,6 @@ fn check_sane(scene: &Scene, displacement: &[Vector]) -> Result<(), NoAnswer> {
         return Err(Refusal::new("answer-absurd", detail).into());
     }
     Ok(())
-}
-
-/// Finite where a method has laws of finite strain.
-fn strain_of(method: &Method) -> Strain {
-    match method.properties().laws {
-        Laws::AtRest => Strain::Small,
-        Laws::SaintVenantKirchhoff | Laws::Any => Strain::Finite,
-    }
 }
 
 fn at(nodes: &[u32], vectors: &[Vector]) -> Vec<Vector> {

@@ -115,7 +115,7 @@ impl TruthRequest<'_> {
     ) -> Result<Truths, StudyError> {
         match &self.scene.truth {
             Truth::ClosedForm(formula) => Ok(self.closed_form(formula)),
-            Truth::Known(displacement) => Ok(self.known(displacement)),
+            Truth::Known { displacement, .. } => Ok(self.known(displacement)),
             Truth::Scan(_) => Ok(self.scanned()),
             Truth::Refined { times, element, strain } => {
                 let element = match contact.is_unilateral() {

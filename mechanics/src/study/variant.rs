@@ -5,7 +5,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use crate::material::LinearElastic;
 use crate::mesh::{TriangleSurface, Vector, VolumeMesh};
 use crate::prediction::{
-    Accepted, Case, ElementChoice, FibreDirection, Growth, Method, Plan, Settings,
+    Accepted, Case, ElementChoice, FibreDirection, Growth, Laws, Method, MethodKind, Plan, Rung,
+    Settings,
 };
 use crate::validation::{Alignment, LandmarkPair};
 
@@ -104,8 +105,13 @@ pub enum Truth {
         element: ElementChoice,
         strain: Strain,
     },
-    /// Displacement in mm at each skin node of level 0, from elsewhere.
-    Known(Vec<Vector>),
+    /// A displacement from elsewhere.
+    Known {
+        /// In mm, at each skin node of level 0.
+        displacement: Vec<Vector>,
+        /// None where it is not known what it takes for strain.
+        strain: Option<Strain>,
+    },
     /// A surface that shows where the skin went, but not which point went where.
     Scan(Box<Scan>),
 }
@@ -156,6 +162,25 @@ pub struct ClosedForm {
 }
 
 impl Strain {
+    /// Finite where a method has laws of finite strain.
+    pub fn of(method: MethodKind) -> Self {
+        match method.properties().laws {
+            Laws::AtRest => Strain::Small,
+            Laws::SaintVenantKirchhoff | Laws::Any => Strain::Finite,
+        }
+    }
+
+    /// That of an answer with an estimate of what linearity leaves out, or without.
+    pub fn of_rung(rung: Rung) -> Self {
+        match rung {
+            Rung::Linear | Rung::Corrected => Strain::Small,
+            Rung::SecondOrder
+            | Rung::SecondOrderCorrected
+            | Rung::FiniteStrain
+            | Rung::FiniteStrainCorrected => Strain::Finite,
+        }
+    }
+
     /// The method of finite elements with this strain.
     pub fn method(self) -> Method {
         match self {
@@ -166,12 +191,13 @@ impl Strain {
 }
 
 impl Truth {
-    /// What it takes for strain; none of displacements and surfaces from elsewhere.
+    /// What it takes for strain; none of surfaces from elsewhere, and of displacements from elsewhere where that is not known.
     pub fn strain(&self) -> Option<Strain> {
         match self {
             Truth::ClosedForm(_) => Some(Strain::Small),
             Truth::Refined { strain, .. } => Some(*strain),
-            Truth::Known(_) | Truth::Scan(_) => None,
+            Truth::Known { strain, .. } => *strain,
+            Truth::Scan(_) => None,
         }
     }
 }

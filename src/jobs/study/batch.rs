@@ -13,6 +13,7 @@ use crate::schema::{ErrorCode, Faults};
 use mechanics::study::Variant;
 
 /// Scenes and variants of a study.
+#[derive(Default)]
 pub(super) struct StudyItems {
     pub scenes: Scenes,
     pub variants: Vec<Variant>,

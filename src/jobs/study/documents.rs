@@ -4,13 +4,15 @@ use std::collections::BTreeMap;
 
 use serde_json::Value;
 
+use crate::jobs::failure::JobError;
 use crate::jobs::predict::Prepared;
 use crate::jobs::source::MeshSource;
 use crate::schema::hashes;
 use crate::schema::predict::result::InputDocument;
 use crate::schema::study::document::StudyDocument;
+use crate::schema::study::truth::TruthMethodName;
 use crate::schema::wire::canonical;
-use crate::schema::{CaseDocument, Limits, PlanDocument, Pointer};
+use crate::schema::{CaseDocument, Limits, PlanDocument, Pointer, Problem};
 use mechanics::mesh::Warning;
 use mechanics::study::StudyScene;
 
@@ -19,6 +21,8 @@ pub(super) struct Documents<'a> {
     pub spec: &'a StudyDocument,
     /// The cases of the spec by their ids.
     pub cases: &'a BTreeMap<String, CaseDocument>,
+    /// Of the job of its truth.
+    pub truth_method: Option<TruthMethodName>,
     pub sources: &'a dyn MeshSource,
     pub limits: &'a Limits,
 }
@@ -35,6 +39,22 @@ pub(super) struct Scenes {
     /// The series of each scene in one, by its name.
     pub series: BTreeMap<String, String>,
     pub warnings: Vec<Warning>,
+    /// The mistakes of cases, plans and materials.
+    pub refused: Vec<Problem>,
+}
+
+impl Scenes {
+    /// Keeps a mistake of a document, to be told with those of the others; any other error ends the work.
+    pub fn found<T>(&mut self, result: Result<T, JobError>) -> Result<Option<T>, JobError> {
+        match result {
+            Ok(found) => Ok(Some(found)),
+            Err(JobError::Refused(problem)) => {
+                self.refused.push(problem);
+                Ok(None)
+            }
+            Err(other) => Err(other),
+        }
+    }
 }
 
 /// SHA-256 of a case's document and of each of its plans, by their names.

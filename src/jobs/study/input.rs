@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::verdict::Baseline;
 use crate::schema::study::report::ReportDocument;
+use crate::schema::study::truth::TruthMethodName;
 use crate::schema::{CaseDocument, StudyDocument};
 
 /// A study: its cases and its baseline in full beside the spec.
@@ -19,6 +20,9 @@ pub struct StudyInput {
     pub cases: BTreeMap<String, CaseDocument>,
     /// The report of the study that the spec names as baseline.
     pub baseline: Option<Box<ReportDocument>>,
+    /// What the job of the spec's truth answered by, as far as strain goes; none where that is not known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub truth_method: Option<TruthMethodName>,
     /// The report of an earlier study that may have the same rows.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub earlier: Option<Box<ReportDocument>>,

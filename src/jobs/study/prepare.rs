@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::batch::StudyItems;
-use super::documents::{Documents, StatedHashes};
+use super::documents::{Documents, Scenes, StatedHashes};
 use super::input::StudyInput;
 use crate::jobs::failure::JobError;
 use crate::jobs::source::MeshSource;
@@ -33,26 +33,25 @@ pub struct PreparedStudy {
 }
 
 impl StudyInput {
+    /// Adds what is wrong with the spec itself, whatever its cases are.
+    pub fn check_spec(&self, sources: &dyn MeshSource, limits: &Limits, faults: &mut Faults) {
+        let StudyInput { spec, cases, truth_method, .. } = self;
+        let documents = Documents { spec, cases, truth_method: *truth_method, sources, limits };
+        spec.check(limits, faults);
+        if spec.kind == StudyKind::Study {
+            documents.variants(faults);
+        }
+    }
+
     /// Makes the scenes, fetches the meshes and checks the documents. Pointers start at `/case` and `/spec`.
     pub fn prepare(
         &self,
         sources: &dyn MeshSource,
         limits: &Limits,
     ) -> Result<PreparedStudy, JobError> {
-        let mut faults = Faults::default();
-        self.spec.check(limits, &mut faults);
-        faults.into_result()?;
-        let documents = Documents { spec: &self.spec, cases: &self.cases, sources, limits };
-        let mut faults = Faults::default();
-        let StudyItems { scenes, variants, pairs } = match self.spec.kind {
-            StudyKind::Study => {
-                let variants = documents.variants(&mut faults);
-                let scenes = documents.scenes(&mut faults)?;
-                StudyItems { scenes, variants, pairs: BTreeSet::new() }
-            }
-            StudyKind::Batch => documents.items(&mut faults)?,
-        };
-        faults.into_result()?;
+        let StudyInput { spec, cases, truth_method, .. } = self;
+        let documents = Documents { spec, cases, truth_method: *truth_method, sources, limits };
+        let StudyItems { scenes, variants, pairs } = documents.checked()?;
         let study = Study {
             scenes: scenes.scenes,
             variants,
@@ -87,6 +86,35 @@ impl StudyInput {
             series: scenes.series,
             warnings,
         })
+    }
+}
+
+impl Documents<'_> {
+    /// Scenes and variants, where nothing is wrong; all mistakes are told together. Scenes of a spec that is wrong itself are not made.
+    fn checked(&self) -> Result<StudyItems, JobError> {
+        let mut faults = Faults::default();
+        self.spec.check(self.limits, &mut faults);
+        let is_sound = faults.is_empty();
+        let mut items = match self.spec.kind {
+            StudyKind::Study => {
+                let variants = self.variants(&mut faults);
+                let scenes = match is_sound {
+                    true => self.scenes(&mut faults)?,
+                    false => Scenes::default(),
+                };
+                StudyItems { scenes, variants, pairs: BTreeSet::new() }
+            }
+            StudyKind::Batch if is_sound => self.items(&mut faults)?,
+            StudyKind::Batch => StudyItems::default(),
+        };
+        let mut refused = std::mem::take(&mut items.scenes.refused);
+        // A single one has numbers of its own.
+        if let ([_], true) = (refused.as_slice(), faults.is_empty()) {
+            return Err(refused.remove(0).into());
+        }
+        refused.into_iter().for_each(|problem| faults.join(problem));
+        faults.into_result()?;
+        Ok(items)
     }
 }
 

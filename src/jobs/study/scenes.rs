@@ -281,8 +281,8 @@ impl Documents<'_> {
         for (number, (at, document)) in (1..).zip(documents) {
             let input = input(case, (*document).clone(), of_the_first.clone());
             let prepared = input.prepare(self.sources, self.limits);
-            let prepared =
-                prepared.map_err(|error| self.moved(error, reference, [at, &place(0)]))?;
+            let prepared = prepared.map_err(|error| self.moved(error, reference, [at, &place(0)]));
+            let Some(prepared) = found.found(prepared)? else { continue };
             plans.push((format!("plan {number}"), prepared.plan.clone()));
             first = first.or(Some(prepared));
         }
@@ -297,7 +297,8 @@ impl Documents<'_> {
             let Some((at, plan)) = documents.first() else { break };
             let input = input(case, (*plan).clone(), Some((*document).clone()));
             let prepared = input.prepare(self.sources, self.limits);
-            let case = prepared.map_err(|error| self.moved(error, reference, [at, place]))?.case;
+            let prepared = prepared.map_err(|error| self.moved(error, reference, [at, place]));
+            let Some(Prepared { case, .. }) = found.found(prepared)? else { continue };
             materials.push(Materials {
                 name: in_words(document),
                 by_region: case.materials,
@@ -317,8 +318,9 @@ impl Documents<'_> {
         let mut faults = Faults::default();
         self.sweep(&mut scene, &mut faults);
         self.truth(&mut scene, &mut faults);
-        faults.into_result()?;
-        self.stored_truth(&mut scene, &first, found)?;
+        found.found(faults.into_result().map_err(JobError::from))?;
+        let stored = self.stored_truth(&mut scene, &first, found);
+        found.found(stored)?;
         let stated = StatedHashes::of(case, documents.iter().map(|(_, plan)| *plan), &first);
         found.stated.insert(scene.name.clone(), stated);
         found.series.extend(reference.series.clone().map(|series| (scene.name.clone(), series)));

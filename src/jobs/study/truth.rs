@@ -67,7 +67,9 @@ impl Documents<'_> {
             let skin = found_mesh(self.sources.predicted_skin(job), job, &at)?;
             found.contents.insert(job.clone(), skin.sha256.clone());
             found.inputs.push(skin.to_input("truth"));
-            scene.truth = Truth::Known(known_displacement(&skin, first, &at)?);
+            let displacement = known_displacement(&skin, first, &at)?;
+            let strain = self.truth_method.map(TruthMethodName::strain);
+            scene.truth = Truth::Known { displacement, strain };
         }
         if let Some(mesh) = &truth.mesh {
             let scan = self.scan(truth, mesh, first, found);

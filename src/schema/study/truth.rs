@@ -9,8 +9,10 @@ use crate::schema::Triple;
 use crate::schema::code::ErrorCode;
 use crate::schema::compare::align::{AlignDocument, AlignMethod, AlignReference, align};
 use crate::schema::methods::ElementName;
+use crate::schema::predict::result::ProvenanceDocument;
 use crate::schema::wire::fault::{Faults, Pointer};
 use crate::schema::wire::limits::Limits;
+use mechanics::prediction::{MethodKind, Rung};
 use mechanics::study::Strain;
 
 /// Each further level multiplies the cells by eight.
@@ -102,6 +104,18 @@ pub enum TruthMethodName {
 }
 
 impl TruthMethodName {
+    /// That of a prediction, by its provenance: the model that `auto` chose, or else the method.
+    pub fn of(provenance: &ProvenanceDocument) -> Option<Self> {
+        let named = |name: &String| Rung::ALL.into_iter().find(|rung| rung.name() == name);
+        let chosen = provenance.model.as_ref().and_then(named).map(Strain::of_rung);
+        let named = |name: &String| MethodKind::ALL.iter().find(|kind| kind.name() == name);
+        let stated = || provenance.method.as_ref().and_then(named).map(|kind| Strain::of(*kind));
+        chosen.or_else(stated).map(|strain| match strain {
+            Strain::Small => TruthMethodName::FemLinear,
+            Strain::Finite => TruthMethodName::FemNonlinear,
+        })
+    }
+
     pub fn strain(self) -> Strain {
         match self {
             TruthMethodName::FemLinear => Strain::Small,

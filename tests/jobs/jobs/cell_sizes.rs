@@ -61,6 +61,7 @@ fn study(spec: Value, out: &Path) -> Result<ReportDocument, String> {
         queue_s: None,
         cases: BTreeMap::from(cases),
         baseline: None,
+        truth_method: None,
         earlier: None,
         spec: serde_json::from_value(spec).unwrap(),
     };

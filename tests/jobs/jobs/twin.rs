@@ -165,6 +165,7 @@ fn swept(
         queue_s: None,
         cases: cases.into(),
         baseline: None,
+        truth_method: None,
         earlier: None,
         spec: serde_json::from_value(spec).unwrap(),
     };

@@ -286,6 +286,23 @@ async fn cases_are_studied_against_the_skin_of_a_job_and_go_with_their_studies()
     // Positions of the skin are stored in full: the same method finds what it found.
     assert!(rows[0]["max_mm"].as_f64().unwrap() < 1e-6, "{rows}");
     assert!(rows[1]["p95_mm"].as_f64().unwrap() > 1e-3, "{rows}");
+    // A row of finite strain is told what is in its error; a linear one has nothing of that.
+    let mut finite = study.clone();
+    finite["methods"] = json!(["fem_linear", "fem_nonlinear"]);
+    finite["elements"] = json!(["auto"]);
+    let of_job = |method: &str| {
+        let mut predict = spec(&case, 2.0);
+        predict["method"] = json!(method);
+        predict
+    };
+    for (method, is_told) in [("fem_linear", true), ("fem_nonlinear", false)] {
+        let truth = server.job(&of_job(method)).await.expect(StatusCode::OK);
+        finite["truth"] = json!({"job": truth["id"]});
+        let job = done(&server, &finite).await;
+        let rows = report(&server, &job, "").await.expect(StatusCode::OK)["rows"].clone();
+        let told = |row: &Value| row["warnings"].to_string().contains("linear-truth");
+        assert_eq!((told(&rows[0]), told(&rows[1])), (false, is_told), "{method}: {rows}");
+    }
 
     let second = server.case(&SMALL).await;
     let mut both = study.clone();
@@ -346,6 +363,32 @@ async fn a_study_counts_its_rows_and_stops_when_it_is_dismissed() {
     let next = server.job(&spec(&case, 1.0)).await.expect(StatusCode::OK);
     let none = format!("/v1/jobs/{}/report", next["id"].as_str().unwrap());
     ask(server.get(&none)).await.problem(404, "no-such-output");
+}
+
+#[tokio::test]
+async fn all_mistakes_of_a_study_are_told_together() {
+    let server = Server::start();
+    let case = server.case(&SMALL).await;
+    let nobody = uuid::Uuid::now_v7();
+    let wrong = |name: &str| json!({"segments": [{"name": name, "translation_mm": [1, 0, 0]}]});
+    let mut study = json!({
+        "kind": "study", "scenes": [{"case": case, "plans": [wrong("nose"), wrong("ear")]}],
+        "methods": ["fem_linear", "guess"], "repeats": 1, "truth": {"refine": 1},
+    });
+    let places = async |study: &Value| -> Vec<String> {
+        let problem = server.job(study).await.problem(422, "validation-failed");
+        let errors = problem["errors"].as_array().unwrap().clone();
+        errors.iter().map(|own| own["pointer"].as_str().unwrap().to_owned()).collect()
+    };
+    let told = places(&study).await;
+    let plan = |number: usize| format!("/scenes/0/plans/{number}/segments/0/name");
+    assert_eq!(told, ["/methods/1", &plan(0), &plan(1)]);
+    study["scenes"] = json!([{"case": nobody}, {"case": nobody, "name": "again"}]);
+    study["repeats"] = json!(0);
+    let told = places(&study).await;
+    for place in ["/scenes/0/case", "/scenes/1/case", "/repeats", "/methods/1"] {
+        assert!(told.iter().any(|own| own == place), "{place}: {told:?}");
+    }
 }
 
 /// Name, what is put into a spec, the code of the problem, the pointer of its first mistake.

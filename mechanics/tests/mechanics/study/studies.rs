@@ -278,14 +278,14 @@ fn what_a_truth_costs_is_known_before_and_reported_while_it_is_solved() {
         (cost.meshes[2].cells, cost.meshes[2].unknowns),
         (64.0 * cells as f64, (192 * nodes) as f64)
     );
-    hexahedra.truth = Truth::Known(Vec::new());
+    hexahedra.truth = Truth::Known { displacement: Vec::new(), strain: None };
     assert_eq!(truth_cost(&hexahedra, &plain()), None);
 }
 
 #[test]
 fn a_truth_that_fails_fails_its_rows_only() {
     let mut scene = slab_with(|name| name == "patch 4 mm");
-    scene.truth = Truth::Known(vec![Vector::zeros(); 3]);
+    scene.truth = Truth::Known { displacement: vec![Vector::zeros(); 3], strain: None };
     let report = of(&study(scene, vec![variant("plain", ElementChoice::Plain)], &[0]));
     let Outcome::Failed { code, detail } = &report.rows[0].outcome else { panic!("no truth") };
     assert_eq!(code, "truth-failed");
@@ -454,7 +454,7 @@ fn a_sweep_finds_the_constants_that_were_planted() {
         case,
         plans: vec![("jaw".to_owned(), plan)],
         materials,
-        truth: Truth::Known(truth),
+        truth: Truth::Known { displacement: truth, strain: None },
     };
     let report = of(&study(scene, vec![variant("auto", ElementChoice::Auto)], &[0]));
     let judged = Judged { scene: "twin", plan: "jaw", label: "auto", level: 0 };
