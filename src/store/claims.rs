@@ -22,10 +22,12 @@ pub struct Claim {
     pub traceparent: Option<String>,
 }
 
-/// Tenants with a job that can be claimed, the one that has waited longest for its turn first.
+/// Tenants with a job that can be claimed: first those with the fewest running jobs, so that a tenant whose jobs are short is not
+/// left with no slot by one whose jobs are long, and of equals the one that has waited longest for its turn.
 const IN_TURN: &str = "SELECT name FROM tenants WHERE EXISTS (SELECT 1 FROM jobs \
        WHERE jobs.tenant = tenants.name AND jobs.status = 'accepted' AND jobs.waits_for = '' AND jobs.numerics <= $1 \
-       AND jobs.claimable_from <= (SELECT now_ms FROM clock)) ORDER BY served, name";
+       AND jobs.claimable_from <= (SELECT now_ms FROM clock)) \
+       ORDER BY (SELECT COUNT(*) FROM jobs WHERE jobs.tenant = tenants.name AND jobs.status = 'running'), served, name";
 /// The oldest of the most urgent jobs of a tenant, without rows that another transaction has locked.
 const CLAIM: &str = "UPDATE jobs SET status = 'running', attempt = attempt + 1, lease_token = $1, \
      lease_expires = (SELECT now_ms FROM clock) + $2, heartbeat = (SELECT now_ms FROM clock), \
@@ -40,8 +42,8 @@ const SERVED: &str = "UPDATE tenants SET served = (SELECT MAX(served) FROM tenan
      WHERE name = (SELECT name FROM tenants WHERE name = $1 FOR UPDATE SKIP LOCKED)";
 
 impl Store {
-    /// Takes an accepted job, if there is one, of the tenant that has waited longest for its turn: the oldest of its
-    /// most urgent ones that this program may run (see [`super::engines`]). Two workers never take the same. Where all
+    /// Takes an accepted job, if there is one, of the tenant with the fewest running jobs, of equals of the one that has waited
+    /// longest for its turn: the oldest of its most urgent ones that this program may run (see [`super::engines`]). Two workers never take the same. Where all
     /// jobs of a tenant are locked by other workers, the next tenant is served.
     pub async fn claim(&self, lease: Duration) -> Result<Option<Claim>, StoreError> {
         let numerics = i64::from(EngineDocument::this().numerics);

@@ -12,6 +12,7 @@ use crate::support::trials::trials;
 
 trials! {
     on_both {
+        a_tenant_with_long_jobs_does_not_take_every_slot_that_another_gives_back
         a_job_of_a_later_program_is_left_to_it
         a_job_that_another_version_ran_says_which
         a_hash_that_another_job_has_is_left_to_it
@@ -19,6 +20,29 @@ trials! {
     on_shared {
         rows_of_one_tenant_that_somebody_holds_keep_no_other_waiting
     }
+}
+
+async fn a_tenant_with_long_jobs_does_not_take_every_slot_that_another_gives_back(on: Deployment) {
+    let store = on.open().await;
+    let (long, short) = (store.of_tenant("long"), store.of_tenant("short"));
+    let claimed = async || store.claim(LEASE).await.unwrap().unwrap();
+    // Two slots. One tenant alone has both: no slot is idle while a job waits.
+    for number in 0..4 {
+        enqueue(&long, &format!("an hour {number}")).await;
+    }
+    let (first, second) = (claimed().await, claimed().await);
+    assert_eq!((first.tenant.as_str(), second.tenant.as_str()), ("long", "long"));
+    for number in 0..3 {
+        enqueue(&short, &format!("a second {number}")).await;
+    }
+    assert!(store.publish(&first.lease, result("{}", &[])).await.unwrap());
+    // The other tenant has the first slot that is free, and each time again: `long` holds one.
+    for _ in 0..3 {
+        let next = claimed().await;
+        assert_eq!(next.tenant, "short");
+        assert!(store.publish(&next.lease, result("{}", &[])).await.unwrap());
+    }
+    assert_eq!(claimed().await.tenant, "long", "nobody else waits");
 }
 
 async fn rows_of_one_tenant_that_somebody_holds_keep_no_other_waiting(on: Deployment) {
