@@ -19,7 +19,8 @@ use crate::schema::ErrorCode;
 use crate::schema::case::document::{FrameName, LengthUnit};
 use crate::schema::key::Scope;
 use crate::schema::mesh::{MeshDocument, MeshKind};
-use crate::store::{MeshDeletion, MeshRow};
+use crate::schema::wire::problem::Problem;
+use crate::store::{MeshDeletion, MeshRow, MeshUsers};
 
 const READ_HERE: &str = "model/stl, model/obj, application/vnd.ply, application/vnd.vtk, \
      application/vnd.vtk.xml, application/x-gmsh, application/x-nrrd, application/x-nifti, application/gzip, \
@@ -292,7 +293,7 @@ async fn content(
     delete, path = "/v1/meshes/{id}", operation_id = "remove_mesh", tag = "meshes", params(("id" = uuid::Uuid, Path, description = "the mesh")),
     responses(
         (status = 204, description = "deleted"),
-        (status = 409, description = "a case or a job refers to it"),
+        (status = 409, description = "a case, a job or a cohort refers to it: `users` of the problem has the first ten"),
     )
 )]
 async fn remove(service: Service, Id(id): Id) -> ApiResult {
@@ -302,9 +303,21 @@ async fn remove(service: Service, Id(id): Id) -> ApiResult {
             service.library.forget(&row.blob);
             Ok(StatusCode::NO_CONTENT.into_response())
         }
-        MeshDeletion::InUse => {
-            Err(ApiError::new(ErrorCode::ConflictInUse, "a case or a job refers to this mesh"))
-        }
+        MeshDeletion::InUse(users) => Err(in_use(&users)),
         MeshDeletion::NotFound => Err(ApiError::not_found("mesh")),
     }
+}
+
+/// The refusal to delete a mesh, with what has to go first.
+fn in_use(users: &MeshUsers) -> ApiError {
+    let MeshUsers { count, first } = users;
+    let named: Vec<String> = first.iter().map(|(kind, id)| format!("{kind} {id}")).collect();
+    let more = count - first.len() as i64;
+    let more = if more > 0 { format!(" and {more} more") } else { String::new() };
+    let detail =
+        format!("{}{more} refer to this mesh: erase what is not needed first", named.join(", "));
+    let listed: Vec<serde_json::Value> =
+        first.iter().map(|(kind, id)| serde_json::json!({ "kind": kind, "id": id })).collect();
+    let problem = Problem::new(ErrorCode::ConflictInUse, detail);
+    problem.with("count", *count).with("users", listed).into()
 }

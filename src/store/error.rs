@@ -28,9 +28,17 @@ pub enum StoreError {
     #[error("the schema of the database does not fit this program: {0}")]
     Schema(String),
     #[error(
-        "another facies serves this data folder: end it, or name another folder in the setting `data`"
+        "another facies serves the data folder {}: end it, or name another folder in the setting `data`",
+        folder.display()
     )]
-    InUse,
+    InUse { folder: std::path::PathBuf },
+    #[error(
+        "another facies has the database of the data folder {} open, and migrated it when it started: for a new version end that process \
+         and start the new one, which migrates SQLite itself; `facies migrate` is for a database that several share, or for a folder \
+         that nobody serves",
+        folder.display()
+    )]
+    ServedAlready { folder: std::path::PathBuf },
     #[error("blob {sha256} has changed on disk, its hash is {found}")]
     Integrity { sha256: String, found: String },
     #[error("blob {sha256} is not where it was kept")]
@@ -103,7 +111,8 @@ impl StoreError {
     /// True when another setting, folder or program would help.
     pub fn is_setting(&self) -> bool {
         match self {
-            StoreError::InUse
+            StoreError::InUse { .. }
+            | StoreError::ServedAlready { .. }
             | StoreError::CannotOpen { .. }
             | StoreError::Files(_)
             | StoreError::SchemaTooNew { .. }

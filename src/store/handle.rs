@@ -100,9 +100,18 @@ impl Store {
 
     /// Brings the schema of the database up to date.
     pub async fn migrate(places: &StorageLocations) -> Result<Migrated, StoreError> {
-        std::fs::create_dir_all(&places.data)?;
-        // The embedded database is open in one process at a time.
-        let _lock = lock(&places.data)?;
+        // The embedded database is open in one process at a time; of a shared one the data folder has nothing.
+        let _lock = match places.database {
+            DatabaseLocation::Server { .. } => None,
+            DatabaseLocation::Embedded => {
+                std::fs::create_dir_all(&places.data)?;
+                let locked = lock(&places.data);
+                Some(locked.map_err(|error| match error {
+                    StoreError::InUse { folder } => StoreError::ServedAlready { folder },
+                    other => other,
+                })?)
+            }
+        };
         Database::migrate(address(places)?).await
     }
 
@@ -215,7 +224,7 @@ impl Store {
 
 fn lock(folder: &Path) -> Result<File, StoreError> {
     let lock = File::create(folder.join("lock"))?;
-    lock.try_lock().map_err(|_| StoreError::InUse)?;
+    lock.try_lock().map_err(|_| StoreError::InUse { folder: folder.to_owned() })?;
     Ok(lock)
 }
 

@@ -30,12 +30,23 @@ pub struct MeshRow {
 }
 
 /// Outcome of a deletion.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub enum MeshDeletion {
     Deleted,
-    InUse,
+    InUse(MeshUsers),
     NotFound,
 }
+
+/// What refers to a mesh.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct MeshUsers {
+    pub count: i64,
+    /// The first of them: what each is (`case`, `job` or `cohort`), and its id.
+    pub first: Vec<(String, String)>,
+}
+
+/// Users of a mesh that are named.
+const NAMED_USERS: i64 = 10;
 
 const BY_ID: &str = "SELECT id, sha256, blob, report, created FROM meshes \
      WHERE id = $1 AND tenant = $2";
@@ -43,6 +54,23 @@ const BY_CONTENT: &str = "SELECT id, sha256, blob, report, created FROM meshes \
      WHERE sha256 = $1 AND options = $2 AND tenant = $3";
 const INSERT: &str = "INSERT INTO meshes (id, sha256, options, blob, standalone, report, tenant, created) \
      VALUES ($1, $2, $3, $4, $5, $6, $7, (SELECT now_ms FROM clock))";
+
+/// Each user once: a job may both read a mesh and have made it.
+macro_rules! users {
+    ($what:literal, $rest:literal) => {
+        concat!(
+            "SELECT ",
+            $what,
+            " FROM (SELECT 'case' AS kind, case_id AS id FROM case_meshes WHERE mesh_id = $1 \
+               UNION SELECT 'job', job_id FROM job_meshes WHERE mesh_id = $1 \
+               UNION SELECT 'job', job_id FROM made_meshes WHERE mesh_id = $1 \
+               UNION SELECT 'cohort', cohort_id FROM cohort_members WHERE mesh_id = $1) AS users",
+            $rest
+        )
+    };
+}
+const USERS: &str = users!("kind, id", " ORDER BY kind, id LIMIT $2");
+const COUNT_USERS: &str = users!("COUNT(*)", "");
 
 fn mesh_row(row: &Row) -> Result<MeshRow, sqlx::Error> {
     Ok(MeshRow {
@@ -123,9 +151,22 @@ impl Store {
                 self.discard(vec![row.try_get("blob")?]).await;
                 Ok(MeshDeletion::Deleted)
             }
-            Err(error) if is_reference(&error) => Ok(MeshDeletion::InUse),
+            Err(error) if is_reference(&error) => {
+                transaction.rollback().await;
+                Ok(MeshDeletion::InUse(self.mesh_users(id).await?))
+            }
             Err(error) => Err(error.into()),
         }
+    }
+
+    /// What refers to a mesh now; nothing where it went meanwhile.
+    async fn mesh_users(&self, id: &str) -> Result<MeshUsers, StoreError> {
+        let reader = self.database.reader();
+        let count = query(COUNT_USERS).bind(id).fetch_one(reader).await?.try_get(0)?;
+        let rows = query(USERS).bind(id).bind(NAMED_USERS).fetch_all(reader).await?;
+        let user = |row: &Row| Ok((row.try_get("kind")?, row.try_get("id")?));
+        let first: Result<_, sqlx::Error> = rows.iter().map(user).collect();
+        Ok(MeshUsers { count, first: first? })
     }
 
     pub(super) async fn insert_mesh(

@@ -60,7 +60,7 @@ pub use keys::KeyRow;
 pub use leases::{FileRow, Lease, LostJob, Point, Published, PublishedFile};
 pub use lost::LostRow;
 pub use made::MadeMesh;
-pub use meshes::{MeshDeletion, MeshRow, NewMesh};
+pub use meshes::{MeshDeletion, MeshRow, MeshUsers, NewMesh};
 pub use open_actions::OpenAction;
 pub use plans::PlanRow;
 pub use queue::QueueRow;

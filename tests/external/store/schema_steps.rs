@@ -12,6 +12,7 @@ trials! {
         a_step_that_breaks_off_leaves_the_step_before
     }
     on_shared {
+        a_shared_database_is_migrated_beside_a_process_that_has_the_data_folder
         a_step_that_was_changed_after_it_was_taken_is_refused
     }
     alone {
@@ -29,6 +30,12 @@ async fn a_program_older_than_its_database_refuses_to_start(on: Deployment) {
     let error = Store::connect(&on.places).await.err().unwrap();
     let too_new = matches!(error, StoreError::SchemaTooNew { found: 9999, .. });
     assert!(too_new, "{error}");
+}
+
+async fn a_shared_database_is_migrated_beside_a_process_that_has_the_data_folder(on: Deployment) {
+    let _serves = on.open().await;
+    let Migrated { from, to } = Store::migrate(&on.places).await.unwrap();
+    assert_eq!(from, to);
 }
 
 /// The third step makes `blobs` before `discarded_blobs`, which is in its way here.

@@ -174,5 +174,9 @@ async fn a_data_folder_serves_one_process() {
     let on = Deployment::embedded().await;
     let _store = on.open().await;
     let error = Store::connect(&on.places).await.err().unwrap();
-    assert!(matches!(error, StoreError::InUse), "{error}");
+    assert!(matches!(error, StoreError::InUse { .. }), "{error}");
+    let error = Store::migrate(&on.places).await.err().unwrap();
+    let told = error.to_string();
+    assert!(matches!(error, StoreError::ServedAlready { .. }) && error.is_setting(), "{told}");
+    assert!(told.contains(on.places.data.to_str().unwrap()) && told.contains("migrates"), "{told}");
 }

@@ -116,7 +116,12 @@ async fn a_kept_mesh_stays_as_long_as_one_of_the_jobs_that_made_it() {
     assert_ne!(ids[0], ids[1]);
     let skin = mesh_of(&jobs[0], 0);
     assert_eq!(mesh_of(&jobs[1], 0), skin, "the same content is one mesh");
-    ask(server.delete(&format!("/v1/meshes/{skin}"))).await.problem(409, "conflict-in-use");
+    let in_use = ask(server.delete(&format!("/v1/meshes/{skin}"))).await;
+    let told = in_use.problem(409, "conflict-in-use");
+    let users = ids.map(|id| json!({"kind": "job", "id": id}));
+    assert_eq!((&told["count"], &told["users"]), (&json!(2), &json!(users)), "{told}");
+    let detail = told["detail"].as_str().unwrap();
+    assert!(ids.iter().all(|id| detail.contains(id)) && !detail.contains("more"), "{detail}");
     erase(&server, &format!("/v1/jobs/{}", ids[0])).await;
     mesh(&server, &skin).await.expect(StatusCode::OK);
     erase(&server, &format!("/v1/jobs/{}", ids[1])).await;
