@@ -149,7 +149,7 @@ fn pressed(
     let at_rest = deepest_overlap(surfaces.rest()).map_or(0.0, |at| at.depth);
     let moved = surfaces.after(&equilibrium.displacement);
     let overlap = deepest_overlap(&moved).filter(|deepest| deepest.depth > at_rest + DEEP_MM);
-    // Bone narrower than the cells of tissue may pass between their nodes.
+    // What of bone lies between the nodes of tissue may enter: edges, narrow parts, roundings that cells span as chords.
     let bones_inside = bones_inside([surfaces.rest(), &moved], &scene.bones, DEEP_MM);
     if nothing_presses && overlap.is_none() && bones_inside.is_empty() {
         return Ok(None);
@@ -220,7 +220,7 @@ impl Touch {
         }
         if let Some(Deepest { depth, at }) = &self.overlap {
             let detail = format!(
-                "contact leaves parts of the boundary in each other, {depth:.2} mm deep: it holds nodes of tissue against triangles, not edges against edges, and not nodes of bone that is narrower than the cells of tissue"
+                "contact leaves parts of the boundary in each other, {depth:.2} mm deep: it holds nodes of tissue against triangles, not edges against edges, and what lies between the nodes is free: an edge, a narrow part, or a rounding that cells of tissue span as chords"
             );
             let warning = Warning::new("contact-overlap", detail).with("depth_mm", *depth);
             warnings.push(warning.with("x_mm", at.x).with("y_mm", at.y).with("z_mm", at.z));
@@ -250,7 +250,7 @@ impl StepTouch {
 /// Warning of a bone that lies in tissue.
 fn bone_inside(scene: &Scene, BoneInside { bone, depth, at, points }: &BoneInside) -> Warning {
     let detail = format!(
-        "contact leaves bone {:?} in tissue, {depth:.2} mm deep, with {points} of the points of its corners and edges: nodes of tissue are held against bone, and bone that is narrower than their distance goes in between them",
+        "contact leaves bone {:?} in tissue, {depth:.2} mm deep, with {points} of the points of its corners and edges: nodes of tissue are held against bone, and what of it lies between them goes in: an edge, a part narrower than their distance, or a rounding that cells of tissue span as chords",
         scene.bones[*bone].name
     );
     let warning = Warning::new("contact-overlap", detail).with("depth_mm", *depth);
