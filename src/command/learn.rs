@@ -2,20 +2,20 @@
 
 use std::path::{Path, PathBuf};
 
-use clap::Args;
-use serde::Deserialize;
+use clap::{Args, ValueEnum};
 
-use super::documents::read;
+use super::documents::{CaseFile, read};
 use super::failure::CommandError;
 use super::files::{FileSource, ScaleArguments};
 use super::screen::{print_files, print_warnings, run_with_progress};
-use crate::jobs::{JobContext, JobInput, LearnInput, LearnedCase, PredictInput};
+use crate::jobs::{JobContext, JobInput, LearnInput, LearnedCase};
 use crate::schema::case::document::LengthUnit;
-use crate::schema::learn::document::VirtualCohortDocument;
+use crate::schema::learn::document::{VirtualCohortDocument, VirtualFaceName};
 use crate::schema::learn::result::{
-    CurveDocument, GainsDocument, LearningDocument, ValidationDocument, WidthDocument,
+    CurveDocument, GainsDocument, LearningDocument, MadeCohortDocument, RedrawnDocument,
+    ValidationDocument, WidthDocument,
 };
-use crate::schema::{CaseDocument, LearnDocument, Limits, PlanDocument, PredictDocument};
+use crate::schema::{LearnDocument, Limits};
 use mechanics::learning::virtual_cohort::USUAL_MAPPING;
 
 #[derive(Debug, Args)]
@@ -40,9 +40,13 @@ pub struct Arguments {
     /// Of the virtual patients
     #[arg(long, value_name = "NUMBER", default_value_t = 1, help_heading = "What is learned from")]
     seed: u32,
-    /// Of the virtual faces: 1728 times its square in tetrahedra
-    #[arg(long, value_name = "NUMBER", default_value_t = 2, help_heading = "What is learned from")]
-    fineness: u32,
+    /// Of the virtual patients: half heads, or generic faces, to which all happens in contact
+    #[arg(long, value_enum, default_value = "half_head", help_heading = "What is learned from")]
+    face: FaceArgument,
+    /// Of the virtual faces: 1728 times its square in tetrahedra of a half head [default: 2], 5616 times in hexahedra of a
+    /// generic face [default: 1]
+    #[arg(long, value_name = "NUMBER", help_heading = "What is learned from")]
+    fineness: Option<u32>,
     /// By how much their mapped skin is off in the mean
     #[arg(
         long,
@@ -56,14 +60,11 @@ pub struct Arguments {
     out: PathBuf,
 }
 
-/// A prediction as a file.
-#[derive(Deserialize)]
-struct Predicted {
-    case: CaseDocument,
-    #[serde(default)]
-    plan: PlanDocument,
-    #[serde(default)]
-    spec: PredictDocument,
+#[derive(Clone, Copy, Debug, ValueEnum)]
+#[value(rename_all = "snake_case")]
+enum FaceArgument {
+    HalfHead,
+    GenericFace,
 }
 
 /// Learns, and prints the table.
@@ -73,7 +74,11 @@ pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
         (None, patients) => {
             let (patients, seed) = (patients.unwrap_or_default(), arguments.seed);
             let (fineness, mapping_mm) = (arguments.fineness, arguments.mapping);
-            let made = VirtualCohortDocument { patients, seed, fineness, mapping_mm };
+            let face = match arguments.face {
+                FaceArgument::HalfHead => VirtualFaceName::HalfHead,
+                FaceArgument::GenericFace => VirtualFaceName::GenericFace,
+            };
+            let made = VirtualCohortDocument { patients, seed, face, fineness, mapping_mm };
             (LearnDocument { made: Some(made), ..LearnDocument::default() }, PathBuf::new())
         }
     };
@@ -83,9 +88,10 @@ pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
     }
     let mut cases = Vec::new();
     for case in &spec.cases {
-        let Predicted { case, plan, spec } = read(&folder.join(&case.prediction))?;
-        let prediction = PredictInput { job: None, queue_s: None, case, plan, spec };
-        cases.push(LearnedCase { case: None, spec_hash: None, prediction });
+        let path = folder.join(&case.prediction);
+        let file: CaseFile = read(&path)?;
+        file.refuse_beside_spec(&path)?;
+        cases.push(LearnedCase { case: None, spec_hash: None, prediction: file.to_input() });
     }
     let limits = Limits::default();
     let sources = FileSource::new(&folder, LengthUnit::Mm, ScaleArguments::default());
@@ -115,6 +121,9 @@ fn print_learning(found: &LearningDocument) {
         );
     }
     print_patients(found);
+    if let Some(made) = &found.made {
+        print_made(made);
+    }
     for test in &found.tests {
         let p = test.p.map_or_else(|| "no p".to_owned(), |p| format!("p {p:.4}"));
         println!(
@@ -148,6 +157,17 @@ fn print_patients(found: &LearningDocument) {
             "{:<20} {:<12} {:>7.3}{errors}",
             patient.name, patient.class, patient.largest_bone_movement_mm
         );
+    }
+}
+
+fn print_made(made: &MadeCohortDocument) {
+    if let Some(areas) = &made.contact_mm2 {
+        let touching = areas.iter().filter(|area| **area > 0.0).count();
+        let mean = areas.iter().sum::<f64>() / areas.len().max(1) as f64;
+        println!("in contact: {touching} of {} patients, {mean:.1} mm2 in the mean", areas.len());
+    }
+    for RedrawnDocument { patient, why } in &made.redrawn {
+        println!("{patient} was drawn again: {why}");
     }
 }
 

@@ -5,17 +5,21 @@ use super::failure::JobError;
 use crate::schema::{ErrorCode, Pointer, Problem};
 use mechanics::learning::CohortError;
 use mechanics::learning::virtual_cohort::VirtualError;
+use mechanics::material::MaterialError;
 
 pub fn refused_virtual(error: VirtualError, clock: &Observed) -> JobError {
     match error {
         VirtualError::Model(error) => clock.judge(error),
         VirtualError::Scene(errors) => JobError::Refused(errors.into()),
         VirtualError::Cohort(error) => refused_cohort(&error),
-        VirtualError::Material(error) => {
-            let at = Pointer::from_text("/spec/virtual");
-            Problem::at(&at, ErrorCode::OutOfRange, error.to_string()).into()
-        }
+        VirtualError::Material(error) => refused_material(&error),
     }
+}
+
+/// The refusal of tissue that is none.
+pub fn refused_material(error: &MaterialError) -> JobError {
+    let at = Pointer::from_text("/spec/virtual");
+    Problem::at(&at, ErrorCode::OutOfRange, error.to_string()).into()
 }
 
 /// The refusal of a cohort unsuited to learning.

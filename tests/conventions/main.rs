@@ -82,6 +82,7 @@ const MECHANICS: [(&str, &[&str]); 30] = [
             "plan",
             "boundary",
             "material",
+            "solver",
             "model",
             "prediction",
             "validation",

@@ -8,16 +8,17 @@ use super::thetas::at_thetas;
 use crate::jobs::clock::Observed;
 use crate::jobs::failure::JobError;
 use crate::jobs::fetch::fetch;
-use crate::jobs::made::{refused_cohort, refused_virtual};
+use crate::jobs::made::{refused_cohort, refused_material, refused_virtual};
 use crate::jobs::output::JobContext;
 use crate::jobs::predict::Prepared;
 use crate::schema::Pointer;
 use crate::schema::learn::correspondence::CorrespondenceDocument;
 use crate::schema::learn::mechanics::MechanicsDocument;
+use crate::schema::learn::result::MadeCohortDocument;
 use crate::schema::predict::result::InputDocument;
 use mechanics::learning::classes::{AtThetas, ThetaOfClass, held_out, thetas};
 use mechanics::learning::validation::Column;
-use mechanics::learning::virtual_cohort::{Making, virtual_cohort};
+use mechanics::learning::virtual_cohort::{Making, VirtualCohort, supposed, virtual_cohort};
 use mechanics::learning::{Cohort, LearningCase, measures};
 use mechanics::mesh::{Frame, TriangleSurface, Vector, Warning};
 use mechanics::prediction::{Scene, Skin, displacement};
@@ -34,12 +35,21 @@ pub struct Gathered {
     pub frame: Frame,
     /// The skin of the first case at rest.
     pub face: TriangleSurface,
-    /// Of the meshes of operated cases.
+    /// Of the meshes of the cases.
     pub correspondence: Option<CorrespondenceDocument>,
-    /// What each operated case was predicted by, and its skin at rest; none of virtual patients.
+    /// Of virtual patients.
+    pub made: Option<MadeCohortDocument>,
+    /// What each case was predicted by, and its skin at rest.
     pub mechanics: Vec<MechanicsDocument>,
     pub at_rest: Vec<Vec<Vector>>,
     pub warnings: Vec<Warning>,
+}
+
+impl Gathered {
+    /// What speaks against operated cases; draws of virtual patients do not.
+    pub fn suspicions(&self) -> &[Warning] {
+        if self.made.is_some() { &[] } else { &self.warnings }
+    }
 }
 
 pub fn gather(
@@ -51,26 +61,36 @@ pub fn gather(
         Some(made) => {
             let making = Making {
                 seed: u64::from(made.seed),
-                fineness: made.fineness as usize,
+                face: made.face.into(),
+                fineness: made.fineness() as usize,
                 mapping: made.mapping_mm,
             };
             let cohort = virtual_cohort(made.patients as usize, making, clock);
-            let cohort = cohort.map_err(|error| refused_virtual(error, clock))?;
-            Ok(Gathered {
-                cohort: cohort.cohort,
-                mechanical: cohort.mechanical,
-                thetas: cohort.thetas,
-                inputs: Vec::new(),
-                frame: Frame::Lps,
-                face: cohort.face,
-                correspondence: None,
-                mechanics: Vec::new(),
-                at_rest: Vec::new(),
-                warnings: Vec::new(),
-            })
+            of_virtual(cohort.map_err(|error| refused_virtual(error, clock))?)
         }
         None => of_cases(input, place, clock),
     }
+}
+
+/// Virtual patients, with the mechanics that they are predicted by as real ones have it.
+fn of_virtual(made: VirtualCohort) -> Result<Gathered, JobError> {
+    let VirtualCohort { cohort, mechanical, thetas, scene, at_rest, contact_areas, redrawn } = made;
+    let supposed = supposed().map_err(|error| refused_material(&error))?;
+    let mechanics = MechanicsDocument::of_virtual(&scene, &supposed);
+    let made = MadeCohortDocument::new(&cohort, contact_areas, &redrawn);
+    Ok(Gathered {
+        warnings: made.warning().into_iter().collect(),
+        made: Some(made),
+        mechanics: vec![mechanics; cohort.len()],
+        cohort,
+        mechanical,
+        thetas,
+        inputs: Vec::new(),
+        frame: Frame::Lps,
+        correspondence: Some(CorrespondenceDocument::new(&scene)),
+        face: scene.skin.surface,
+        at_rest,
+    })
 }
 
 fn of_cases(
@@ -153,6 +173,7 @@ fn gathered(
     let at_rest = skins.into_iter().map(|own| own.at_rest).collect();
     Ok(Gathered {
         cohort,
+        made: None,
         mechanical,
         thetas: fitted,
         inputs: Vec::new(),

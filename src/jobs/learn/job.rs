@@ -148,6 +148,7 @@ fn document(
             .collect(),
         curve: curves(Pool::Others),
         curve_of_other_classes: curves(Pool::OtherClasses),
+        made: gathered.made.clone(),
         thetas: gathered.thetas.iter().map(Into::into).collect(),
     })
 }
@@ -202,5 +203,6 @@ fn kept(input: &LearnInput, gathered: &Gathered, found: &LearningDocument) -> Mo
         helps: found.helps,
         error_mm: error(&found.method),
         mechanical_mm: error(&found.mechanical),
+        suspicions: warning_documents(gathered.suspicions().iter()),
     }
 }

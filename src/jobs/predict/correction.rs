@@ -146,6 +146,7 @@ pub fn corrected(
         band_mm: None,
     };
     let mut warnings: Vec<Warning> = model.warning().into_iter().collect();
+    warnings.extend(model.suspected(&spec.model));
     warnings.extend(input.unlike_learned(model, prepared));
     if displacement.iter().all(|moved| moved.norm() <= NOTHING_MM) {
         let detail = "the plan moves nothing: nothing is added to it";

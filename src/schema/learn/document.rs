@@ -12,7 +12,7 @@ use crate::schema::wire::fault::{Faults, Pointer};
 use crate::schema::wire::limits::Limits;
 use crate::schema::wire::names::check_tags;
 use mechanics::learning::cohort::LEAST_CASES;
-use mechanics::learning::virtual_cohort::USUAL_MAPPING;
+use mechanics::learning::virtual_cohort::{FaceKind, USUAL_MAPPING};
 use mechanics::learning::{Distance, Learner, Method, Target};
 use mechanics::plan::RigidMovement;
 
@@ -101,10 +101,13 @@ pub struct VirtualCohortDocument {
     #[serde(default)]
     #[schema(maximum = 2147483647)]
     pub seed: u32,
-    /// Of the half head; 1728 n² tetrahedra. Default: 2.
-    #[serde(default = "usual_fineness")]
-    #[schema(default = 2, minimum = 1, maximum = 4)]
-    pub fineness: u32,
+    /// What a face is made of, and whether what happens to it is in contact.
+    #[serde(default, skip_serializing_if = "is_half_head")]
+    pub face: VirtualFaceName,
+    /// 1728 n² tetrahedra of a half head, by default with n = 2, or 5616 n² hexahedra of a generic face, by default with n = 1.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false, minimum = 1, maximum = 4)]
+    pub fineness: Option<u32>,
     /// By how much a mapped point of the skin is off in the mean, before the operation and after: smooth over 20 mm. Default: 0.2.
     #[serde(default = "usual_mapping")]
     #[schema(default = 0.2, minimum = 0, maximum = 5)]
@@ -115,8 +118,38 @@ fn usual_mapping() -> f64 {
     USUAL_MAPPING
 }
 
-fn usual_fineness() -> u32 {
-    2
+fn is_half_head(face: &VirtualFaceName) -> bool {
+    *face == VirtualFaceName::HalfHead
+}
+
+/// The face of virtual patients.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum VirtualFaceName {
+    /// Tetrahedra on bone. What happens has no contact.
+    #[default]
+    HalfHead,
+    /// That of `facies face`, of hexahedra, with lips, and mucosa that slides on the teeth. What happens is in unilateral contact.
+    GenericFace,
+}
+
+impl From<VirtualFaceName> for FaceKind {
+    fn from(name: VirtualFaceName) -> FaceKind {
+        match name {
+            VirtualFaceName::HalfHead => FaceKind::HalfHead,
+            VirtualFaceName::GenericFace => FaceKind::Generic,
+        }
+    }
+}
+
+impl VirtualCohortDocument {
+    /// As stated, or that of the face.
+    pub fn fineness(&self) -> u32 {
+        self.fineness.unwrap_or(match self.face {
+            VirtualFaceName::HalfHead => 2,
+            VirtualFaceName::GenericFace => 1,
+        })
+    }
 }
 
 /// A rule of learning.
@@ -200,7 +233,7 @@ impl LearnDocument {
         faults.check_one_of(&at, given, "`cases`, `cohort`, `virtual`");
         if let Some(made) = &self.made {
             let place = at.key("virtual");
-            let (patients, fineness) = (f64::from(made.patients), f64::from(made.fineness));
+            let (patients, fineness) = (f64::from(made.patients), f64::from(made.fineness()));
             faults.check_range(&place.key("patients"), patients, 3.0..=MOST_VIRTUAL, "patients");
             faults.check_range(&place.key("fineness"), fineness, 1.0..=4.0, "");
             faults.check_range(&place.key("seed"), f64::from(made.seed), 0.0..=MOST_SEED, "");

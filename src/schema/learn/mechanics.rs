@@ -5,14 +5,15 @@ use std::collections::{BTreeMap, BTreeSet};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
-use crate::schema::case::document::CaseDocument;
+use crate::schema::case::document::{CaseDocument, LengthUnit};
 use crate::schema::case::hounsfield::HounsfieldDocument;
-use crate::schema::case::material::MaterialDocuments;
+use crate::schema::case::material::{MaterialDocument, MaterialDocuments};
 use crate::schema::case::membrane::MembraneDocument;
 use crate::schema::case::merged::expanded_materials;
 use crate::schema::predict::contact::ContactName;
 use crate::schema::predict::document::PredictDocument;
 use crate::schema::wire::canonical::to_value;
+use mechanics::material::LinearElastic;
 use mechanics::mesh::Warning;
 use mechanics::prediction::{Load, NodeClass, Plan, Scene};
 
@@ -63,6 +64,20 @@ impl MechanicsDocument {
             loads: loads(plan),
             held: held(scene),
         }
+    }
+
+    /// Of virtual patients, who are predicted by usual linear elements of the tissue that models suppose.
+    pub fn of_virtual(scene: &Scene, supposed: &BTreeMap<String, LinearElastic>) -> Self {
+        let case = CaseDocument::of_volume("", LengthUnit::Mm);
+        let own =
+            MechanicsDocument::new(&case, &PredictDocument::default(), &Plan::default(), scene);
+        let material = |tissue: &LinearElastic| MaterialDocument {
+            young_modulus_kpa: Some(tissue.young_modulus()),
+            poisson_ratio: Some(tissue.poisson_ratio()),
+            ..MaterialDocument::default()
+        };
+        let materials = supposed.iter().map(|(name, own)| (name.clone(), material(own)));
+        MechanicsDocument { materials: materials.collect(), ..own }
     }
 
     /// In what predictions are of another kind than those of `other`, whose errors are then others: the setting, that of these, and

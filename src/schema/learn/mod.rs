@@ -2,6 +2,7 @@
 
 pub mod correspondence;
 pub mod document;
+pub mod made;
 pub mod mechanics;
 pub mod model;
 pub mod result;

@@ -10,6 +10,7 @@ use crate::schema::cohort::stored::CohortVersionDocument;
 use crate::schema::engine::EngineDocument;
 use crate::schema::learn::correspondence::CorrespondenceDocument;
 use crate::schema::learn::mechanics::MechanicsDocument;
+use crate::schema::wire::warning::WarningDocument;
 use mechanics::learning::{Cohort, CohortError, Features, LearnedModel, LearningCase};
 use mechanics::mesh::Warning;
 
@@ -29,7 +30,7 @@ pub struct ModelDocument {
     /// That of the cases; models of earlier versions do not say it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub frame: Option<FrameName>,
-    /// That of the cases' meshes; virtual patients and models of earlier versions do not have it.
+    /// That of the cases' meshes; models of earlier versions do not have it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub correspondence: Option<CorrespondenceDocument>,
     /// The method of the predictions that it corrects.
@@ -39,6 +40,9 @@ pub struct ModelDocument {
     /// Mean errors of validation in mm: of this model, nested, and of mechanics alone.
     pub error_mm: f64,
     pub mechanical_mm: f64,
+    /// What speaks against the cases; models of earlier versions do not say it.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub suspicions: Vec<WarningDocument>,
 }
 
 /// A case with its provenance.
@@ -52,7 +56,7 @@ pub struct ModelCaseDocument {
     pub spec_hash: Option<String>,
     /// Of the mesh after the operation.
     pub actual_sha256: Option<String>,
-    /// What it was predicted by; virtual patients and models of earlier versions do not have it.
+    /// What it was predicted by; models of earlier versions do not have it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub mechanics: Option<MechanicsDocument>,
     /// The skin at rest in mm, as the displacements; models without `mechanics` do not have it.
@@ -75,6 +79,21 @@ impl ModelDocument {
             .with("learned_mm", learned)
             .with("mechanical_mm", mechanical);
         (!self.helps).then_some(warning)
+    }
+
+    /// What speaks against the cases that it was learned from, with the name that a prediction has for the model.
+    pub fn suspected(&self, model: &str) -> Option<Warning> {
+        let first = self.suspicions.first()?;
+        let mut codes: Vec<&str> = self.suspicions.iter().map(|own| own.code.as_str()).collect();
+        codes.sort_unstable();
+        codes.dedup();
+        let detail = format!(
+            "the model {model:?} was learned from cases that are doubtful ({}): {}; what it adds to the prediction is, too",
+            codes.join(", "),
+            first.detail
+        );
+        let warning = Warning::new("model-suspect", detail);
+        Some(warning.with("suspicions", self.suspicions.len() as f64))
     }
 
     /// The model, fitted to its cases.

@@ -7,6 +7,7 @@ use utoipa::ToSchema;
 
 use crate::schema::cohort::result::CohortPairDocument;
 use crate::schema::cohort::stored::CohortVersionDocument;
+pub use crate::schema::learn::made::{MadeCohortDocument, RedrawnDocument};
 use mechanics::learning::LearningCase;
 use mechanics::learning::classes::ThetaOfClass;
 use mechanics::learning::curve::CurvePoint;
@@ -47,6 +48,10 @@ pub struct LearningDocument {
     /// The same where each case is predicted from those of other classes alone, as many as every case has; absent with fewer than two.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub curve_of_other_classes: Vec<CurveDocument>,
+    /// Of virtual patients.
+    #[serde(default, rename = "virtual", skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub made: Option<MadeCohortDocument>,
     /// Of Rubin and Bodner's tissue: of virtual patients, and where `theta` was asked for.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub thetas: Vec<ThetaDocument>,

@@ -7,6 +7,7 @@ use facies::jobs::{
     SourceError, StoredMesh, StoredShape, work,
 };
 use facies::schema::Limits;
+use mechanics::mesh::half_head::{LAYERS, half_head};
 use mechanics::mesh::{CellShape, TriangleSurface, Vector, VolumeMesh, sample};
 use mechanics::prediction::{equilibrium, predict};
 use mechanics::progress::Unobserved;
@@ -564,5 +565,69 @@ fn scans_of_before_the_operation_and_beside_the_case_are_suspected_with_their_pl
         at("unregistered-suspect", "/spec/cases/1"),
         at("before-operation-suspect", "/spec/cases/2"),
     ];
-    assert_eq!(told(&sources, input), expected);
+    assert_eq!(told(&sources, input.clone()), expected);
+
+    // What it corrects names the model and repeats them.
+    let (_, out) = done(JobInput::Learn(input), &sources).unwrap();
+    sources.model = std::fs::read(out.path().join("model.json")).unwrap();
+    let spec = json!({"method": "fem_linear", "correction": {"model": "of a ward"}});
+    let (output, _out) = done(JobInput::Predict(prediction(2.5, spec)), &sources).unwrap();
+    let suspect = output.result.warnings.iter().find(|own| own.code == "model-suspect").unwrap();
+    for word in ["\"of a ward\"", "/spec/cases/1 (2)", "before-operation-suspect, unregistered"] {
+        assert!(suspect.detail.contains(word), "{suspect:?}");
+    }
+    assert_eq!(suspect.numbers["suspicions"], 2.0);
+}
+
+/// The half head of virtual patients as a case, with a plan that moves its jaw.
+fn half_head_case(spec: Value) -> PredictInput {
+    let document = json!({
+        "case": {
+            "schema": 1, "units": "mm", "frame": "LPS", "volume": "head", "skin": {"node_set": "skin"},
+            "regions": {"array": "layer", "names": {"0": "other", "1": "muscle"}},
+            "segments": [
+                {"name": "maxilla", "nodes": {"node_set": "maxilla"}},
+                {"name": "mandible", "nodes": {"node_set": "mandible"}}],
+            "fixed": [{"node_set": "skull"}, {"node_set": "rim"}],
+            "materials": {"*": {"young_modulus_kpa": 50, "poisson_ratio": 0.455},
+                          "muscle": {"young_modulus_kpa": 300, "poisson_ratio": 0.44}},
+        },
+        "plan": {"segments": [{"name": "mandible", "translation_mm": [0, -3.5, 0.4]}]},
+        "spec": spec, "job": null, "queue_s": null,
+    });
+    serde_json::from_value(document).unwrap()
+}
+
+#[test]
+fn a_model_of_virtual_patients_corrects_the_kind_of_prediction_that_it_was_learned_from() {
+    let made = json!({"virtual": {"patients": 4, "seed": 1, "fineness": 1}});
+    let spec = serde_json::from_value(made).unwrap();
+    let input = LearnInput { job: None, queue_s: None, spec, cohort: None, cases: Vec::new() };
+    let mut head = half_head(1).mesh;
+    for label in head.cell_labels.get_mut("layer").unwrap() {
+        *label = i64::from(LAYERS[*label as usize] == "muscle");
+    }
+    let meshes = BTreeMap::from([("head".to_owned(), volume(head))]);
+    let mut sources = Sources { meshes, model: Vec::new() };
+    let (_, out) = done(JobInput::Learn(input), &sources).unwrap();
+    sources.model = std::fs::read(out.path().join("model.json")).unwrap();
+    let asked = |more: Value| {
+        let mut spec = json!({"method": "fem_linear", "correction": {"model": "any"}});
+        spec.as_object_mut().unwrap().extend(more.as_object().unwrap().clone());
+        done(JobInput::Predict(half_head_case(spec)), &sources)
+    };
+    let (output, _out) = asked(json!({})).unwrap();
+    assert!(output.result.correction.is_some(), "{:?}", output.result.warnings);
+    let codes: Vec<&str> = output.result.warnings.iter().map(|own| own.code.as_str()).collect();
+    assert!(!codes.contains(&"learned-otherwise"), "{codes:?}");
+    for other in
+        [json!({"contact": "unilateral"}), json!({"element": "plain"}), json!({"corrected": true})]
+    {
+        let fault = first_fault(asked(other.clone()).map(|_| ()));
+        let expected = ("/spec/correction/model".to_owned(), "method-mismatch".to_owned());
+        assert_eq!(fault, expected, "{other}");
+    }
+    let soft = json!({"materials": {"muscle": {"young_modulus_kpa": 90}}});
+    let (output, _out) = asked(soft).unwrap();
+    assert!(output.result.warnings.iter().any(|own| own.code == "learned-otherwise"));
 }

@@ -1,6 +1,7 @@
 //! Virtual cohorts: operated faces that the program makes itself, with a truth that is richer than the models.
 
 mod face;
+mod generic;
 mod noise;
 mod operation;
 mod patient;
@@ -8,7 +9,9 @@ mod report;
 mod tissue;
 mod twins;
 
+pub use generic::PARTS;
 pub use noise::USUAL_MAPPING;
-pub use patient::{Making, VirtualError, VirtualPatient};
+pub use patient::{DrawnPatient, FaceKind, Making, Redrawn, VirtualError, VirtualPatient};
 pub use report::{VirtualCohort, virtual_cohort};
-pub use twins::{PARTS, Twin, VARIANTS, Variant, twins};
+pub use tissue::supposed;
+pub use twins::{Twin, VARIANTS, Variant, twins};

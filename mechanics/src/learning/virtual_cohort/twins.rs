@@ -12,7 +12,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use rayon::prelude::*;
 
-use super::face::FaceModes;
+use super::generic::{VESTIBULES, face_case, shaped};
 use super::noise::{Scanned, USUAL_MAPPING};
 use super::operation::{OPERATIONS, Operation};
 use super::patient::VirtualError;
@@ -20,20 +20,10 @@ use crate::boundary::NodeSelection;
 use crate::draws::Draws;
 use crate::material::mixture::MixingRule;
 use crate::material::{Fibre, FibreLaw, LinearElastic, MaterialError};
-use crate::mesh::generic_face::{FaceMuscle, FaceSettings, LAYERS, Lips, generic_face};
-use crate::mesh::{CellShape, Frame, Vector, VolumeMesh};
-use crate::prediction::{
-    Case, CaseSegment, Growth, Method, Muscle, MuscleCourse, MuscleMixing, Plan, RegionNames,
-    Scene, Settings, Sliding, SlidingNormal, equilibrium,
-};
+use crate::mesh::generic_face::FaceMuscle;
+use crate::mesh::{Vector, VolumeMesh};
+use crate::prediction::{Case, Growth, Method, MuscleMixing, Plan, Scene, Settings, equilibrium};
 use crate::progress::{Inner, Progress};
-
-/// Mucosa on teeth and gums, and the segment that carries these.
-const VESTIBULES: [(&str, &str); 2] =
-    [("upper_vestibule", "maxilla"), ("lower_vestibule", "mandible")];
-
-/// Parts of the skin of a twin.
-pub const PARTS: [&str; 4] = ["nose", "lips", "chin", "cheeks"];
 
 /// A way to model a twin.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -134,15 +124,10 @@ struct OperatedFace {
 
 impl OperatedFace {
     fn new(number: usize, fineness: usize, draws: &mut Draws) -> Self {
-        let settings = FaceSettings { lips: Lips::Closed, fineness, shape: CellShape::Hex8 };
-        let mut face = generic_face(settings);
-        let shape = FaceModes::drawn(draws);
-        let lines = face.muscles.iter_mut().flat_map(|muscle| &mut muscle.lines).flatten();
-        let points = face.mesh.nodes.iter_mut().chain(lines);
-        points.for_each(|point| *point = shape.at(point));
+        let (mesh, muscles) = shaped(fineness, draws);
         let operation = OPERATIONS[number % OPERATIONS.len()];
-        let plan = operation.plan(&face.mesh, draws);
-        OperatedFace { mesh: Arc::new(face.mesh), muscles: face.muscles, operation, plan }
+        let plan = operation.plan(&mesh, draws);
+        OperatedFace { mesh: Arc::new(mesh), muscles, operation, plan }
     }
 
     /// The displacement of every node in mm.
@@ -185,40 +170,22 @@ impl OperatedFace {
     }
 
     fn case(&self, tissue: Tissue, sliding: bool) -> Case {
-        let set = |name: &str| NodeSelection::NodeSet(name.to_owned());
-        let names = (0..).zip(LAYERS).map(|(label, layer)| (label, layer.to_owned())).collect();
-        let glued = |(vestibule, name): (&str, &str)| CaseSegment {
-            name: name.to_owned(),
-            nodes: match sliding {
-                true => set(name),
-                false => NodeSelection::Any(vec![set(name), set(vestibule)]),
-            },
-        };
-        let slides = |(vestibule, name): (&str, &str)| Sliding {
-            nodes: set(vestibule),
-            normal: SlidingNormal::Surface,
-            segment: Some(name.to_owned()),
-        };
-        let muscles = self.muscles.iter().map(|own| Muscle {
-            name: own.name.clone(),
-            course: MuscleCourse::Lines { lines: own.lines.clone(), within: own.within },
-            tissue: tissue.muscle,
-            stiffening: None,
-        });
-        let walls = if sliding { &VESTIBULES[..] } else { &[] };
+        let mut case = face_case(self.mesh.clone(), &self.muscles);
+        if !sliding {
+            case.sliding.clear();
+            for (segment, (vestibule, name)) in case.segments.iter_mut().zip(VESTIBULES) {
+                let set = |name: &str| NodeSelection::NodeSet(name.to_owned());
+                segment.nodes = NodeSelection::Any(vec![set(name), set(vestibule)]);
+            }
+        }
+        match tissue.muscle {
+            Some(_) => case.muscles.iter_mut().for_each(|muscle| muscle.tissue = tissue.muscle),
+            None => case.muscles.clear(),
+        }
         Case {
-            frame: Frame::Lps,
-            regions: Some(RegionNames { array: "layer".to_owned(), names }),
-            skin: Some(set("skin")),
-            skin_regions: PARTS.map(|name| (name.to_owned(), set(name))).into(),
-            segments: VESTIBULES.map(glued).to_vec(),
-            fixed: vec![set("skull"), set("rim")],
-            sliding: walls.iter().copied().map(slides).collect(),
-            muscles: muscles.filter(|_| tissue.muscle.is_some()).collect(),
             muscle_mixing: MuscleMixing { rule: tissue.rule, ..MuscleMixing::default() },
             materials: BTreeMap::from([("*".to_owned(), tissue.rest)]),
-            volume: self.mesh.clone(),
-            ..Case::default()
+            ..case
         }
     }
 }
