@@ -170,7 +170,7 @@ export const de: Words = {
   leftOver: "Was übrig bleibt", repair: "Reparatur der Zellen", inverted: "umgestülpt", undecided: "unentschieden", points: "Punkte", bone: "Knochen", byLandmarksAlone: "Nur durch Landmarken: keine Fläche war gegeben.",
   withPartner: (share) => `${share} % der Haut der Vorlage liegt der des Patienten gegenüber; der Rest folgt.`,
   nodesMoved: (count, mean, most) => `${count} Knoten bewegt, um ${mean} mm im Mittel und höchstens ${most} mm.`, unproven: (count) => `${count} Zellen sind nicht als gültig bewiesen.`,
-  lines: "Linien", onTemplate: "auf der Vorlage", onPatient: "auf dem Patienten", widening: "so breit", otherMap: "andere Abbildung", conformedHint: "Der Rand des Netzes, wie es auf dem Patienten liegt.",
+  lines: "Linien", onTemplate: "auf der Vorlage", onPatient: "auf dem Patienten", widening: "so breit", mlOnTemplate: "ml auf der Vorlage", mlOnPatient: "ml auf dem Patienten", otherMap: "andere Abbildung", conformedHint: "Der Rand des Netzes, wie es auf dem Patienten liegt.",
 
   paint: "Eine Menge malen", paintHint: "Den Kopf drehen, bis die Stelle zu sehen ist, dann darauf malen: Flächen unter dem Pinsel werden eine Menge von Knoten. Hat der Kopf den Fokus, malt Enter in der Mitte der Ansicht.",
   brush: "Zeiger", painting: "Malen", rubbing: "Radieren", brushMm: "Pinsel, Radius", paintMiddle: "In der Mitte der Ansicht malen", clearPaint: "Leeren", setName: "Name der Menge", roleOf: "Was sie ist", addPainted: "Menge in den Fall aufnehmen",

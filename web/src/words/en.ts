@@ -168,7 +168,7 @@ export const en = {
   leftOver: "What is left", repair: "Repair of cells", inverted: "inverted", undecided: "undecided", points: "points", bone: "Bone", byLandmarksAlone: "By landmarks alone: no surface was given.",
   withPartner: (share: string) => `${share} % of the template's skin lies opposite the patient's; the rest follows.`,
   nodesMoved: (count: string, mean: string, most: string) => `${count} nodes moved, by ${mean} mm in the mean and ${most} mm at most.`, unproven: (count: number) => `${count} cells are not proven valid.`,
-  lines: "lines", onTemplate: "on the template", onPatient: "on the patient", widening: "as wide", otherMap: "other map", conformedHint: "The boundary of the mesh as it lies on the patient.",
+  lines: "lines", onTemplate: "on the template", onPatient: "on the patient", widening: "as wide", mlOnTemplate: "ml on the template", mlOnPatient: "ml on the patient", otherMap: "other map", conformedHint: "The boundary of the mesh as it lies on the patient.",
 
   paint: "Paint a set", paintHint: "Turn the head until the place is seen, then paint on it: faces under the brush become a set of nodes. With the head in focus, Enter paints in the middle of the view.",
   brush: "Pointer", painting: "Paint", rubbing: "Rub out", brushMm: "Brush, radius", paintMiddle: "Paint the middle of the view", clearPaint: "Clear", setName: "Name of the set", roleOf: "What it is", addPainted: "Add the set to the case",

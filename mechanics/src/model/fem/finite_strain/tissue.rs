@@ -247,3 +247,7 @@ impl Elements {
     /// Ten-node tetrahedra.
     pub const QUADRATIC: Elements = Elements { quadratic: true, ..Self::PLAIN };
 }
+
+#[cfg(test)]
+#[path = "at_rest_tests.rs"]
+mod at_rest_tests;
