@@ -177,6 +177,16 @@ class Cases:
 
     def __init__(self, service: Service) -> None:
         self.service = service
+        # Of the case that was read last.
+        self.units: dict[str, str] = {}
+
+    def truth(self, truth: object, folder: pathlib.Path) -> None:
+        """Puts ids in place of files of the scan that a study is compared with."""
+        for document, key in mesh_places(truth, set()):
+            path = folder / document[key]
+            if path.is_file():
+                with of_file(path):
+                    document[key] = self.mesh(path, self.units)
 
     def scene(self, scene: dict, folder: pathlib.Path, has_plans: bool) -> dict:
         """The scene of a study with the id of its case in place of the file's path, and the plan of the file unless the study
@@ -192,6 +202,7 @@ class Cases:
                  if isinstance(bone, dict)}
         units = {name: as_type(str, case.get(name, usual), f"{path}: /case/{name}")
                  for name, usual in (("units", "mm"), ("frame", "unspecified"))}
+        self.units = units
         for document, key in [*mesh_places(case, bones), *mesh_places(plan, bones)]:
             mesh = path.parent / document[key]
             with of_file(mesh):
@@ -305,6 +316,7 @@ def run(arguments: argparse.Namespace) -> int:
     study["scenes"] = [
         cases.scene(scene, path.parent, has_plans) if isinstance(scene, dict) else scene
         for scene in as_type(list, study.get("scenes", []), f"{path}: /scenes")]
+    cases.truth(study.get("truth"), path.parent)
     # Before the study is posted: it must not become its own baseline.
     baseline = baseline_of(service, arguments)
     own = as_type(list, study.get("tags", []), f"{path}: /tags")
@@ -341,7 +353,9 @@ def run(arguments: argparse.Namespace) -> int:
         say(line)
     for reason in verdict["reasons"]:
         say(reason.replace(f"job {NO_JOB} is no study that has ended well", no_study(arguments)))
-    say(f"{verdict['rows']} rows, {verdict['worse']} worse; outcome {verdict['outcome']}")
+    worst = max((row["p95_mm"] for row in found["rows"] if isinstance(row.get("p95_mm"), (int, float))), default=None)
+    largest = "" if worst is None else f", largest p95 {worst:.4g} mm"
+    say(f"{verdict['rows']} rows, {verdict['worse']} worse{largest}; outcome {verdict['outcome']}")
     if verdict["outcome"] == "pass":
         put_on(service, job, later)
         if baseline and baseline > job["id"] and arguments.baseline_tag in later:

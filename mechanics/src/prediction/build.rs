@@ -7,6 +7,7 @@ use super::far_segment::far_segments;
 use super::fibres::Tissues;
 use super::hounsfield::TissueOfCells;
 use super::muscle_field::{MuscleField, MuscleTissue};
+use super::pressure_kind::pressure_kinds;
 use super::problem::SceneErrors;
 use super::scene::Scene;
 use super::skin_check::suspect_skin;
@@ -60,6 +61,7 @@ impl Scene {
         let of_cells = (&regions[..], &region_of_cell[..]);
         let InCells { tissue, fibres, muscles, muscle_tissue } =
             check.in_cells(of_cells, settings, plan);
+        let pressure_of_cell = pressure_kinds(&tissue.pressure_of_cell, &region_of_cell, &muscles);
         let element = check.element(settings);
 
         // 2. What every node is held to.
@@ -86,7 +88,7 @@ impl Scene {
             region_of_cell,
             materials: tissue.materials,
             material_of_cell: tissue.material_of_cell,
-            pressure_of_cell: tissue.pressure_of_cell,
+            pressure_of_cell,
             imaged: tissue.imaged,
             fibres,
             membrane,

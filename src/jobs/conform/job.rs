@@ -47,6 +47,7 @@ pub fn conform_job(
 
     // 2. The template onto the patient, its cells repaired.
     let mut found = prepared.conformed(&input.spec, &clock)?;
+    let is_whole = found.after.inverted == 0;
     clock.check()?;
 
     // 3. Its muscles and fibres, and the case.
@@ -71,6 +72,7 @@ pub fn conform_job(
     }
     let told = prepared.meshes.iter().flat_map(|(_, mesh)| &mesh.warnings);
     let warnings = found.after.warnings().into_iter().chain(brought.refused.clone());
+    let warnings = warnings.chain(found.poor_fit());
     let warnings: Vec<Warning> = warnings.collect();
     let warnings = warning_documents(told.chain(&warnings));
     let mut provenance = origin.provenance(&clock);
@@ -82,8 +84,9 @@ pub fn conform_job(
     let shape = StoredShape::Volume(Arc::new(found.mesh));
     let what = MadeName::Volume;
     let volume = MadeMesh { what, name: None, shape, frame: prepared.frame, told: warnings };
+    // A mesh with inverted cells is refused as an upload; it is a file of the result.
     let muscles = surfaces.into_iter().map(|own| own.made(prepared.frame));
-    let meshes = std::iter::once(volume).chain(muscles).collect();
+    let meshes = std::iter::once(volume).chain(muscles).filter(|_| is_whole).collect();
     Ok(JobOutput { result, files: folder.files, meshes })
 }
 
@@ -217,6 +220,50 @@ impl Conformed {
             case: brought.case,
             check: brought.check,
         }
+    }
+}
+
+/// Beyond these distances in mm a template does not lie on the skin or the bone that it was fitted to: on the CT of a head the 95 % and the
+/// largest distance from its skin are .4 and 3 mm. Sets of nodes on bone seldom cover what a surface of bone has.
+const SKIN_P95_MM: f64 = 2.0;
+const SKIN_LARGEST_MM: f64 = 10.0;
+const BONE_P95_MM: f64 = 10.0;
+
+impl Conformed {
+    /// The warning of a template part of which lies far from the surface that it was fitted to, because the surface lacks that part or
+    /// lies elsewhere.
+    fn poor_fit(&self) -> Option<Warning> {
+        let skin = LeftDocument::of(&self.skin_distances);
+        let bone = LeftDocument::of(&self.bone_distances);
+        let skin = skin.filter(|left| left.p95_mm > SKIN_P95_MM || left.max_mm > SKIN_LARGEST_MM);
+        let bone = bone.filter(|left| left.p95_mm > BONE_P95_MM);
+        let words = |name: &str, left: &LeftDocument| {
+            let LeftDocument { p95_mm, max_mm, .. } = left;
+            format!(
+                "the template lies {p95_mm:.1} mm (95 %) and {max_mm:.1} mm (largest) from the {name}"
+            )
+        };
+        let told: Vec<String> = skin
+            .iter()
+            .map(|left| words("skin", left))
+            .chain(bone.iter().map(|left| words("bone", left)))
+            .collect();
+        let detail = format!(
+            "{}: the surface lacks what the template has there, or lies in another frame; nodes there follow nothing, and a prediction on \
+             them means little",
+            told.join(", and ")
+        );
+        let mut warning = Warning::new("template-apart", detail);
+        for (name, left) in [("skin_p95_mm", &skin), ("bone_p95_mm", &bone)] {
+            if let Some(left) = left {
+                warning = warning.with(name, left.p95_mm);
+            }
+        }
+        let [partners, points] = self.conformation.partners;
+        if points > 0 {
+            warning = warning.with("share_with_partner", partners as f64 / points as f64);
+        }
+        (!told.is_empty()).then_some(warning)
     }
 }
 

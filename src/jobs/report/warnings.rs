@@ -6,7 +6,7 @@ use crate::schema::WarningDocument;
 
 /// Codes that precede all others, in this order: those of doubtful input or measurements, those of a result that
 /// has larger errors than reported elsewhere, and those of an impossible one.
-const GRAVE: [&str; 43] = [
+const GRAVE: [&str; 44] = [
     "nothing-moves",
     "nothing-performed",
     "units-suspect",
@@ -21,6 +21,7 @@ const GRAVE: [&str; 43] = [
     "unregistered-suspect",
     "skin-unlike-learned",
     "segment-misfit",
+    "template-apart",
     "surfaces-apart",
     "surfaces-opposed",
     "cells-inverted",
