@@ -143,6 +143,9 @@ impl Faces {
         let seconds = start.elapsed().as_secs_f64();
         let mut mesh = carried(&self.template, &found.deformation);
         println!("{name}: {} in {seconds:.1} s", self.told(&mesh));
+        let mut affinely = self.template.clone();
+        affinely.nodes.iter_mut().for_each(|x| *x = found.deformation.affine.apply(x));
+        println!("    its affine map alone: {}", self.told(&affinely));
         let bounds = Bounds::of(&mesh, 1.0, 3.0).along(&mesh, &[&self.skin, &self.bone]);
         let start = Instant::now();
         let report = repair(&mut mesh, &bounds, &Unobserved);

@@ -186,6 +186,18 @@ def refused(what: str, folder: pathlib.Path, arguments: list[str], code: int, li
     return done.stderr, time.monotonic() - begun
 
 
+def skin_scan(folder: pathlib.Path, case: str) -> str:
+    """The file of the skin that the service predicts for a case, as a scan after the operation."""
+    service = facies_gate.Service(os.environ["FACIES_ADDRESS"], os.environ["FACIES_API_KEY"], 60)
+    scene = facies_gate.Cases(service).scene({"case": case}, folder, False)
+    asked = {"kind": "predict", "case": scene["case"], "plan": scene["plans"][0], "method": "fem_linear"}
+    job = service.document("POST", "/v1/jobs", asked)
+    facies_gate.finished(service, job, 60)
+    skin, _ = service.ask("GET", f"/v1/jobs/{job['id']}/results/skin.vtp")
+    (folder / "scan.vtp").write_bytes(skin)
+    return "scan.vtp"
+
+
 def main() -> None:
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
@@ -231,6 +243,10 @@ def main() -> None:
         case = str((STUDY.parent / "../../../examples/block/case.json").resolve())
         planned = changed(folder, "planned", scenes=[{"case": case}], plans=of_study)
         expect("plans of the study over that of a case file", action(folder, study=planned)[0], 0)
+        scan = skin_scan(folder, case)
+        scanned = changed(folder, "scanned", scenes=[{"case": case}], truth={"mesh": scan}, plans=[], levels=[0], elements=["stabilised"],
+                          thresholds={"p95_mm": 100.0})
+        expect("a scan beside the study for its truth", action(folder, study=scanned)[0], 0)
         wrong = changed(folder, "wrong", methods=["guesswork"])
         expect("a study that is refused", action(folder, study=wrong)[0], 2)
         expect("a wrong key", action(folder, study=str(STUDY), key="none-of-the-keys")[0], 2)

@@ -179,6 +179,16 @@ class Cases:
 
     def __init__(self, service: Service) -> None:
         self.service = service
+        # Of the case that was read last.
+        self.units: dict[str, str] = {}
+
+    def truth(self, truth: object, folder: pathlib.Path) -> None:
+        """Puts ids in place of files of the scan that a study is compared with."""
+        for document, key in mesh_places(truth, set()):
+            path = folder / document[key]
+            if path.is_file():
+                with of_file(path):
+                    document[key] = self.mesh(path, self.units)
 
     def scenes(self, scenes: list, folder: pathlib.Path, has_plans: bool) -> list:
         """The scenes of a study, those that are files as cases of the service. What is refused of all of them is told together."""
@@ -208,6 +218,7 @@ class Cases:
                  if isinstance(bone, dict)}
         units = {name: as_type(str, case.get(name, usual), f"{path}: /case/{name}")
                  for name, usual in (("units", "mm"), ("frame", "unspecified"))}
+        self.units = units
         for document, key in [*mesh_places(case, bones), *mesh_places(plan, bones)]:
             mesh = path.parent / document[key]
             with of_file(mesh):
@@ -319,6 +330,7 @@ def run(arguments: argparse.Namespace) -> int:
     # Plans in full are for cases, names for scenes of the program.
     has_plans = any(isinstance(plan, dict) for plan in as_type(list, study.get("plans", []), f"{path}: /plans"))
     study["scenes"] = cases.scenes(as_type(list, study.get("scenes", []), f"{path}: /scenes"), path.parent, has_plans)
+    cases.truth(study.get("truth"), path.parent)
     # Before the study is posted: it must not become its own baseline.
     baseline = baseline_of(service, arguments)
     own = as_type(list, study.get("tags", []), f"{path}: /tags")
@@ -355,7 +367,9 @@ def run(arguments: argparse.Namespace) -> int:
         say(line)
     for reason in verdict["reasons"]:
         say(reason.replace(f"job {NO_JOB} is no study that has ended well", no_study(arguments)))
-    say(f"{verdict['rows']} rows, {verdict['worse']} worse; outcome {verdict['outcome']}")
+    worst = max((row["p95_mm"] for row in found["rows"] if isinstance(row.get("p95_mm"), (int, float))), default=None)
+    largest = "" if worst is None else f", largest p95 {worst:.4g} mm"
+    say(f"{verdict['rows']} rows, {verdict['worse']} worse{largest}; outcome {verdict['outcome']}")
     if verdict["outcome"] == "pass":
         put_on(service, job, later)
         if baseline and baseline > job["id"] and arguments.baseline_tag in later:

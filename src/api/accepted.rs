@@ -123,7 +123,8 @@ pub fn refusal(error: JobError) -> ApiError {
     match error {
         JobError::Refused(problem) => problem.into(),
         JobError::Source(source @ SourceError::Unreadable { may_pass: false, .. }) => {
-            ApiError::internal(source)
+            tracing::error!(error = %source, "a stored mesh cannot be read");
+            ApiError::new(ErrorCode::Integrity, source.to_string())
         }
         JobError::Source(SourceError::Unreadable { may_pass: true, .. }) => ApiError::unavailable(),
         other => {

@@ -94,6 +94,10 @@ fn print_muscles(muscles: &[MappedMuscleDocument]) {
         all(|muscle| muscle.length_mm),
         all(|muscle| muscle.template_length_mm)
     );
+    let bodies = muscles.iter().filter_map(|own| own.template_volume_ml.zip(own.volume_ml));
+    if let Some((before, after)) = bodies.reduce(|a, b| (a.0 + b.0, a.1 + b.1)) {
+        println!("           their surfaces enclose {after:.2} ml, {before:.2} on the template");
+    }
     let beside = muscles.iter().filter_map(|own| Some((&own.name, own.beside_other_map?)));
     if let Some((name, most)) = beside.max_by(|a, b| a.1.mean_deg.total_cmp(&b.1.mean_deg)) {
         println!(

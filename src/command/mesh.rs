@@ -88,7 +88,7 @@ pub struct ScanArguments {
     /// times, for bones that are segments already
     #[arg(long, value_name = "FILE|NAME=FILE", conflicts_with_all = ["scan", "labels"], group = "meshed", help_heading = SCAN)]
     bone: Vec<String>,
-    /// A meshing document, as it is posted but for `scan`, `labels.image`, `surfaces` and `osteotomy`
+    /// A meshing document, as it is posted but for `scan`, `surfaces` and `osteotomy`; --labels replaces `labels.image`, which may be any text
     #[arg(long, value_name = "FILE", requires = "meshed", help_heading = SCAN)]
     mesh_spec: Option<PathBuf>,
     /// About how many tetrahedra; default 300000

@@ -82,7 +82,7 @@ impl Progress for TerminalProgress {
     }
 
     fn step(&self, done: usize, of: usize) {
-        self.tell(format!("part {} of {of} (rows and truths)", (done + 1).min(of)), false);
+        self.tell(format!("part {} of {of}", (done + 1).min(of)), false);
     }
 
     fn is_cancelled(&self) -> bool {

@@ -165,6 +165,12 @@ pub async fn open(config: &Config) -> Result<Store, ServeError> {
     metrics::start()?;
     traces::start(config.traces.as_deref())?;
     let store = Store::connect(&config.places).await?.with_key_limit(config.most_keys);
+    match store.check_blobs().await {
+        // What does not answer yet keeps the service unready, not from starting.
+        Err(error) if error.is_setting() => return Err(error.into()),
+        Err(error) => tracing::warn!(%error, "the blobs do not answer"),
+        Ok(()) => {}
+    }
     start_garbage_collection(&store).await?;
     start_audit_chaining(&store);
     start_wiping(&store);

@@ -79,8 +79,11 @@ impl Blobs {
 
     /// Stores bytes durably, at a place that never holds other bytes.
     pub async fn put(&self, place: &str, bytes: Bytes) -> Result<(), StoreError> {
-        self.objects.put(&place.into(), PutPayload::from(bytes)).await?;
-        Ok(())
+        match self.objects.put(&place.into(), PutPayload::from(bytes)).await {
+            Ok(_) => Ok(()),
+            Err(error) if tells_of_no_bucket(&error) => Err(StoreError::NoBucket),
+            Err(error) => Err(error.into()),
+        }
     }
 
     /// A blob that is there.
@@ -130,8 +133,26 @@ impl Blobs {
         Ok(found.iter().map(|object| object.location.to_string()).collect())
     }
 
-    /// Whether the store answers.
+    /// Whether the store answers, and its bucket exists: of one that does not a request for an object has the reason in its
+    /// answer, one for its head alone has not.
     pub async fn ping(&self) -> Result<(), StoreError> {
-        self.exists("ready").await.map(|_| ())
+        match self.objects.get(&"ready".into()).await {
+            Ok(_) => Ok(()),
+            Err(error) if tells_of_no_bucket(&error) => Err(StoreError::NoBucket),
+            Err(object_store::Error::NotFound { .. }) => Ok(()),
+            Err(error) => Err(error.into()),
+        }
     }
+}
+
+/// Whether an error is that of a bucket that does not exist, which has the same status as that of an object.
+fn tells_of_no_bucket(error: &object_store::Error) -> bool {
+    let mut cause: Option<&(dyn std::error::Error + 'static)> = Some(error);
+    while let Some(error) = cause {
+        if error.to_string().contains("NoSuchBucket") {
+            return true;
+        }
+        cause = error.source();
+    }
+    false
 }

@@ -15,6 +15,12 @@ pub enum StoreError {
     CannotConnect { server: String, source: sqlx::Error },
     #[error("blobs: {0}")]
     Blobs(#[from] object_store::Error),
+    #[error("the bucket of the setting `blobs` does not exist: create it, or name another one")]
+    NoBucket,
+    #[error(
+        "none of the {meshes} newest meshes of the database is in these blobs: all hosts of a database keep theirs in one place.          The setting `blobs` (FACIES_BLOBS) has to name the folder, or the bucket and prefix, of the other hosts; without it blobs are          in the data folder of each"
+    )]
+    OtherBlobs { meshes: usize },
     #[error("file system: {0}")]
     Files(#[from] std::io::Error),
     #[error(
@@ -102,7 +108,7 @@ impl StoreError {
             }
             // A server that does not answer, a disk that errs, no descriptor left.
             StoreError::Blobs(object_store::Error::Generic { .. }) => !self.is_full(),
-            StoreError::Contended | StoreError::Busy { .. } => true,
+            StoreError::Contended | StoreError::Busy { .. } | StoreError::NoBucket => true,
             StoreError::OfMany(error) => error.is_unavailable(),
             _ => false,
         }
@@ -113,6 +119,8 @@ impl StoreError {
         match self {
             StoreError::InUse { .. }
             | StoreError::ServedAlready { .. }
+            | StoreError::NoBucket
+            | StoreError::OtherBlobs { .. }
             | StoreError::CannotOpen { .. }
             | StoreError::Files(_)
             | StoreError::SchemaTooNew { .. }

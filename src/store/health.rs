@@ -10,6 +10,10 @@ const CLOCK: &str = "SELECT now_ms FROM clock";
 const WRITE: &str = "INSERT INTO unfinished_blobs (id, place, begun) VALUES ($1, '', 0)";
 const TAKE_BACK: &str = "DELETE FROM unfinished_blobs WHERE id = $1";
 
+/// The places of the meshes that were stored last.
+const NEWEST: &str = "SELECT blobs.place FROM meshes JOIN blobs ON blobs.sha256 = meshes.blob \
+     ORDER BY meshes.id DESC LIMIT 5";
+
 /// More frequent requests get the last result.
 const WRITTEN_EVERY: Duration = Duration::from_secs(1);
 
@@ -31,9 +35,28 @@ impl Store {
         Ok(())
     }
 
-    /// Whether the blobs can be reached and the data folder takes a file.
-    pub async fn try_write(&self) -> Result<(), StoreError> {
+    /// Whether the blobs can be reached and, where other hosts share the database, are those that it names: what is kept elsewhere is lost
+    /// to the others.
+    pub async fn check_blobs(&self) -> Result<(), StoreError> {
         self.blobs.ping().await?;
+        if !self.shared {
+            return Ok(());
+        }
+        let rows = query(NEWEST).fetch_all(self.database.reader()).await?;
+        for row in &rows {
+            if self.blobs.exists(&row.try_get::<String, _>(0)?).await? {
+                return Ok(());
+            }
+        }
+        match rows.len() {
+            0 => Ok(()),
+            meshes => Err(StoreError::OtherBlobs { meshes }),
+        }
+    }
+
+    /// Whether blobs are in order and the data folder takes a file.
+    pub async fn try_write(&self) -> Result<(), StoreError> {
+        self.check_blobs().await?;
         let place = self.folder.join("tmp").join(uuid::Uuid::now_v7().to_string());
         tokio::fs::write(&place, b"facies").await?;
         tokio::fs::remove_file(&place).await?;

@@ -15,6 +15,7 @@ use serde_json::Value as Json;
 use super::database::{Executor, Row, Transaction, Value, newest_step, query, query_of};
 use super::references::{Content, hold};
 use super::{Store, StoreError};
+use crate::schema::wire::canonical::sha256_hex;
 
 /// Every table with rows of a deployment, each behind those that it refers to.
 const TABLES: [&str; 23] = [
@@ -74,6 +75,17 @@ enum Kind {
     Real,
 }
 
+/// The bytes of an exported blob, whose file has their hash for its name.
+fn read_exported(folder: &Path, sha256: &str) -> Result<Vec<u8>, StoreError> {
+    let file = folder.join("blobs").join(sha256);
+    let bytes = std::fs::read(&file).map_err(at(&file, "the manifest of the export names it"))?;
+    let found = sha256_hex(&bytes);
+    if found == *sha256 {
+        return Ok(bytes);
+    }
+    Err(StoreError::Export(format!("{} is damaged: its hash is {found}", file.display())))
+}
+
 impl Store {
     /// Writes everything into a new folder, as it is at this moment.
     pub async fn export(&self, folder: &Path) -> Result<TransferCounts, StoreError> {
@@ -116,10 +128,13 @@ impl Store {
             return Err(StoreError::Export(detail));
         }
         self.refuse_unless_empty().await?;
+        // All of them before anything is stored.
+        for sha256 in &manifest.blobs {
+            read_exported(folder, sha256)?;
+        }
         let mut stored = Vec::with_capacity(manifest.blobs.len());
         for sha256 in &manifest.blobs {
-            let bytes = std::fs::read(folder.join("blobs").join(sha256))?.into();
-            let content: Content = (sha256.clone(), bytes);
+            let content: Content = (sha256.clone(), read_exported(folder, sha256)?.into());
             stored.extend(self.put(&[content]).await?);
         }
         let mut transaction = self.database.begin().await?;

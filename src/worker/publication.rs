@@ -50,10 +50,20 @@ impl Publication {
         let mut meshes = Vec::with_capacity(self.meshes.len());
         let mut kept = Vec::with_capacity(self.meshes.len());
         for MeshOutput { what, name, mesh } in &self.meshes {
-            let known = store.mesh_by_content(&mesh.sha256, &mesh.options).await?;
-            let made = MadeMesh { mesh: mesh.clone(), known };
-            kept.push(KeptMeshDocument::new(*what, name.clone(), made.id()));
-            meshes.push(made);
+            let is_same = |made: &&MadeMesh| {
+                made.mesh.sha256 == mesh.sha256 && made.mesh.options == mesh.options
+            };
+            let id = match meshes.iter().find(is_same) {
+                Some(twin) => twin.id().to_owned(),
+                None => {
+                    let known = store.mesh_by_content(&mesh.sha256, &mesh.options).await?;
+                    let made = MadeMesh { mesh: mesh.clone(), known };
+                    let id = made.id().to_owned();
+                    meshes.push(made);
+                    id
+                }
+            };
+            kept.push(KeptMeshDocument::new(*what, name.clone(), &id));
         }
         let manifest = self.manifest(&kept)?;
         let files = self.files_with(&manifest);
@@ -109,13 +119,15 @@ fn name_meshes(case: &mut Value, kept: &[KeptMeshDocument]) {
     if let Some(volume) = kept.iter().find(|mesh| mesh.what == MadeName::Volume) {
         case["volume"] = json!(volume.mesh);
     }
-    let bones = case.get_mut("bones").and_then(Value::as_array_mut);
-    for bone in bones.into_iter().flatten() {
-        let is_it = |mesh: &&KeptMeshDocument| {
-            mesh.what == MadeName::Bone && mesh.name.as_deref() == bone["name"].as_str()
-        };
-        if let Some(surface) = kept.iter().find(is_it) {
-            bone["mesh"] = json!(surface.mesh);
+    let surfaces = [("bones", "mesh", MadeName::Bone), ("muscles", "surface", MadeName::Muscle)];
+    for (list, member, what) in surfaces {
+        for named in case.get_mut(list).and_then(Value::as_array_mut).into_iter().flatten() {
+            let is_it = |mesh: &&KeptMeshDocument| {
+                mesh.what == what && mesh.name.as_deref() == named["name"].as_str()
+            };
+            if let Some(surface) = kept.iter().find(is_it) {
+                named[member] = json!(surface.mesh);
+            }
         }
     }
 }

@@ -1,13 +1,14 @@
-//! Fibres of a template on a patient: the axes of cells, and muscles as polylines.
+//! Fibres of a template on a patient: the axes of cells, and muscles as polylines or closed surfaces.
 //!
 //! A fibre is a line of the tissue: its points go where the map f takes them, and its direction a becomes F a with F = ∂f/∂x.
 
 use rayon::prelude::*;
 
 use super::warp::Warp;
-use crate::mesh::{Vector, VolumeMesh};
+use crate::mesh::{TriangleSurface, Vector, VolumeMesh};
 
-/// Pieces of a line that are longer are divided before they are mapped, so that they bend with the tissue; in mm.
+/// Pieces of a line and sides of triangles that are longer are divided before they are mapped, so that they bend with
+/// the tissue; in mm.
 const LONGEST_PIECE: f64 = 3.0;
 
 /// The lines of a muscle where a map takes them.
@@ -51,6 +52,20 @@ pub fn mapped_lines(map: &dyn Warp, lines: &[Vec<Vector>], most_points: usize) -
     }
     let lengths = [length(&divided), length(&lines)];
     MappedLines { lines, lengths, widening: if weight > 0.0 { sum / weight } else { 1.0 } }
+}
+
+/// The surface of a muscle where a map takes it. Triangles are cut into four until no side is longer than 3 mm, or until there
+/// would be more than 100 000 of them.
+pub fn mapped_surface(map: &dyn Warp, surface: &TriangleSurface) -> TriangleSurface {
+    let mut divided = surface.clone();
+    while longest_side(&divided) > LONGEST_PIECE && divided.triangles.len() * 4 <= MOST_TRIANGLES {
+        divided = divided.with_sides_halved();
+    }
+    TriangleSurface {
+        points: divided.points.par_iter().map(|x| map.apply(x)).collect(),
+        triangles: divided.triangles,
+        ..TriangleSurface::default()
+    }
 }
 
 /// How far two maps take the lines of a muscle from each other; nothing where no line has a length.
@@ -124,6 +139,17 @@ fn divided(line: &[Vector], most_points: usize) -> Vec<Vector> {
     divided.extend(line.last());
     divided
 }
+
+fn longest_side(surface: &TriangleSurface) -> f64 {
+    let of = |triangle: usize| {
+        let [a, b, c] = surface.corners(triangle);
+        (b - a).norm().max((c - b).norm()).max((a - c).norm())
+    };
+    (0..surface.triangles.len()).map(of).fold(0.0, f64::max)
+}
+
+/// A surface of more triangles is not divided further.
+const MOST_TRIANGLES: usize = 100_000;
 
 /// A line of more points is mapped as it is.
 const MOST_POINTS: usize = 100_000;

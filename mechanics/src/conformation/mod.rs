@@ -23,6 +23,7 @@ pub use deformation::Deformation;
 pub use error::{ConformationError, SheetName};
 pub use fibres::{
     FibreDifference, MappedLines, angle_between, cell_axes, fibre_difference, mapped_lines,
+    mapped_surface,
 };
 pub use landmark::Landmark;
 pub use start::Start;

@@ -11,6 +11,12 @@ use crate::image::smoothing::gaussian;
 /// More voxels are taken together: a head is 16 million of 1 mm³, and a boundary lies within a fraction of a voxel.
 const MOST_VOXELS: usize = 1 << 24;
 
+/// Values farther below the threshold of skin, and above that of bone, than so many times what lies between the two are limited:
+/// padding around the field of view and broken voxels would reach far into tissue by smoothing and by the ringing of splines. In
+/// Hounsfield units with the usual thresholds that is below -1125 and above 5750.
+const BELOW: f64 = 1.5;
+const ABOVE: f64 = 10.0;
+
 /// An image smoothed, and what each of its voxels belongs to.
 pub(super) struct Smoothed {
     pub image: ImageVolume,
@@ -24,15 +30,18 @@ pub(super) fn divided(
     options: &ImageOptions,
 ) -> Result<Smoothed, ImageDomainError> {
     check(options)?;
-    let image = reduced(image, MOST_VOXELS)?;
+    let (skin, bone) = (options.skin_threshold, options.bone_threshold);
+    let range = [skin - BELOW * (bone - skin), bone + ABOVE * (bone - skin)];
+    let (image, _) = image.limited(range);
+    let image = reduced(&image, MOST_VOXELS)?;
     let (size, spacing) = (image.size(), image.spacing());
     let mut values = values(&image);
     gaussian(&mut values, size, spacing.map(|spacing| options.smoothing / spacing));
     let division = Division {
         size,
         spacing,
-        skin: options.skin_threshold,
-        bone: options.bone_threshold,
+        skin,
+        bone,
         airway_opening: options.airway_opening,
         bone_gap: options.bone_gap,
     };

@@ -7,7 +7,7 @@ use super::volume::{ImageVolume, Voxels};
 
 /// Width of a bin, in Hounsfield units.
 const BIN: f64 = 10.0;
-const LOWEST: f64 = -1100.0;
+pub(super) const LOWEST: f64 = -1100.0;
 const BINS: usize = 420;
 
 /// Where the modes of air, fat and soft tissue are looked for.
@@ -19,7 +19,8 @@ const BONE_END: f64 = 700.0;
 /// Noise and vessels reach so far above the mode of soft tissue.
 const ABOVE_SOFT: f64 = 150.0;
 
-/// How often values of an image lie in each bin of 10 HU from -1100 HU; values beyond are counted in the bins at the ends.
+/// How often values of an image lie in each bin of 10 HU from -1100 HU; values above the last bin are counted in it, those below the first are padding
+/// and not counted.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Histogram {
     counts: Vec<u64>,
@@ -42,8 +43,10 @@ impl Histogram {
     pub fn of(image: &ImageVolume) -> Histogram {
         let mut counts = vec![0; BINS];
         let mut count = |value: f64| {
-            let bin = ((value - LOWEST) / BIN).floor().clamp(0.0, (BINS - 1) as f64);
-            counts[bin as usize] += 1;
+            if value >= LOWEST {
+                let bin = ((value - LOWEST) / BIN).floor().min((BINS - 1) as f64);
+                counts[bin as usize] += 1;
+            }
         };
         match image.voxels() {
             Voxels::I16(values) => values.iter().for_each(|&value| count(f64::from(value))),

@@ -217,6 +217,33 @@ impl ImageVolume {
             .fold((corner(0), corner(0)), |(low, high), x| (low.inf(&x), high.sup(&x)))
     }
 
+    /// The same image with its values limited to a range, and how many were below and above it.
+    pub fn limited(&self, [low, high]: [f64; 2]) -> (ImageVolume, [usize; 2]) {
+        let beyond = |values: &mut dyn Iterator<Item = f64>| {
+            values.fold([0; 2], |[below, above]: [usize; 2], value| {
+                [below + usize::from(value < low), above + usize::from(value > high)]
+            })
+        };
+        let counts = match &*self.voxels {
+            Voxels::I16(values) => beyond(&mut values.iter().map(|&value| f64::from(value))),
+            Voxels::F32(values) => beyond(&mut values.iter().map(|&value| f64::from(value))),
+        };
+        if counts == [0; 2] {
+            return (self.clone(), counts);
+        }
+        let voxels = match &*self.voxels {
+            Voxels::I16(values) => {
+                let limit = |&value: &i16| f64::from(value).clamp(low, high).round() as i16;
+                Voxels::I16(values.iter().map(limit).collect())
+            }
+            Voxels::F32(values) => {
+                let limit = |&value: &f32| f64::from(value).clamp(low, high) as f32;
+                Voxels::F32(values.iter().map(limit).collect())
+            }
+        };
+        (ImageVolume { voxels: Arc::new(voxels), ..self.clone() }, counts)
+    }
+
     /// The centre of a voxel.
     pub fn centre(&self, index: [usize; 3]) -> Vector {
         let steps = self.placement.steps.iter().zip(index);

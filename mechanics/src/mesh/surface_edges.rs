@@ -40,6 +40,29 @@ impl TriangleSurface {
         sides
     }
 
+    /// The same surface with every triangle cut into four at the middles of its sides; a closed one stays closed.
+    #[must_use]
+    pub fn with_sides_halved(&self) -> TriangleSurface {
+        let sides = self.sorted_sides();
+        let halved: Vec<[u32; 2]> = edges(&sides).map(|edge| edge[0].points).collect();
+        let first = self.points.len() as u32;
+        let middle = |a: u32, b: u32| {
+            let place = halved.binary_search(&[a.min(b), a.max(b)]).unwrap_or_default();
+            first + place as u32
+        };
+        let centre =
+            |[a, b]: &[u32; 2]| (self.points[*a as usize] + self.points[*b as usize]) * 0.5;
+        let cut = |&[a, b, c]: &[u32; 3]| {
+            let [ab, bc, ca] = [middle(a, b), middle(b, c), middle(c, a)];
+            [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]
+        };
+        TriangleSurface {
+            points: self.points.iter().copied().chain(halved.iter().map(centre)).collect(),
+            triangles: self.triangles.iter().flat_map(cut).collect(),
+            ..TriangleSurface::default()
+        }
+    }
+
     /// The volume enclosed in mm³, negative where the triangles face inwards. Measured from the
     /// first point, so that a far origin costs no digits.
     pub fn signed_volume(&self) -> f64 {

@@ -7,6 +7,7 @@ use super::far_segment::far_segments;
 use super::fibres::Tissues;
 use super::hounsfield::TissueOfCells;
 use super::muscle_field::{MuscleField, MuscleTissue};
+use super::pressure_kind::pressure_kinds;
 use super::problem::SceneErrors;
 use super::scene::Scene;
 use super::skin_check::suspect_skin;
@@ -44,6 +45,8 @@ impl Check<'_> {
         let (of_cells, made) = ((regions, region_of_cell), (&mut tissue, &mut fibres));
         let (muscles, muscle_tissue) =
             self.muscles_of_cells(of_cells, made, (&settings.method, plan));
+        tissue.pressure_of_cell =
+            pressure_kinds(&tissue.pressure_of_cell, region_of_cell, &muscles);
         InCells { tissue, fibres, muscles, muscle_tissue }
     }
 }

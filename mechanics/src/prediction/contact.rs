@@ -218,7 +218,7 @@ impl Touch {
             );
             warnings.push(Warning::new("contact-chatter", detail).with("points", *kept as f64));
         }
-        if let Some(Deepest { depth, at }) = &self.overlap {
+        if let Some(Deepest { depth, at, .. }) = &self.overlap {
             let detail = format!(
                 "contact leaves parts of the boundary in each other, {depth:.2} mm deep: it holds nodes of tissue against triangles, not edges against edges, and what lies between the nodes is free: an edge, a narrow part, or a rounding that cells of tissue span as chords"
             );

@@ -30,6 +30,7 @@ mod nonlinearity;
 mod numerical_error;
 mod numerics_revision;
 mod off_wall;
+mod pressure_kind;
 mod problem;
 mod reaction;
 mod refined_scene;

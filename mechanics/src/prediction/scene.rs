@@ -59,7 +59,7 @@ pub struct Scene {
     pub region_of_cell: Vec<u16>,
     /// For each region, then what an image and muscles add.
     pub materials: Vec<LinearElastic>,
-    /// For each cell its entry in `materials`, and the one whose pressure it takes part in.
+    /// For each cell its entry in `materials`, and its kind of tissue, within which pressures are shared (`pressure_kind`).
     pub material_of_cell: Vec<u16>,
     pub pressure_of_cell: Vec<u16>,
     /// What an image shows of each cell, where materials are taken from one.

@@ -30,6 +30,8 @@ pub struct Deepest {
     /// In mm.
     pub depth: f64,
     pub at: Vector,
+    /// Of all that lies behind what is not its own, on both sides, in mm²: a third of each triangle for each of its corners there.
+    pub area: f64,
 }
 
 /// The deepest point of a surface that passes through itself. Its points have to be finite.
@@ -44,9 +46,9 @@ pub(super) fn added_overlap(skin: &Skin, moved: &TriangleSurface) -> Option<Deep
         let passes = |pair: &TrianglePair| pass(surface, pair, TOUCHING_MM);
         deepest(surface, &self_crossings(surface, passes).pairs)
     };
-    let Deepest { depth, at } = depth_of(moved)?;
+    let found = depth_of(moved)?;
     let at_rest = depth_of(&skin.surface).map_or(0.0, |own| own.depth);
-    Some(Deepest { depth: depth - at_rest, at })
+    Some(Deepest { depth: found.depth - at_rest, ..found })
 }
 
 /// A warning that counts the triangles of a moved skin that cross and did not cross at rest. The points of the moved
@@ -62,7 +64,9 @@ pub fn skin_overlap(skin: &Skin, moved: &TriangleSurface) -> Option<Warning> {
     let deepest = deepest(moved, &self_crossings(moved, |pair| passes(moved, pair)).pairs);
     let (few, depth) = (
         if found.untried > 0 { "at least " } else { "" },
-        deepest.as_ref().map_or_else(String::new, |at| format!(", {:.1} mm deep", at.depth)),
+        deepest.as_ref().map_or_else(String::new, |own| {
+            format!(", {:.1} mm deep, on {:.0} mm2 of both sides", own.depth, own.area)
+        }),
     );
     let place = place(skin, &found.pairs);
     let detail = format!(
@@ -78,9 +82,12 @@ pub fn skin_overlap(skin: &Skin, moved: &TriangleSurface) -> Option<Warning> {
     };
     Some(match deepest {
         None => warning,
-        Some(Deepest { depth, at }) => {
-            warning.with("depth_mm", depth).with("x_mm", at.x).with("y_mm", at.y).with("z_mm", at.z)
-        }
+        Some(Deepest { depth, at, area }) => warning
+            .with("depth_mm", depth)
+            .with("area_mm2", area)
+            .with("x_mm", at.x)
+            .with("y_mm", at.y)
+            .with("z_mm", at.z),
     })
 }
 
@@ -109,6 +116,12 @@ fn deepest(surface: &TriangleSurface, pairs: &[TrianglePair]) -> Option<Deepest>
     };
     let near: Vec<bool> = (0_u32..).zip(&surface.triangles).map(|one| is_near(&one)).collect();
     let search = SurfaceSearch::new(surface).ok()?;
+    let share_inside = |triangle: usize| {
+        let corners = surface.triangles[triangle].iter();
+        corners.filter(|&&corner| part_of[corner as usize].is_some()).count() as f64 / 3.0
+    };
+    let triangles = 0..surface.triangles.len();
+    let area = triangles.map(|one| share_inside(one) * surface.area_vector(one).norm()).sum();
     let depth = |&point: &u32| {
         let own = part_of[point as usize];
         let is_other = |triangle: usize| {
@@ -118,7 +131,7 @@ fn deepest(surface: &TriangleSurface, pairs: &[TrianglePair]) -> Option<Deepest>
         let at = surface.points[point as usize];
         let closest = search.closest_where(&at, is_other)?;
         let depth = -search.signed_distance(&at, &closest);
-        (depth > 0.0).then_some(Deepest { depth, at })
+        (depth > 0.0).then_some(Deepest { depth, at, area })
     };
     let step = inside.len().div_ceil(MEASURED_POINTS).max(1);
     let measured = inside.iter().step_by(step).filter_map(depth);

@@ -2,7 +2,7 @@
 //!
 //! With weights w_i and W = Σ w_i:  mean = Σ w_i x_i / W,  rms² = Σ w_i x_i² / W,  sd² = rms² - mean²
 //! (not the estimate of a larger population). Percentile p is the smallest value whose cumulative
-//! weight reaches p W; nothing is interpolated. The median is percentile 50.
+//! weight reaches p W; nothing is interpolated, but over subjects. The median is percentile 50.
 
 /// A cumulative weight this share below its target has reached it: sums of many weights are rounded.
 const ROUNDING: f64 = 1e-12;
@@ -43,6 +43,21 @@ impl Statistics {
     /// Of values that all count the same.
     pub fn plain(values: &[f64]) -> Result<Self, StatisticsError> {
         Self::weighted(values, &vec![1.0; values.len()])
+    }
+
+    /// Of values of a few subjects that all count the same. Percentiles are interpolated between neighbours, so that the median
+    /// of an even number is half-way between both middle values (Hyndman, Fan 1996, definition 7).
+    pub fn of_subjects(values: &[f64]) -> Result<Self, StatisticsError> {
+        let plain = Self::plain(values)?;
+        let mut sorted = values.to_vec();
+        sorted.sort_unstable_by(f64::total_cmp);
+        let at = |share: f64| {
+            let place = share * (sorted.len() - 1) as f64;
+            let (below, above) = (sorted[place.floor() as usize], sorted[place.ceil() as usize]);
+            below + (above - below) * place.fract()
+        };
+        let [p25, median, p75, p90, p95, p99] = [0.25, 0.5, 0.75, 0.9, 0.95, 0.99].map(at);
+        Ok(Statistics { p25, median, p75, p90, p95, p99, ..plain })
     }
 
     /// Of values with their weights, such as areas.

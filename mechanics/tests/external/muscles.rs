@@ -4,8 +4,9 @@ use std::collections::BTreeMap;
 
 use mechanics::boundary::NodeSelection;
 use mechanics::mesh::Vector;
+use mechanics::plan::{PlannedSegment, RigidMovement};
 use mechanics::prediction::{
-    Activation, Case, CaseSegment, Muscle, MuscleCourse, Plan, Scene, Settings, predict,
+    Activation, Case, CaseSegment, Method, Muscle, MuscleCourse, Plan, Scene, Settings, predict,
 };
 use mechanics::progress::Unobserved;
 use mechanics::response::{Amounts, ColumnRequest, ResponseOrder, build_of, inner_loads};
@@ -17,6 +18,8 @@ use crate::support::external::{Missing, shared_data, trials};
 trials! {
     muscles_of_the_subject_move_its_mouth_as_their_names_say
     muscles_of_the_template_move_its_mouth_as_their_names_say
+    a_smile_and_a_closed_mouth_of_the_subject_before_and_after_its_jaw_is_brought_forward
+    a_smile_and_a_closed_mouth_of_the_template_before_and_after_its_jaw_is_brought_forward
 }
 
 /// Polylines by muscle and side, each fibre one line.
@@ -89,6 +92,53 @@ impl Face {
         predict(&scene, &Unobserved).unwrap().displacement
     }
 
+    /// The places of the mouth in mm at finite strain with a movement of the jaw and both sides of a muscle pulling.
+    fn mouth_with(&self, forward: f64, pull: Option<(&str, f64)>) -> [Vector; 3] {
+        let both = pull.into_iter().flat_map(|(muscle, stress)| {
+            ["left", "right"].map(|side| Activation { muscle: format!("{muscle}_{side}"), stress })
+        });
+        let translation = self.left.cross(&Vector::z()) * forward;
+        let movement = RigidMovement::about_pivot(Vector::zeros(), Vector::zeros(), translation);
+        let plan = Plan {
+            segments: vec![PlannedSegment { name: "jaw".to_owned(), movement }],
+            activations: both.collect(),
+            ..Plan::default()
+        };
+        let settings =
+            Settings { method: Method::FemNonlinear, estimate: false, ..Settings::default() };
+        let scene = Scene::new(&self.case, &plan, &settings).unwrap();
+        let u = predict(&scene, &Unobserved).unwrap().displacement;
+        self.mouth().map(|node| self.case.volume.nodes[node as usize] + u[node as usize])
+    }
+
+    /// A smile of 50 kPa and lips closed with 20 kPa, before the jaw is brought 8 mm forward and after it: the corner of the
+    /// mouth by its smile, and the gap between the middles of the lips, at finite strain.
+    fn smiles_before_and_after(&self) {
+        let up = Vector::z();
+        let gap = |[_, upper, lower]: [Vector; 3]| (upper - lower).dot(&up);
+        let mut moved = Vec::new();
+        for forward in [0.0, 8.0] {
+            let still = self.mouth_with(forward, None);
+            let smile = self.mouth_with(forward, Some(("ZYG", 50.0)))[0] - still[0];
+            let closed = self.mouth_with(forward, Some(("OOM", 20.0)));
+            let (outward, upward) = (smile.dot(&self.left), smile.dot(&up));
+            let angle = upward.atan2(outward).to_degrees();
+            println!(
+                "jaw {forward} mm forward: smile {:.2} mm, {outward:.2} out, {upward:.2} up, {angle:.0} degrees above the \
+                 horizontal; lips {:.2} mm apart, {:.2} with the orbicularis",
+                smile.norm(),
+                gap(still),
+                gap(closed)
+            );
+            assert!(outward > 0.0 && upward > 0.0, "{forward}: {smile}");
+            assert!(gap(closed) < gap(still), "{forward}: {} {}", gap(closed), gap(still));
+            moved.push(smile);
+        }
+        // The plan turns and stiffens what the muscle pulls: small strain says that nothing changes.
+        let change = (moved[1] - moved[0]).norm();
+        assert!(change > 1e-3 && change < 0.5 * moved[0].norm(), "{change} mm");
+    }
+
     fn moves_as_named(&self) {
         let [corner, upper, lower] = self.mouth().map(|node| node as usize);
         let up = Vector::z();
@@ -144,5 +194,17 @@ fn muscles_of_the_subject_move_its_mouth_as_their_names_say() -> Result<(), Miss
 
 fn muscles_of_the_template_move_its_mouth_as_their_names_say() -> Result<(), Missing> {
     face("template", "mandible_fixed", "skull_nose_fixed", -Vector::x())?.moves_as_named();
+    Ok(())
+}
+
+fn a_smile_and_a_closed_mouth_of_the_subject_before_and_after_its_jaw_is_brought_forward()
+-> Result<(), Missing> {
+    face("subject", "jaw_attached", "skull_fixed_orig", -Vector::y())?.smiles_before_and_after();
+    Ok(())
+}
+
+fn a_smile_and_a_closed_mouth_of_the_template_before_and_after_its_jaw_is_brought_forward()
+-> Result<(), Missing> {
+    face("template", "mandible_fixed", "skull_nose_fixed", -Vector::x())?.smiles_before_and_after();
     Ok(())
 }

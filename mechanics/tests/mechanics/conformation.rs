@@ -1,11 +1,13 @@
 //! Conformation of a template to a patient of which every node is known.
 
+use std::sync::atomic::{AtomicUsize, Ordering};
+
 use mechanics::conformation::{
     ConformationError, Landmark, Patient, Start, Template, carried, conform,
 };
 use mechanics::mesh::sample::{ThickSphere, thick_sphere_octant};
 use mechanics::mesh::{CellShape, SurfaceSearch, TriangleSurface, Vector, VolumeMesh};
-use mechanics::progress::Unobserved;
+use mechanics::progress::{Phase, Progress, Unobserved};
 use nalgebra::Rotation3;
 
 fn template() -> VolumeMesh {
@@ -40,6 +42,39 @@ fn landmarks(mesh: &VolumeMesh, step: usize) -> Vec<Landmark> {
         Landmark { name: format!("node {node}"), template: place, patient: warp(&place) }
     };
     nodes.map(pair).collect()
+}
+
+/// Somebody who asks the work to stop after so many rounds of the free-form deformation.
+struct StopsAfterRounds(usize, AtomicUsize);
+
+impl Progress for StopsAfterRounds {
+    fn phase(&self, _phase: Phase) {}
+
+    fn iteration(&self, _iteration: usize, _relative_residual: f64, _wanted: f64) {}
+
+    fn step(&self, done: usize, _of: usize) {
+        self.1.store(done, Ordering::Relaxed);
+    }
+
+    fn is_cancelled(&self) -> bool {
+        self.1.load(Ordering::Relaxed) >= self.0
+    }
+}
+
+#[test]
+fn a_conformation_that_is_cancelled_ends_after_the_round_it_is_in() {
+    let twin = Twin::new();
+    for rounds in [0, 3] {
+        let progress = StopsAfterRounds(rounds, AtomicUsize::new(0));
+        let skin = surface(&twin.patient, "outer");
+        let patient = Patient { skin: Some(&skin), bone: None, landmarks: &[] };
+        let ended = conform(&twin.sheets(), &patient, Start::Auto, &progress);
+        let Err(error) = ended else { panic!("it was not cancelled") };
+        assert!(
+            matches!(error, ConformationError::Cancelled { rounds: own } if own == rounds),
+            "{error}"
+        );
+    }
 }
 
 struct Twin {
@@ -97,6 +132,59 @@ fn surfaces_alone_meet_the_skin_from_axes_of_inertia() {
     let squares: f64 = found.skin_distances.iter().map(|d| d * d).sum();
     let rms = (squares / found.skin_distances.len() as f64).sqrt();
     assert!(rms < 0.55, "rms {rms} mm");
+}
+
+/// Root of the mean square of distances in mm.
+fn rms(distances: &[f64]) -> f64 {
+    (distances.iter().map(|d| d * d).sum::<f64>() / distances.len() as f64).sqrt()
+}
+
+#[test]
+fn boxes_start_what_lies_as_the_patient_does_wherever_it_lies() {
+    let twin = Twin::new();
+    // Larger and elsewhere, but not turned: the wave alone is left to fit.
+    let mut skin = surface(&twin.template, "outer");
+    let place = |x: &Vector| {
+        let wave = Vector::new((x.y / 30.0).sin(), (x.z / 30.0).sin(), (x.x / 30.0).cos());
+        x * 1.3 + wave * 2.0 + Vector::new(-700.0, 90.0, 12.0)
+    };
+    skin.points.iter_mut().for_each(|x| *x = place(x));
+    let patient = Patient { skin: Some(&skin), bone: None, landmarks: &[] };
+    let found = conform(&twin.sheets(), &patient, Start::Boxes, &Unobserved).unwrap();
+    assert!(rms(&found.skin_distances) < 0.3, "{} mm", rms(&found.skin_distances));
+    // Nodes are where they belong along the skin too, since nothing was turned.
+    let moved = carried(&twin.template, &found.deformation);
+    let off = |node: u32| {
+        (moved.nodes[node as usize] - place(&twin.template.nodes[node as usize])).norm()
+    };
+    let off: Vec<f64> = twin.template.node_sets["outer"].iter().map(|&node| off(node)).collect();
+    assert!(rms(&off) < 2.5, "{} mm", rms(&off));
+}
+
+#[test]
+fn what_lies_off_the_skin_of_a_scan_pulls_nothing() {
+    let twin = Twin::new();
+    let landmarks = landmarks(&twin.template, 11);
+    let skin = surface(&twin.patient, "outer");
+    // A dressing 15 mm off a part of the skin, in the scan as a sheet of its own.
+    let mut dressed = skin.clone();
+    let middle = skin.points.iter().sum::<Vector>() / skin.points.len() as f64;
+    let near = |corner: &u32| (skin.points[*corner as usize] - skin.points[40]).norm() < 20.0;
+    let covered = skin.triangles.iter().filter(|corners| corners.iter().all(near));
+    let first = skin.points.len() as u32;
+    dressed.triangles.extend(covered.map(|corners| corners.map(|corner| corner + first)));
+    dressed.points.extend(skin.points.iter().map(|x| x + (x - middle).normalize() * 15.0));
+    assert!(dressed.triangles.len() > skin.triangles.len() + 8);
+    let fitted = |skin: &TriangleSurface| {
+        let patient = Patient { skin: Some(skin), bone: None, landmarks: &landmarks };
+        let found = conform(&twin.sheets(), &patient, Start::Auto, &Unobserved).unwrap();
+        carried(&twin.template, &found.deformation).nodes
+    };
+    let (plain, beside) = (fitted(&skin), fitted(&dressed));
+    let outer = &twin.template.node_sets["outer"];
+    let apart = outer.iter().map(|&node| (plain[node as usize] - beside[node as usize]).norm());
+    let farthest = apart.fold(0.0, f64::max);
+    assert!(farthest < 1.0, "{farthest} mm");
 }
 
 #[test]

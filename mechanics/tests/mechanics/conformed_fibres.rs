@@ -2,10 +2,12 @@
 
 use mechanics::conformation::{
     Landmark, Patient, Start, Template, Warp, angle_between, carried, cell_axes, conform,
-    fibre_difference, mapped_lines, spline_of,
+    fibre_difference, mapped_lines, mapped_surface, spline_of,
 };
 use mechanics::mesh::generic_face::{FaceMuscle, FaceSettings, GenericFace, Lips, generic_face};
+use mechanics::mesh::surface_edges::count_edges;
 use mechanics::mesh::{CellShape, TriangleSurface, Vector, VolumeMesh};
+use mechanics::muscle::strap::box_surface;
 use mechanics::progress::Unobserved;
 use mechanics::registration::ThinPlateSpline;
 use nalgebra::{Matrix3, Rotation3};
@@ -105,6 +107,49 @@ fn muscles_of_the_generic_face_lie_on_its_twin_as_the_known_map_has_them() {
     let [by_landmarks, _, farther] = told("landmarks", &spline, &face.muscles);
     assert!(by_landmarks < 5.0 && farther < 3.0, "{by_landmarks} degrees, {farther} mm");
     assert!(mean < by_landmarks && apart < farther);
+}
+
+/// A box of 40 by 6 by 4 mm along a line from the cheek to the mouth.
+fn cheek_box() -> TriangleSurface {
+    let half_axes =
+        [Vector::new(-8.0, -14.0, -12.0), Vector::new(2.6, -1.5, 0.0), Vector::new(0.8, 1.4, -2.2)];
+    box_surface(Vector::new(30.0, -62.0, -8.0), half_axes)
+}
+
+#[test]
+fn a_box_of_a_muscle_becomes_a_closed_surface_that_bends_with_the_tissue() {
+    let own = cheek_box();
+    let known = mapped_surface(&Twin, &own);
+    assert!(known.triangles.len() > 12 * 64, "{} triangles", known.triangles.len());
+    let counts = count_edges(&known.sorted_sides());
+    assert_eq!((counts.open, counts.nonmanifold, counts.inconsistent), (0, 0, 0));
+    // The volume is the integral of det F over the box: points of Gauss's rule of two points on 8 x 8 x 8 parts.
+    let [a, b, c] =
+        [Vector::new(-8.0, -14.0, -12.0), Vector::new(2.6, -1.5, 0.0), Vector::new(0.8, 1.4, -2.2)];
+    let at = |i: usize| {
+        (i / 2) as f64 / 4.0 - 0.875
+            + if i.is_multiple_of(2) { -1.0 } else { 1.0 } / (8.0 * 3.0_f64.sqrt())
+    };
+    let mut integral = 0.0;
+    for (i, j, k) in
+        (0..16).flat_map(|i| (0..16).flat_map(move |j| (0..16).map(move |k| (i, j, k))))
+    {
+        let x = Vector::new(30.0, -62.0, -8.0) + a * at(i) + b * at(j) + c * at(k);
+        integral += Twin.gradient(&x).determinant() / 4096.0;
+    }
+    let exact = own.signed_volume() * integral;
+    let off = known.signed_volume() / exact - 1.0;
+    assert!(off.abs() < 2e-3, "{} mm³, {exact} by the integral", known.signed_volume());
+    // Eight corners alone bend nothing.
+    let corners =
+        TriangleSurface { points: own.points.iter().map(|x| Twin.apply(x)).collect(), ..own };
+    assert!((corners.signed_volume() / exact - 1.0).abs() > 5.0 * off.abs());
+
+    let face = face();
+    let found = mapped_surface(&of_face(&face).deformation, &cheek_box());
+    let apart = found.points.iter().zip(&known.points).map(|(one, other)| (one - other).norm());
+    let farthest = apart.fold(0.0, f64::max);
+    assert!(farthest < 2.0, "{farthest} mm");
 }
 
 #[test]

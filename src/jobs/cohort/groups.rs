@@ -19,7 +19,7 @@ pub(super) fn group(
     rows: Vec<CohortRowDocument>,
 ) -> Result<CohortGroupDocument, JobError> {
     let values: Vec<f64> = rows.iter().map(|row| spec.statistic.of(&row.distances)).collect();
-    let over_subjects = match Statistics::plain(&values) {
+    let over_subjects = match Statistics::of_subjects(&values) {
         Err(StatisticsError::Empty) => StatDocument::default(),
         found => StatDocument::from(&found?),
     };

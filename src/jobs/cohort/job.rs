@@ -132,7 +132,7 @@ pub fn tested_pair(
     Ok(CohortPairDocument {
         first: first.to_owned(),
         second: second.to_owned(),
-        median_difference_mm: Statistics::plain(&differences)?.median,
+        median_difference_mm: Statistics::of_subjects(&differences)?.median,
         differing: test.map_or(0, |test| test.differing as u64),
         w_first_larger: test.map_or(0.0, |test| test.positive),
         w_second_larger: test.map_or(0.0, |test| test.negative),

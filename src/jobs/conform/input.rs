@@ -8,6 +8,7 @@ use crate::jobs::failure::JobError;
 use crate::jobs::fetch::{fetch, no_surface};
 use crate::jobs::predict::PredictInput;
 use crate::jobs::source::{MeshSource, StoredMesh, StoredShape};
+use crate::schema::case::muscle::Surfaces;
 use crate::schema::conform::document::{ConformDocument, MuscleMapName};
 use crate::schema::{
     ErrorCode, Faults, Limits, PlanDocument, Pointer, PredictDocument, Problem, hashes,
@@ -35,6 +36,8 @@ pub struct PreparedConformation {
     pub skin: Option<Arc<TriangleSurface>>,
     pub bone: Option<Arc<TriangleSurface>>,
     pub landmarks: Vec<Landmark>,
+    /// Those of muscles, by id, on the template.
+    pub muscle_surfaces: Surfaces,
     /// That of the patient.
     pub frame: Frame,
     pub spec_hash: String,
@@ -67,6 +70,7 @@ impl ConformInput {
         let skin = surface("skin", &self.spec.patient.skin)?;
         let bone = surface("bone", &self.spec.patient.bone)?;
         let frame = one_frame(&meshes[1..], &at)?;
+        let muscle_surfaces = self.muscle_surfaces(sources, &mut meshes)?;
         let (skin_nodes, bone_nodes) = self.nodes(&template)?;
         self.check_template(&meshes[0].1, sources, limits)?;
         let landmarks = self.spec.landmarks.iter().map(|(name, pair)| Landmark {
@@ -91,9 +95,29 @@ impl ConformInput {
             skin,
             bone,
             landmarks,
+            muscle_surfaces,
             frame,
             spec_hash,
         })
+    }
+
+    /// The surfaces of the template's muscles, each added to the meshes in the order in which the document names it.
+    fn muscle_surfaces(
+        &self,
+        sources: &dyn MeshSource,
+        meshes: &mut Vec<(&'static str, StoredMesh)>,
+    ) -> Result<Surfaces, JobError> {
+        let mut surfaces = Surfaces::new();
+        let at = Pointer::root().key("spec").key("template").key("muscles");
+        for (index, muscle) in self.spec.template.muscles.iter().enumerate() {
+            let Some(id) = &muscle.surface else { continue };
+            let at = at.index(index).key("surface");
+            let mesh = fetch(sources, id, &at)?;
+            let surface = mesh.surface_in_mm().ok_or_else(|| no_surface(&at))?;
+            surfaces.insert(id.clone(), surface);
+            meshes.push(("muscle", mesh));
+        }
+        Ok(surfaces)
     }
 
     /// The nodes on the skin, and those on bone.

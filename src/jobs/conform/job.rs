@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::input::{ConformInput, PreparedConformation};
-use super::tissue::{TissueMaps, case_of};
+use super::tissue::{MappedMuscles, MuscleSurface, TissueMaps, case_of};
 use crate::jobs::clock::Observed;
 use crate::jobs::failure::JobError;
 use crate::jobs::output::{JobContext, JobOutput, MadeMesh};
@@ -13,9 +13,7 @@ use crate::jobs::result::provenance::{Origin, encode_result, mesh_summary};
 use crate::jobs::result::warnings::warning_documents;
 use crate::jobs::source::{StoredMesh, StoredShape};
 use crate::schema::conform::document::ConformDocument;
-use crate::schema::conform::result::{
-    CellsDocument, ConformationDocument, LeftDocument, MappedMuscleDocument,
-};
+use crate::schema::conform::result::{CellsDocument, ConformationDocument, LeftDocument};
 use crate::schema::predict::check::CheckDocument;
 use crate::schema::predict::document::OutputName;
 use crate::schema::predict::keep::MadeName;
@@ -25,8 +23,8 @@ use crate::schema::{CaseDocument, ErrorCode, Pointer, Problem};
 use mechanics::conformation::{
     Conformation, ConformationError, Patient, SheetName, Template, carried, conform,
 };
-use mechanics::format::VolumeOutput;
-use mechanics::format::vtk::vtu;
+use mechanics::format::vtk::{vtp, vtu};
+use mechanics::format::{SurfaceOutput, VolumeOutput};
 use mechanics::mesh::quality::{QualityReport, quality};
 use mechanics::mesh::{SurfaceSearch, TriangleSurface, VolumeMesh, Warning};
 use mechanics::progress::{Phase, Progress};
@@ -49,10 +47,12 @@ pub fn conform_job(
 
     // 2. The template onto the patient, its cells repaired.
     let mut found = prepared.conformed(&input.spec, &clock)?;
+    let is_whole = found.after.inverted == 0;
     clock.check()?;
 
     // 3. Its muscles and fibres, and the case.
-    let brought = prepared.brought(&mut found, &input.spec, place)?;
+    let mut brought = prepared.brought(&mut found, &input.spec, place)?;
+    let surfaces = std::mem::take(&mut brought.muscles.surfaces);
     clock.check()?;
 
     // 4. Files.
@@ -66,8 +66,13 @@ pub fn conform_job(
     let mut folder = ResultFolder::open(place.out)?;
     let volume = vtu::write(&VolumeOutput::plain(&found.mesh, prepared.frame))?;
     folder.add(OutputName::VolumeVtu, &volume)?;
+    for MuscleSurface { file, surface, .. } in &surfaces {
+        let bytes = vtp::write(&SurfaceOutput::plain(surface, prepared.frame))?;
+        folder.add_file(file, OutputName::BonesVtp.media_type(), &bytes)?;
+    }
     let told = prepared.meshes.iter().flat_map(|(_, mesh)| &mesh.warnings);
     let warnings = found.after.warnings().into_iter().chain(brought.refused.clone());
+    let warnings = warnings.chain(found.poor_fit());
     let warnings: Vec<Warning> = warnings.collect();
     let warnings = warning_documents(told.chain(&warnings));
     let mut provenance = origin.provenance(&clock);
@@ -79,7 +84,10 @@ pub fn conform_job(
     let shape = StoredShape::Volume(Arc::new(found.mesh));
     let what = MadeName::Volume;
     let volume = MadeMesh { what, name: None, shape, frame: prepared.frame, told: warnings };
-    Ok(JobOutput { result, files: folder.files, meshes: vec![volume] })
+    // A mesh with inverted cells is refused as an upload; it is a file of the result.
+    let muscles = surfaces.into_iter().map(|own| own.made(prepared.frame));
+    let meshes = std::iter::once(volume).chain(muscles).filter(|_| is_whole).collect();
+    Ok(JobOutput { result, files: folder.files, meshes })
 }
 
 /// A template on a patient.
@@ -128,7 +136,7 @@ impl PreparedConformation {
 /// The case of a template on a patient, and its check.
 struct ConformedCase {
     case: CaseDocument,
-    muscles: Vec<MappedMuscleDocument>,
+    muscles: MappedMuscles,
     check: Option<CheckDocument>,
     refused: Option<Warning>,
 }
@@ -146,8 +154,11 @@ impl PreparedConformation {
         let maps = TissueMaps::new(self, deformation, spec.muscles_by, place.limits);
         let muscles = maps.bring(&mut case, &mut found.mesh);
         let shape = StoredShape::Volume(Arc::new(found.mesh.clone()));
-        let made = [(volume.to_owned(), StoredMesh::made(shape, self.frame))];
-        let (check, refused) = match check_made(&case, made.into(), place) {
+        let volume = (volume.to_owned(), StoredMesh::made(shape, self.frame));
+        let surfaces =
+            muscles.surfaces.iter().map(|own| (own.file.clone(), own.stored(self.frame)));
+        let made = surfaces.chain([volume]).collect();
+        let (check, refused) = match check_made(&case, made, place) {
             Ok(_) if found.after.inverted > 0 => (None, Some(with_inverted_cells(&found.after))),
             Ok(check) => (check, None),
             Err(JobError::Refused(problem)) => (None, Some(refused_case(&problem))),
@@ -205,10 +216,54 @@ impl Conformed {
             before_repair: CellsDocument::from(&self.before),
             after_repair: CellsDocument::from(&self.after),
             repair: RepairResultDocument::from(&self.repaired),
-            muscles: brought.muscles,
+            muscles: brought.muscles.told,
             case: brought.case,
             check: brought.check,
         }
+    }
+}
+
+/// Beyond these distances in mm a template does not lie on the skin or the bone that it was fitted to: on the CT of a head the 95 % and the
+/// largest distance from its skin are .4 and 3 mm. Sets of nodes on bone seldom cover what a surface of bone has.
+const SKIN_P95_MM: f64 = 2.0;
+const SKIN_LARGEST_MM: f64 = 10.0;
+const BONE_P95_MM: f64 = 10.0;
+
+impl Conformed {
+    /// The warning of a template part of which lies far from the surface that it was fitted to, because the surface lacks that part or
+    /// lies elsewhere.
+    fn poor_fit(&self) -> Option<Warning> {
+        let skin = LeftDocument::of(&self.skin_distances);
+        let bone = LeftDocument::of(&self.bone_distances);
+        let skin = skin.filter(|left| left.p95_mm > SKIN_P95_MM || left.max_mm > SKIN_LARGEST_MM);
+        let bone = bone.filter(|left| left.p95_mm > BONE_P95_MM);
+        let words = |name: &str, left: &LeftDocument| {
+            let LeftDocument { p95_mm, max_mm, .. } = left;
+            format!(
+                "the template lies {p95_mm:.1} mm (95 %) and {max_mm:.1} mm (largest) from the {name}"
+            )
+        };
+        let told: Vec<String> = skin
+            .iter()
+            .map(|left| words("skin", left))
+            .chain(bone.iter().map(|left| words("bone", left)))
+            .collect();
+        let detail = format!(
+            "{}: the surface lacks what the template has there, or lies in another frame; nodes there follow nothing, and a prediction on \
+             them means little",
+            told.join(", and ")
+        );
+        let mut warning = Warning::new("template-apart", detail);
+        for (name, left) in [("skin_p95_mm", &skin), ("bone_p95_mm", &bone)] {
+            if let Some(left) = left {
+                warning = warning.with(name, left.p95_mm);
+            }
+        }
+        let [partners, points] = self.conformation.partners;
+        if points > 0 {
+            warning = warning.with("share_with_partner", partners as f64 / points as f64);
+        }
+        (!told.is_empty()).then_some(warning)
     }
 }
 

@@ -1,24 +1,60 @@
-//! Muscle lines and fibre directions of a template, mapped to the patient.
+//! Muscles and fibre directions of a template, mapped to the patient.
+
+use std::sync::Arc;
 
 use super::input::PreparedConformation;
+use crate::jobs::output::MadeMesh;
+use crate::jobs::source::{StoredMesh, StoredShape};
 use crate::schema::case::document::{FrameName, LengthUnit};
 use crate::schema::case::fibre::FibreDocument;
 use crate::schema::case::muscle::{MuscleDocument, REACH_MM, USUAL_REACH_MM};
 use crate::schema::conform::document::{ConformDocument, MuscleMapName};
 use crate::schema::conform::result::{MapDifferenceDocument, MappedMuscleDocument};
-use crate::schema::{CaseDocument, Limits, Triple};
+use crate::schema::predict::keep::MadeName;
+use crate::schema::{CaseDocument, Faults, Limits, Pointer, Triple};
 use mechanics::conformation::{
-    Deformation, Warp, cell_axes, fibre_difference, mapped_lines, spline_of,
+    Deformation, Warp, cell_axes, fibre_difference, mapped_lines, mapped_surface, spline_of,
 };
-use mechanics::mesh::{Vector, VolumeMesh};
+use mechanics::mesh::{Frame, TriangleSurface, Vector, VolumeMesh};
 use mechanics::registration::ThinPlateSpline;
 
 /// Positions of lines are rounded to this fraction of a mm.
 const PARTS_OF_MM: f64 = 1e6;
 
+/// The muscles of a template on a patient.
+#[derive(Default)]
+pub(super) struct MappedMuscles {
+    pub told: Vec<MappedMuscleDocument>,
+    pub surfaces: Vec<MuscleSurface>,
+}
+
+/// The surface of a muscle on a patient.
+pub(super) struct MuscleSurface {
+    pub name: String,
+    /// Of the result, and its name in the case until it is stored.
+    pub file: String,
+    pub surface: Arc<TriangleSurface>,
+}
+
+impl MuscleSurface {
+    pub fn stored(&self, frame: Frame) -> StoredMesh {
+        StoredMesh::made(StoredShape::Surface(self.surface.clone()), frame)
+    }
+
+    pub fn made(self, frame: Frame) -> MadeMesh {
+        MadeMesh {
+            what: MadeName::Muscle,
+            name: Some(self.name),
+            shape: StoredShape::Surface(self.surface),
+            frame,
+            told: Vec::new(),
+        }
+    }
+}
+
 /// The maps between a template and a patient.
 pub(super) struct TissueMaps<'a> {
-    template: &'a VolumeMesh,
+    prepared: &'a PreparedConformation,
     conformation: &'a Deformation,
     /// Through all landmarks, if they define one.
     spline: Option<ThinPlateSpline>,
@@ -35,7 +71,7 @@ impl<'a> TissueMaps<'a> {
         limits: &Limits,
     ) -> Self {
         TissueMaps {
-            template: &prepared.template,
+            prepared,
             conformation,
             spline: spline_of(&prepared.landmarks).ok(),
             by,
@@ -54,25 +90,49 @@ impl<'a> TissueMaps<'a> {
     }
 
     /// The muscles and materials of the template in a case of the patient; fibres that had one direction become arrays of
-    /// its mesh.
-    pub fn bring(
-        &self,
-        case: &mut CaseDocument,
-        mesh: &mut VolumeMesh,
-    ) -> Vec<MappedMuscleDocument> {
+    /// its mesh, boxes become surfaces.
+    pub fn bring(&self, case: &mut CaseDocument, mesh: &mut VolumeMesh) -> MappedMuscles {
         for (region, material) in case.materials.iter_mut().flatten() {
             if let Some(fibre) = &mut material.fibre {
                 let FibreDocument { direction, array, .. } = fibre;
                 self.bring_direction(direction, array, region, mesh);
             }
         }
-        let mut told = Vec::new();
+        let mut mapped = MappedMuscles::default();
         for muscle in &mut case.muscles {
             let MuscleDocument { direction, array, name, .. } = muscle;
             self.bring_direction(direction, array, name, mesh);
-            told.extend(self.bring_lines(muscle));
+            let mut told = self.bring_lines(muscle);
+            if let Some((surface, [before, after])) =
+                self.bring_surface(muscle, mapped.surfaces.len())
+            {
+                mapped.surfaces.push(surface);
+                let own = told.get_or_insert_with(|| MappedMuscleDocument::without_lines(muscle));
+                (own.template_volume_ml, own.volume_ml) = (Some(before), Some(after));
+            }
+            mapped.told.extend(told);
         }
-        told
+        mapped
+    }
+
+    /// The surface or box of a muscle, and the volumes that it encloses before and after, in ml.
+    fn bring_surface(
+        &self,
+        muscle: &mut MuscleDocument,
+        number: usize,
+    ) -> Option<(MuscleSurface, [f64; 2])> {
+        let own = muscle.body_surface(
+            &Pointer::root(),
+            Some(&self.prepared.muscle_surfaces),
+            &mut Faults::default(),
+        )?;
+        let surface = Arc::new(mapped_surface(self.maps().0, &own));
+        let volumes =
+            [own.signed_volume(), surface.signed_volume()].map(|volume| volume.abs() / 1e3);
+        let file = format!("muscle-{}.vtp", number + 1);
+        muscle.box_mm = None;
+        muscle.surface = Some(file.clone());
+        Some((MuscleSurface { name: muscle.name.clone(), file, surface }, volumes))
     }
 
     fn bring_direction(
@@ -84,7 +144,7 @@ impl<'a> TissueMaps<'a> {
     ) {
         let Some(uniform) = direction.take() else { return };
         let name = unused(mesh, of);
-        let axes = cell_axes(self.maps().0, self.template, &Vector::from(uniform));
+        let axes = cell_axes(self.maps().0, &self.prepared.template, &Vector::from(uniform));
         mesh.cell_vectors.insert(name.clone(), axes);
         *array = Some(name);
     }
@@ -98,16 +158,18 @@ impl<'a> TissueMaps<'a> {
         let difference = other.and_then(|other| fibre_difference(map, other, &before));
         let rounded = |x: &Vector| Triple::from(x.map(|c| (c * PARTS_OF_MM).round() / PARTS_OF_MM));
         *lines = mapped.lines.iter().map(|line| line.iter().map(rounded).collect()).collect();
-        let (least, most) = REACH_MM;
-        let within = muscle.within_mm.unwrap_or(USUAL_REACH_MM) * mapped.widening;
-        muscle.within_mm = Some(within.clamp(least, most));
+        if muscle.surface.is_none() && muscle.box_mm.is_none() {
+            let (least, most) = REACH_MM;
+            let within = muscle.within_mm.unwrap_or(USUAL_REACH_MM) * mapped.widening;
+            muscle.within_mm = Some(within.clamp(least, most));
+        }
         Some(MappedMuscleDocument {
-            name: muscle.name.clone(),
-            lines: lines.len() as u64,
+            lines: mapped.lines.len() as u64,
             template_length_mm: mapped.lengths[0],
             length_mm: mapped.lengths[1],
             widening: mapped.widening,
             beside_other_map: difference.map(MapDifferenceDocument::from),
+            ..MappedMuscleDocument::without_lines(muscle)
         })
     }
 }

@@ -6,7 +6,7 @@ use crate::schema::WarningDocument;
 
 /// Codes that precede all others, in this order: those of doubtful input or measurements, those of a result that
 /// has larger errors than reported elsewhere, and those of an impossible one.
-const GRAVE: [&str; 44] = [
+const GRAVE: [&str; 45] = [
     "nothing-moves",
     "nothing-performed",
     "units-suspect",
@@ -22,6 +22,7 @@ const GRAVE: [&str; 44] = [
     "model-suspect",
     "skin-unlike-learned",
     "segment-misfit",
+    "template-apart",
     "surfaces-apart",
     "surfaces-opposed",
     "cells-inverted",

@@ -86,7 +86,7 @@ pub type Surfaces = BTreeMap<String, Arc<TriangleSurface>>;
 #[derive(Clone, Copy)]
 pub struct MuscleContext<'a> {
     pub limits: &'a Limits,
-    /// Absent: bodies are refused.
+    /// Absent: the surfaces of bodies have not been read yet, and the rest is checked.
     pub surfaces: Option<&'a Surfaces>,
 }
 
@@ -192,24 +192,26 @@ impl MuscleDocument {
             None => (at.key("box_mm"), "box_mm"),
         };
         refuse(&[("within_mm", self.within_mm.is_some())], form, at, faults);
-        let Some(surfaces) = context.surfaces else {
-            let detail = "the muscles of a template are regions or lines: nothing maps a surface to the patient";
-            faults.add(&place, ErrorCode::MethodNotAvailable, detail);
-            return None;
-        };
         let fibres = self.body_fibres(at, context.limits, faults);
-        let surface = match (&self.surface, &self.box_mm) {
-            (Some(id), _) => {
-                let found = surfaces.get(id).cloned();
-                if found.is_none() {
-                    let detail = format!("mesh `{id}` is not a surface");
-                    faults.add(&place, ErrorCode::UnknownMesh, detail);
-                }
-                found?
-            }
-            (None, own) => Arc::new(own.as_ref()?.to_surface(&place, faults)?),
+        let surface = self.body_surface(&place, context.surfaces, faults);
+        Some(MuscleCourse::Body { surface: surface?, fibres: fibres? })
+    }
+
+    /// Its closed surface in mm, or that of its box; nothing of other muscles, and of surfaces that have not been read.
+    pub fn body_surface(
+        &self,
+        at: &Pointer,
+        surfaces: Option<&Surfaces>,
+        faults: &mut Faults,
+    ) -> Option<Arc<TriangleSurface>> {
+        let Some(id) = &self.surface else {
+            return Some(Arc::new(self.box_mm.as_ref()?.to_surface(at, faults)?));
         };
-        Some(MuscleCourse::Body { surface, fibres: fibres? })
+        let found = surfaces?.get(id).cloned();
+        if found.is_none() {
+            faults.add(at, ErrorCode::UnknownMesh, format!("mesh `{id}` is not a surface"));
+        }
+        found
     }
 
     /// The fibre direction of a body; by default along its box.

@@ -138,6 +138,11 @@ impl ConformDocument {
         let mut found = vec![(root.key("template").key("mesh"), &mut self.template.mesh)];
         found.extend(self.patient.skin.iter_mut().map(|id| (patient.key("skin"), id)));
         found.extend(self.patient.bone.iter_mut().map(|id| (patient.key("bone"), id)));
+        let muscles = root.key("template").key("muscles");
+        for (index, muscle) in self.template.muscles.iter_mut().enumerate() {
+            let at = muscles.index(index).key("surface");
+            found.extend(muscle.surface.as_mut().map(|surface| (at, surface)));
+        }
         found
     }
 }

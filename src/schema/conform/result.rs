@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 use crate::schema::CaseDocument;
+use crate::schema::case::muscle::MuscleDocument;
 use crate::schema::predict::check::CheckDocument;
 use crate::schema::repair::RepairResultDocument;
 use mechanics::conformation::FibreDifference;
@@ -43,16 +44,25 @@ pub struct ConformationDocument {
     pub check: Option<CheckDocument>,
 }
 
-/// The lines of a muscle from the template to the patient.
+/// A muscle from the template to the patient: its lines or its surface, or both.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct MappedMuscleDocument {
     pub name: String,
+    /// 0 of a muscle with a surface and fibres that have no lines.
     pub lines: u64,
     /// Of all its lines together, on the template and on the patient.
     pub template_length_mm: f64,
     pub length_mm: f64,
-    /// Stretch of the tissue across the lines; `within_mm` of the case is scaled by it.
+    /// Stretch of the tissue across the lines, 1 without any; `within_mm` of the case is scaled by it.
     pub widening: f64,
+    /// Enclosed by its surface or box on the template.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub template_volume_ml: Option<f64>,
+    /// Enclosed by its surface on the patient.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub volume_ml: Option<f64>,
     /// Distance of the lines from those of the other map, by landmarks or the conformation; absent if
     /// landmarks define none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -105,6 +115,21 @@ impl LeftDocument {
             p95_mm: sorted[(0.95 * (count - 1.0)).round() as usize],
             max_mm,
         })
+    }
+}
+
+impl MappedMuscleDocument {
+    pub fn without_lines(muscle: &MuscleDocument) -> Self {
+        MappedMuscleDocument {
+            name: muscle.name.clone(),
+            lines: 0,
+            template_length_mm: 0.0,
+            length_mm: 0.0,
+            widening: 1.0,
+            template_volume_ml: None,
+            volume_ml: None,
+            beside_other_map: None,
+        }
     }
 }
 

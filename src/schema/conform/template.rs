@@ -48,7 +48,8 @@ pub struct TemplateDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false, value_type = Option<BTreeMap<String, MaterialDocument>>)]
     pub materials: Option<MaterialDocuments>,
-    /// As in a case, with `lines_mm` in mm in the frame of the template.
+    /// As in a case, with lines, boxes and surfaces in the frame of the template. A `surface` or `box_mm` becomes a
+    /// stored surface on the patient.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub muscles: Vec<MuscleDocument>,
     /// As in a case.

@@ -26,6 +26,8 @@ pub enum MadeName {
     Volume,
     /// The surface of a segment.
     Bone,
+    /// The surface of a muscle.
+    Muscle,
 }
 
 impl MadeName {
@@ -34,6 +36,7 @@ impl MadeName {
             MadeName::Skin => "skin",
             MadeName::Volume => "volume",
             MadeName::Bone => "bone",
+            MadeName::Muscle => "muscle",
         }
     }
 }
@@ -51,7 +54,7 @@ impl From<KeptName> for MadeName {
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 pub struct KeptMeshDocument {
     pub what: MadeName,
-    /// Of a bone, the name of its segment.
+    /// Of a bone the name of its segment, of a muscle its own.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub name: Option<String>,

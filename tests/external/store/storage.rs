@@ -1,5 +1,6 @@
 //! Rows and bytes: what belongs together stays together, what nobody refers to goes.
 
+use facies::config::{BlobLocation, StorageLocations};
 use facies::schema::job::JobStatus;
 use facies::schema::wire::canonical::sha256_hex;
 use facies::store::{MeshDeletion, Store, StoreError};
@@ -17,6 +18,10 @@ trials! {
         bytes_that_no_row_knows_stay_until_a_repair
         a_repair_finds_bytes_again_and_has_lost_results_solved_again
         the_same_bytes_stay_as_long_as_somebody_refers_to_them
+    }
+    on_shared {
+        a_host_whose_blobs_are_not_those_of_the_database_is_named
+        a_bucket_that_does_not_exist_is_named_and_takes_nothing
     }
     alone {
         a_start_removes_what_a_dead_process_left
@@ -148,6 +153,47 @@ async fn the_same_bytes_stay_as_long_as_somebody_refers_to_them(on: Deployment) 
     assert_eq!(store.delete_mesh(&second.id).await.unwrap(), MeshDeletion::Deleted);
     assert_eq!(blob_count(&store).await, 0);
     assert_eq!(on.objects().len(), 0);
+}
+
+/// The deployment with other blobs, as another host of its database.
+fn with_blobs(on: &Deployment, blobs: BlobLocation) -> StorageLocations {
+    let data = on.folder().join("another host");
+    StorageLocations { data, blobs, ..on.places.clone() }
+}
+
+async fn a_host_whose_blobs_are_not_those_of_the_database_is_named(on: Deployment) {
+    let store = on.open().await;
+    store.check_blobs().await.unwrap();
+    let BlobLocation::Bucket { bucket, settings, .. } = on.places.blobs.clone() else {
+        panic!("a bucket")
+    };
+    let mistyped = BlobLocation::Bucket { bucket, prefix: "mistyped".into(), settings };
+    let places = with_blobs(&on, mistyped);
+    // Nothing is stored yet, and either may be meant.
+    Store::connect(&places).await.unwrap().check_blobs().await.unwrap();
+    for name in ["a", "b"] {
+        assert!(store.add_mesh(&mesh(name, "1")).await.unwrap());
+    }
+    store.check_blobs().await.unwrap();
+    for places in [places, with_blobs(&on, BlobLocation::InData)] {
+        let stray = Store::connect(&places).await.unwrap();
+        let error = stray.check_blobs().await.unwrap_err();
+        assert!(matches!(error, StoreError::OtherBlobs { meshes: 2 }), "{error}");
+        assert!(error.is_setting() && stray.try_write().await.is_err());
+    }
+}
+
+async fn a_bucket_that_does_not_exist_is_named_and_takes_nothing(on: Deployment) {
+    let BlobLocation::Bucket { settings, prefix, .. } = on.places.blobs.clone() else {
+        panic!("a bucket")
+    };
+    let nowhere = BlobLocation::Bucket { bucket: "nowhere".into(), prefix, settings };
+    let store = Store::connect(&with_blobs(&on, nowhere)).await.unwrap();
+    let error = store.check_blobs().await.unwrap_err();
+    assert!(matches!(error, StoreError::NoBucket), "{error}");
+    let error = store.add_mesh(&mesh("a", "1")).await.unwrap_err();
+    assert!(matches!(error, StoreError::NoBucket) && error.is_unavailable(), "{error}");
+    assert_eq!(blob_count(&on.open().await).await, 0);
 }
 
 async fn a_start_removes_what_a_dead_process_left() {

@@ -150,6 +150,19 @@ async fn an_import_is_all_or_nothing(on: Deployment) {
     assert!(store.cases("", None, 10).await.unwrap().is_empty());
 
     std::fs::write(&tags, whole).unwrap();
+
+    // A blob whose bytes are not those that its name says, and one that is missing.
+    let blob = std::fs::read_dir(folder.join("blobs")).unwrap().next().unwrap().unwrap().path();
+    let bytes = std::fs::read(&blob).unwrap();
+    std::fs::write(&blob, b"other").unwrap();
+    let error = store.import(&folder).await.unwrap_err().to_string();
+    assert!(error.contains("damaged") && error.contains(&blob.display().to_string()), "{error}");
+    std::fs::remove_file(&blob).unwrap();
+    let error = store.import(&folder).await.unwrap_err().to_string();
+    assert!(error.contains(&blob.display().to_string()), "{error}");
+    assert!(store.cases("", None, 10).await.unwrap().is_empty() && on.objects().is_empty());
+    std::fs::write(&blob, bytes).unwrap();
+
     store.import(&folder).await.unwrap();
     let error = store.import(&folder).await.unwrap_err();
     assert!(matches!(error, StoreError::NotEmpty { .. }), "{error}");

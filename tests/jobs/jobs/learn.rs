@@ -1,6 +1,7 @@
 //! Learning without a server: what mechanics misses alike is learned and added, and bad cohorts are named.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use facies::jobs::{
     JobContext, JobError, JobInput, JobOutput, LearnInput, LearnedCase, MeshSource, PredictInput,
@@ -10,7 +11,7 @@ use facies::schema::Limits;
 use mechanics::mesh::half_head::{LAYERS, half_head};
 use mechanics::mesh::{CellShape, TriangleSurface, Vector, VolumeMesh, sample};
 use mechanics::prediction::{equilibrium, predict};
-use mechanics::progress::Unobserved;
+use mechanics::progress::{Phase, Progress, Unobserved};
 use serde_json::{Value, json};
 
 use crate::sources::stored;
@@ -98,6 +99,37 @@ fn done(input: JobInput, sources: &Sources) -> Result<(JobOutput, tempfile::Temp
     work(&input, &place, &Unobserved).map(|done| (done, out))
 }
 
+/// Somebody who asks the work to stop once a phase begins.
+struct StopAt(Phase, AtomicBool);
+
+impl Progress for StopAt {
+    fn phase(&self, phase: Phase) {
+        if phase == self.0 {
+            self.1.store(true, Ordering::SeqCst);
+        }
+    }
+
+    fn iteration(&self, _iteration: usize, _relative_residual: f64, _wanted: f64) {}
+
+    fn is_cancelled(&self) -> bool {
+        self.1.load(Ordering::SeqCst)
+    }
+}
+
+#[test]
+fn learning_that_is_cancelled_ends_in_every_phase_and_keeps_no_model() {
+    for phase in [Phase::Solve, Phase::Compare] {
+        let (sources, input) = operated();
+        let folder = tempfile::tempdir().unwrap();
+        let out = folder.path().join("out");
+        let place = JobContext { sources: &sources, limits: &Limits::default(), out: &out };
+        let progress = StopAt(phase, AtomicBool::new(false));
+        let error = work(&JobInput::Learn(input), &place, &progress).unwrap_err();
+        assert_eq!(error.kind().name(), "cancelled", "{phase:?}");
+        assert!(!out.exists(), "{phase:?}");
+    }
+}
+
 #[test]
 fn what_mechanics_misses_alike_is_added_to_the_next_prediction() {
     let (mut sources, input) = operated();
@@ -110,7 +142,8 @@ fn what_mechanics_misses_alike_is_added_to_the_next_prediction() {
     // Four cases give no less than 1/8.
     let test = found.tests.iter().find(|test| test.second == "fem_linear + GRNN").unwrap();
     assert_eq!((test.p, test.smallest_p), (Some(0.125), 0.125));
-    assert!(std::fs::read_to_string(out.path().join("learning.svg")).unwrap().contains("<svg"));
+    let picture = std::fs::read_to_string(out.path().join("learning.svg")).unwrap();
+    assert!(picture.contains("linear FEM + GRNN") && !picture.contains("fem_linear"), "{picture}");
     let errors = std::fs::read_to_string(out.path().join("errors.vtp")).unwrap();
     for array in ["no_movement", "fem_linear", "GRNN", "fem_linear_GRNN", "fem_linear_SDM"] {
         assert!(errors.contains(&format!("Name=\"mean_error_{array}_mm\"")), "{array}");

@@ -5,6 +5,7 @@ use mechanics::format::vtk::{vtp, vtu};
 use mechanics::format::{SurfaceOutput, VolumeOutput};
 use mechanics::mesh::generic_face::{FaceSettings, GenericFace, LAYERS, Lips, generic_face};
 use mechanics::mesh::{CellShape, Frame, TriangleSurface, Vector};
+use mechanics::muscle::strap::box_surface;
 use reqwest::StatusCode;
 use serde_json::{Map, Value, json};
 
@@ -124,6 +125,65 @@ async fn a_template_with_muscles_becomes_a_case_that_smiles() {
     let at = |axis: usize| corner[axis].as_f64().unwrap();
     let left = 0.2_f64.cos() * at(0) + 0.2_f64.sin() * at(1);
     assert!(left > 0.2 && at(2) > 0.2, "{corner}");
+}
+
+#[tokio::test]
+async fn muscles_with_a_surface_or_a_box_become_surfaces_of_the_patient() {
+    let server = Server::start();
+    let face = face();
+    let mut asked = spec(&server, &face).await;
+    let half_axes = [[-8.0, -14.0, -12.0], [2.6, -1.5, 0.0], [0.8, 1.4, -2.2]];
+    let centre = [30.0, -62.0, -8.0];
+    let solid = box_surface(Vector::from(centre), half_axes.map(Vector::from));
+    let surface = upload_surface(&server, &solid).await;
+    let strap = json!({"young_modulus_kpa": 6.2, "poisson_ratio": 0.45});
+    asked["template"]["muscles"] = json!([
+        {"name": "as_box", "box_mm": {"centre": centre, "half_axes": half_axes}, "material": strap},
+        {"name": "as_surface", "surface": surface, "direction": [8, 14, 12]},
+        {"name": "again", "surface": surface, "boxes": 2},
+    ]);
+    let job = ended(&server, &asked).await;
+    assert_eq!(job["status"], "successful", "{job}");
+    let found = &job["results"]["conformation"];
+    let told = found["muscles"].as_array().unwrap();
+    assert_eq!(told.len(), 3);
+    for muscle in told {
+        let volume = |member: &str| muscle[member].as_f64().unwrap();
+        let ratio = volume("volume_ml") / volume("template_volume_ml");
+        assert!((ratio / 1.08_f64.powi(3) - 1.0).abs() < 0.12, "{muscle}");
+        assert_eq!(muscle["lines"], 0);
+    }
+    // Each is a mesh of the tenant, the same content once.
+    let case = &found["case"];
+    let of = |index: usize| case["muscles"][index]["surface"].as_str().unwrap().to_owned();
+    assert_eq!([of(0), of(0)], [of(1), of(2)]);
+    assert_eq!(case["muscles"][0].get("box_mm"), None);
+    assert_eq!(case["muscles"][1]["array"], "fibres_as_surface");
+    let mesh = ask(server.get(&format!("/v1/meshes/{}", of(0)))).await.expect(StatusCode::OK);
+    assert_eq!(mesh["role"], "muscle", "{mesh}");
+    let kept = ask(server.post("/v1/cases").json(case)).await.expect(StatusCode::CREATED);
+    let pull = |name: &str| json!({"activations": [{"muscle": name, "stress_kpa": 10}]});
+    let mut moved = Vec::new();
+    for name in ["as_box", "as_surface"] {
+        let plan = pull(name);
+        let asked =
+            json!({"kind": "predict", "case": kept["id"], "plan": plan, "method": "fem_linear"});
+        let predicted = ended(&server, &asked).await;
+        assert_eq!(predicted["status"], "successful", "{predicted}");
+        let corner = &predicted["results"]["statistics"]["landmarks"]["cheilion_left"];
+        let along = corner.as_array().unwrap().iter().map(|value| value.as_f64().unwrap().powi(2));
+        moved.push(along.sum::<f64>().sqrt());
+    }
+    // The axis of the box and the direction that went with the tissue are nearly the same.
+    assert!((moved[0] / moved[1] - 1.0).abs() < 0.1, "{moved:?}");
+
+    // A surface with a hole is no muscle, and is refused before anything is fitted.
+    let mut open = solid.clone();
+    open.triangles.pop();
+    let open = upload_surface(&server, &open).await;
+    asked["template"]["muscles"] = json!([{"name": "open", "surface": open}]);
+    let refused = server.job(&asked).await.expect(StatusCode::UNPROCESSABLE_ENTITY);
+    assert_eq!(refused["errors"][0]["pointer"], "/template/muscles/0/surface", "{refused}");
 }
 
 #[tokio::test]

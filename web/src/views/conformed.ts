@@ -10,15 +10,18 @@ type Conformation = Documents["ConformationDocument"];
 export function conformedFacts(words: Words, found: Conformation): HTMLElement[] {
   const marks = Object.entries(found.landmarks_mm).sort(([, a], [, b]) => b - a);
   const longest = marks.slice(0, MOST_MARKS).map(([name, value]) => ({ name, value }));
-  const muscles = (found.muscles ?? []).map((one) => [one.name, one.lines, mm(one.template_length_mm), mm(one.length_mm), figure(one.widening), one.beside_other_map === undefined || one.beside_other_map === null ? "–" : mm(one.beside_other_map.mean_mm)]);
+  const muscles = (found.muscles ?? []).map((one) => [one.name, one.lines, ...lengths(one), volume(one.template_volume_ml), volume(one.volume_ml), one.beside_other_map === undefined || one.beside_other_map === null ? "–" : mm(one.beside_other_map.mean_mm)]);
   return [
     card(words.leftOver, surfaces(words, found)),
     ...(marks.length === 0 ? [] : [card(words.landmarks, rowChart(words.landmarks, "mm", longest), table(`${words.leftOver}, mm`, [words.landmark, "mm"], marks.map(([name, value]) => [name, mm(value)])))]),
     card(words.repair, repair(words, found)),
-    ...(muscles.length === 0 ? [] : [card(words.muscles, table(`${words.muscles}, mm`, ["", words.lines, words.onTemplate, words.onPatient, words.widening, words.otherMap], muscles))]),
+    ...(muscles.length === 0 ? [] : [card(words.muscles, table(`${words.muscles}, mm`, ["", words.lines, words.onTemplate, words.onPatient, words.widening, words.mlOnTemplate, words.mlOnPatient, words.otherMap], muscles))]),
   ];
 }
 const MOST_MARKS = 20;
+
+const lengths = (one: Documents["MappedMuscleDocument"]) => (one.lines === 0 ? ["–", "–", "–"] : [mm(one.template_length_mm), mm(one.length_mm), figure(one.widening)]);
+const volume = (ml: number | undefined) => (ml === undefined ? "–" : figure(ml, 2));
 
 function surfaces(words: Words, { skin, bone, share_with_partner: share }: Conformation): HTMLElement {
   const row = (name: string, left: Documents["LeftDocument"] | null | undefined) =>

@@ -1,5 +1,6 @@
 //! Check that the values of a scan are Hounsfield units.
 
+use super::PLAUSIBLE;
 use crate::image::thresholds::Thresholds;
 use crate::image::volume::ImageVolume;
 use crate::mesh::Warning;
@@ -28,4 +29,23 @@ pub(super) fn findings(image: &ImageVolume, thresholds: Option<&Thresholds>) -> 
         )),
         Some(_) => Vec::new(),
     }
+}
+
+/// Values that no scanner writes for a body: how many voxels lie below and above what is plausible, of an image with this range.
+pub(super) fn beyond((low, high): (f64, f64), [below, above]: [usize; 2]) -> Option<Warning> {
+    let [least, most] = PLAUSIBLE;
+    let mut words = Vec::new();
+    if below > 0 {
+        words.push(format!(
+            "{below} voxels lie below {least} HU, down to {low:e}: padding, taken as air"
+        ));
+    }
+    if above > 0 {
+        words.push(format!(
+            "{above} voxels lie above {most} HU, up to {high:e}, and are taken as dense"
+        ));
+    }
+    let warning = Warning::new("values-implausible", words.join("; "));
+    let warning = warning.with("below", below as f64).with("above", above as f64);
+    (below + above > 0).then(|| warning.with("lowest", low).with("highest", high))
 }

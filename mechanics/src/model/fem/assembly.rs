@@ -22,8 +22,8 @@ pub struct Tissue<'a> {
     pub materials: &'a [LinearElastic],
     /// For each cell its entry in `materials`.
     pub material_of_cell: &'a [u16],
-    /// For each cell the entry whose pressure it takes part in: its own, and for a mixture that of its largest
-    /// part, so that tissue that changes from cell to cell keeps a continuous pressure.
+    /// For each cell the number of its kind of tissue: cells of one kind share a pressure at a node. A mixture is of the kind of its
+    /// largest part, so that tissue that changes from cell to cell keeps a continuous pressure.
     pub pressure_of_cell: &'a [u16],
     /// For each cell the direction of its fibres, of length 1; empty where no material has fibres.
     pub fibres: &'a [Vector],

@@ -16,7 +16,7 @@
 //! Hexahedra and wedges keep their mean dilatation and have no pressure; nor have tetrahedra with nu = 0,
 //! whose pressure is zero.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 use nalgebra::Matrix3;
 use rayon::prelude::*;
@@ -94,19 +94,12 @@ pub struct PressureCells {
 }
 
 impl PressureCells {
-    /// Numbers the pressures: corners share one where they share node and material.
+    /// Numbers the pressures: corners share one where they share node and kind of tissue.
     pub(super) fn new(tissue: &Tissue, dof_map: &DofMap) -> Self {
-        let materials = tissue.materials;
-        let used: BTreeSet<u16> = tissue.pressure_of_cell.iter().copied().collect();
-        let same = |own: u16| {
-            let is_same = |other: &&u16| materials[**other as usize] == materials[own as usize];
-            used.iter().find(is_same).copied().unwrap_or(own)
-        };
-        let kinds: BTreeMap<u16, u16> = used.iter().map(|&own| (own, same(own))).collect();
         let mut cells_of_kind: BTreeMap<u16, Vec<u32>> = BTreeMap::new();
         for &cell in &dof_map.ordering.element_order {
             let (cell, shape) = (cell as usize, tissue.mesh.cells.shape(cell as usize));
-            let kind = kinds[&tissue.pressure_of_cell[cell]];
+            let kind = tissue.pressure_of_cell[cell];
             if carries_pressure(shape, &tissue.tensor(cell)) {
                 cells_of_kind.entry(kind).or_default().push(cell as u32);
             }

@@ -121,7 +121,7 @@ fn speaks_against_contact(warning: &Warning, accepted: &Accepted) -> bool {
 fn overlap(scene: &Scene, displacement: &[Vector], accepted: &Accepted) -> Option<Warning> {
     let moved = scene.skin.moved(displacement);
     let told = skin_overlap(&scene.skin, &moved)?;
-    let Some(Deepest { depth, at }) = added_overlap(&scene.skin, &moved) else {
+    let Some(Deepest { depth, at, .. }) = added_overlap(&scene.skin, &moved) else {
         let detail = format!("{}, and how deep is not known", told.detail);
         return Some(Warning { detail, ..told });
     };

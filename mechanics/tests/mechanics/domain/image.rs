@@ -57,6 +57,31 @@ fn options(smoothing: f64) -> ImageOptions {
     ImageOptions { skin_threshold, bone_threshold, smoothing, ..ImageOptions::default() }
 }
 
+#[test]
+fn padding_and_broken_voxels_move_no_boundary() {
+    let clean = image([2.0; 3], 50.0, shell);
+    let Voxels::F32(values) = clean.voxels() else { panic!("floats") };
+    let size = clean.size();
+    let is_border = |n: &usize| {
+        let index = [n % size[0], n / size[0] % size[1], n / (size[0] * size[1])];
+        (0..3).any(|axis| index[axis] < 2 || index[axis] + 2 >= size[axis])
+    };
+    let wanted = errors(&ImageDomain::new(&clean, &options(0.8)).unwrap());
+    // The usual padding of a scanner, and what programs write where there is no data.
+    for padding in [-2000.0, -32_768.0, -3.4e38] {
+        let mut values = values.clone();
+        (0..values.len()).filter(is_border).for_each(|n| values[n] = padding);
+        // Inside bone.
+        let middle = [size[0] / 2, size[1] / 2, size[2] / 2];
+        values[middle[0] + size[0] * (middle[1] + size[1] * middle[2])] = 1e30;
+        let padded = ImageVolume::new(size, *clean.placement(), Voxels::F32(values)).unwrap();
+        let found = errors(&ImageDomain::new(&padded, &options(0.8)).unwrap());
+        for (found, wanted) in found.iter().zip(&wanted) {
+            assert!((found[1] - wanted[1]).abs() < 0.02, "{padding}: {found:?} {wanted:?}");
+        }
+    }
+}
+
 /// Root mean square and largest error of both radii, in mm.
 fn errors(domain: &ImageDomain) -> [[f64; 2]; 2] {
     let middle = 0.5 * (SKIN_RADIUS + BONE_RADIUS);

@@ -39,9 +39,13 @@ fn label(at: &Vector) -> u16 {
 
 /// Voxels of 2 mm.
 fn body() -> LabelBody {
+    body_with(|number| label(&place(number)))
+}
+
+fn body_with(label: impl Fn(usize) -> u16) -> LabelBody {
     let steps = [Vector::x(), Vector::y(), Vector::z()].map(|axis| axis * 2.0);
     let placement = Placement { origin: Vector::repeat(-47.0), steps };
-    let voxels = (0..48 * 48 * 48).map(|number| label(&place(number)) as i16);
+    let voxels = (0..48 * 48 * 48).map(|number| label(number) as i16);
     let image = ImageVolume::new([48; 3], placement, Voxels::I16(voxels.collect())).unwrap();
     let map = LabelMap::of(&image).unwrap();
     LabelBody::new(image, map, 2, |label| match label {
@@ -49,7 +53,9 @@ fn body() -> LabelBody {
         MUSCLE => LabelClass::Tissue(1),
         JAW => LabelClass::Bone { segment: Some(0), is_tooth: false },
         TOOTH => LabelClass::Bone { segment: Some(0), is_tooth: true },
-        _ => LabelClass::Air,
+        0 => LabelClass::Air,
+        // Further labels of the jaw.
+        _ => LabelClass::Bone { segment: Some(0), is_tooth: false },
     })
 }
 
@@ -107,6 +113,18 @@ fn regions_of_a_label_map_have_their_volumes_and_meet_where_the_labels_do() {
         assert!(off_sphere(&tissue, Boundary::Skin, OUTER) < 0.95);
         assert!(off_sphere(&tissue, Boundary::Bone, BONE) < 0.95);
     }
+}
+
+#[test]
+fn bone_of_two_hundred_labels_is_meshed_as_bone_of_one() {
+    let few = meshed(&body().domain(&[]).unwrap(), &uniform(5.0));
+    let many = body_with(|number| match label(&place(number)) {
+        JAW => 200 + (number % 200) as u16,
+        other => other,
+    });
+    let many = meshed(&many.domain(&[]).unwrap(), &uniform(5.0));
+    assert_eq!(many.volume.nodes, few.volume.nodes);
+    assert_eq!(many.volume.cell_labels, few.volume.cell_labels);
 }
 
 #[test]

@@ -24,6 +24,7 @@ mod no_free_node;
 mod nonlinearity;
 mod numerical_error;
 mod patch;
+mod pressure_jumps;
 mod refined_scene;
 mod skin;
 mod slab_table;

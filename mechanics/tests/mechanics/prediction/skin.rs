@@ -79,6 +79,9 @@ fn a_lip_pushed_into_the_other_is_reported_with_how_deep_it_reaches() {
     assert_eq!(number(warning, "pairs_at_rest"), 0.0);
     // Solved to 1e-13.
     assert!((number(warning, "depth_mm") - 2.0).abs() < 1e-6, "{warning:?}");
+    // The end of the lower lip and that of the upper one lie in each other, with two of the four cells of their sides.
+    let area = number(warning, "area_mm2");
+    assert!((150.0..500.0).contains(&area), "{warning:?}");
     let z = number(warning, "z_mm");
     assert!((7.0 - 1e-6..=9.0 + 1e-6).contains(&z), "{warning:?}");
     assert!(warning.detail.contains(r#"at "lower lip", "upper lip""#), "{}", warning.detail);

@@ -97,6 +97,40 @@ fn values_that_are_no_hounsfield_units_are_reported_and_nothing_is_read_into_the
 }
 
 #[test]
+fn padding_is_told_and_hides_no_finding() {
+    let scan = made(Made { gap: 6.0, table: true, ..PLAIN });
+    let wanted = scan_report(&scan, Frame::Lps);
+    let Voxels::F32(values) = scan.voxels() else { panic!() };
+    let size = scan.size();
+    for (padding, broken) in [(-3024.0, 1), (-3.4e38, 0)] {
+        let mut values = values.clone();
+        // Corners of each slice, around the field of view.
+        let is_corner = |n: usize| {
+            let way = |axis: usize, at: usize| at as f64 / (size[axis] - 1) as f64 - 0.5;
+            way(0, n % size[0]).hypot(way(1, n / size[0] % size[1])) > 0.66
+        };
+        let mut count = 0;
+        for n in (0..values.len()).filter(|&n| is_corner(n)) {
+            values[n] = padding;
+            count += 1;
+        }
+        if broken > 0 {
+            values[0] = 1e12;
+            count -= 1;
+        }
+        let padded = ImageVolume::new(size, *scan.placement(), Voxels::F32(values)).unwrap();
+        let report = scan_report(&padded, Frame::Lps);
+        let told = finding(&report, "values-implausible");
+        assert_eq!(
+            [number(told, "below"), number(told, "above")],
+            [f64::from(count), f64::from(broken)]
+        );
+        let others = report.findings.iter().filter(|own| own.code != "values-implausible");
+        assert_eq!(others.map(|own| own.code).collect::<Vec<_>>(), codes(&wanted), "{report:?}");
+    }
+}
+
+#[test]
 fn a_report_is_the_same_in_ras_and_with_turned_axes() {
     let scan = made(Made { gap: 6.0, table: true, ..PLAIN });
     let wanted = scan_report(&scan, Frame::Lps);

@@ -21,7 +21,7 @@ pub struct FiniteStrain<'a> {
     pub laws: &'a [Law],
     /// For each cell its entry in `laws`.
     pub law_of_cell: &'a [u16],
-    /// For each cell the entry of the law whose pressure it takes part in.
+    /// For each cell its kind of tissue, within which cells share the pressure at a node.
     pub pressure_of_cell: &'a [u16],
     pub elements: Elements,
     pub fibres: FibreField<'a>,

@@ -110,19 +110,14 @@ impl<'a> Tissue<'a> {
         kept: &CellBulkModulus,
         axes: BTreeMap<u32, Matrix3<f64>>,
     ) -> Option<Pressures> {
-        // Pressures are continuous within tissue of one law, whatever its regions are called.
         let laws = problem.laws;
-        let same = |own: u16| {
-            let first = laws.iter().position(|law| *law == laws[usize::from(own)]);
-            first.unwrap_or_default() as u16
-        };
         let cells: Vec<PressureCell> = (0..)
             .zip(&self.simplices.cells)
             .filter(|(_, cell)| cell.carried > 0.0)
             .map(|(simplex, cell)| PressureCell {
                 simplex,
                 rows: cell.rows,
-                kind: same(problem.pressure_of_cell[cell.cell as usize]),
+                kind: problem.pressure_of_cell[cell.cell as usize],
                 volume: cell.volume,
                 exchange: kept.of(&laws[usize::from(cell.law)], cell.cell as usize),
             })
@@ -247,3 +242,7 @@ impl Elements {
     /// Ten-node tetrahedra.
     pub const QUADRATIC: Elements = Elements { quadratic: true, ..Self::PLAIN };
 }
+
+#[cfg(test)]
+#[path = "at_rest_tests.rs"]
+mod at_rest_tests;
