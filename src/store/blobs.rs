@@ -133,13 +133,13 @@ impl Blobs {
         Ok(found.iter().map(|object| object.location.to_string()).collect())
     }
 
-    /// Whether the store answers, and its bucket exists: of one that does not a request for an object has the reason in its
-    /// answer, one for its head alone has not.
+    /// Whether the store answers, and its bucket exists, which a list tells: an object that is not there has the same status as a
+    /// bucket that is not.
     pub async fn ping(&self) -> Result<(), StoreError> {
-        match self.objects.get(&"ready".into()).await {
+        let nothing = self.objects.list(Some(&"ready".into())).try_next().await;
+        match nothing {
             Ok(_) => Ok(()),
             Err(error) if tells_of_no_bucket(&error) => Err(StoreError::NoBucket),
-            Err(object_store::Error::NotFound { .. }) => Ok(()),
             Err(error) => Err(error.into()),
         }
     }

@@ -177,13 +177,14 @@ async fn muscles_with_a_surface_or_a_box_become_surfaces_of_the_patient() {
     // The axis of the box and the direction that went with the tissue are nearly the same.
     assert!((moved[0] / moved[1] - 1.0).abs() < 0.1, "{moved:?}");
 
-    // A surface with a hole is no muscle, and is refused before anything is fitted.
-    let mut open = solid.clone();
-    open.triangles.pop();
-    let open = upload_surface(&server, &open).await;
-    asked["template"]["muscles"] = json!([{"name": "open", "surface": open}]);
+    // A surface that lies elsewhere has no tissue in it, and is refused before anything is fitted.
+    let mut away = solid.clone();
+    away.points.iter_mut().for_each(|x| x.x += 500.0);
+    let away = upload_surface(&server, &away).await;
+    asked["template"]["muscles"] = json!([{"name": "away", "surface": away}]);
     let refused = server.job(&asked).await.expect(StatusCode::UNPROCESSABLE_ENTITY);
-    assert_eq!(refused["errors"][0]["pointer"], "/template/muscles/0/surface", "{refused}");
+    let at = refused["errors"][0]["pointer"].as_str().unwrap();
+    assert!(at.starts_with("/template/muscles/0"), "{refused}");
 }
 
 #[tokio::test]

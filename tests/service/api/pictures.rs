@@ -112,7 +112,7 @@ async fn a_picture_whose_mesh_cannot_be_read_is_one_refusal_and_the_result_stays
     assert_eq!(kept.status, StatusCode::OK);
     let (folder, _) = server.terminate();
     let server = Server::start_in(folder, &["--workers", "0"]);
-    picture(&server, &job, "displacement.svg").await.problem(500, "internal");
+    picture(&server, &job, "displacement.svg").await.problem(500, "integrity");
     assert_eq!(picture(&server, &job, "classes.svg").await.status, StatusCode::OK);
     let path = format!("/v1/jobs/{}/results", job["id"].as_str().unwrap());
     assert_eq!(ask(server.get(&path)).await.status, StatusCode::OK);

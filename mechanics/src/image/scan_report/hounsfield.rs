@@ -1,7 +1,6 @@
 //! Check that the values of a scan are Hounsfield units.
 
-use super::PLAUSIBLE;
-use crate::image::thresholds::Thresholds;
+use crate::image::thresholds::{LOWEST, Thresholds};
 use crate::image::volume::ImageVolume;
 use crate::mesh::Warning;
 
@@ -30,6 +29,9 @@ pub(super) fn findings(image: &ImageVolume, thresholds: Option<&Thresholds>) -> 
         Some(_) => Vec::new(),
     }
 }
+
+/// Values that a scanner may write, in HU: padding around the field of view lies below, broken voxels above.
+pub(super) const PLAUSIBLE: [f64; 2] = [LOWEST - 25.0, 32_767.0];
 
 /// Values that no scanner writes for a body: how many voxels lie below and above what is plausible, of an image with this range.
 pub(super) fn beyond((low, high): (f64, f64), [below, above]: [usize; 2]) -> Option<Warning> {

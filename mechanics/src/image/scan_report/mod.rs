@@ -9,15 +9,13 @@ mod mouth;
 mod objects;
 
 use super::coarsened::coarsened;
-use super::thresholds::{Histogram, LOWEST, Thresholds};
+use super::thresholds::{Histogram, Thresholds};
 use super::volume::ImageVolume;
 use crate::mesh::{Frame, Warning};
 use head::Head;
 
 /// Voxels farther apart than this, in mm, do not hold lips apart.
 const COARSE: f64 = 2.0;
-/// Values that a scanner may write, in HU: padding around the field of view lies below, broken voxels above.
-pub(super) const PLAUSIBLE: [f64; 2] = [LOWEST - 25.0, 32_767.0];
 /// Voxels that are looked at: 8 million take about a second.
 const MOST_VOXELS: usize = 1 << 23;
 
@@ -32,7 +30,7 @@ pub struct ScanReport {
 /// Checks a CT of a head. Where the frame is not known, LPS is taken. Of a large image, means of blocks are looked at.
 pub fn scan_report(image: &ImageVolume, frame: Frame) -> ScanReport {
     let (coarse, range) = (coarse(image), image.range());
-    let (image, beyond) = image.turned(frame, Frame::Lps).limited(PLAUSIBLE);
+    let (image, beyond) = image.turned(frame, Frame::Lps).limited(hounsfield::PLAUSIBLE);
     let image = coarsened(&image, MOST_VOXELS).unwrap_or(image);
     let thresholds = Thresholds::of(&Histogram::of(&image));
     let mut findings = hounsfield::findings(&image, thresholds.as_ref());
