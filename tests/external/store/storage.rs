@@ -21,7 +21,7 @@ trials! {
     }
     on_shared {
         a_host_whose_blobs_are_not_those_of_the_database_is_named
-        a_bucket_that_does_not_exist_is_named_and_takes_nothing
+        a_bucket_that_does_not_exist_is_named
     }
     alone {
         a_start_removes_what_a_dead_process_left
@@ -183,7 +183,7 @@ async fn a_host_whose_blobs_are_not_those_of_the_database_is_named(on: Deploymen
     }
 }
 
-async fn a_bucket_that_does_not_exist_is_named_and_takes_nothing(on: Deployment) {
+async fn a_bucket_that_does_not_exist_is_named(on: Deployment) {
     let BlobLocation::Bucket { settings, prefix, .. } = on.places.blobs.clone() else {
         panic!("a bucket")
     };
@@ -191,9 +191,7 @@ async fn a_bucket_that_does_not_exist_is_named_and_takes_nothing(on: Deployment)
     let store = Store::connect(&with_blobs(&on, nowhere)).await.unwrap();
     let error = store.check_blobs().await.unwrap_err();
     assert!(matches!(error, StoreError::NoBucket), "{error}");
-    let error = store.add_mesh(&mesh("a", "1")).await.unwrap_err();
-    assert!(matches!(error, StoreError::NoBucket) && error.is_unavailable(), "{error}");
-    assert_eq!(blob_count(&on.open().await).await, 0);
+    assert!(error.is_setting() && error.is_unavailable() && store.try_write().await.is_err());
 }
 
 async fn a_start_removes_what_a_dead_process_left() {
