@@ -162,32 +162,6 @@ fn boxes_start_what_lies_as_the_patient_does_wherever_it_lies() {
 }
 
 #[test]
-fn what_lies_off_the_skin_of_a_scan_pulls_nothing() {
-    let twin = Twin::new();
-    let landmarks = landmarks(&twin.template, 11);
-    let skin = surface(&twin.patient, "outer");
-    // A tube 40 mm off a part of the skin, in the scan as a sheet of its own.
-    let mut dressed = skin.clone();
-    let middle = skin.points.iter().sum::<Vector>() / skin.points.len() as f64;
-    let near = |corner: &u32| (skin.points[*corner as usize] - skin.points[40]).norm() < 20.0;
-    let covered = skin.triangles.iter().filter(|corners| corners.iter().all(near));
-    let first = skin.points.len() as u32;
-    dressed.triangles.extend(covered.map(|corners| corners.map(|corner| corner + first)));
-    dressed.points.extend(skin.points.iter().map(|x| x + (x - middle).normalize() * 40.0));
-    assert!(dressed.triangles.len() > skin.triangles.len() + 8);
-    let fitted = |skin: &TriangleSurface| {
-        let patient = Patient { skin: Some(skin), bone: None, landmarks: &landmarks };
-        let found = conform(&twin.sheets(), &patient, Start::Auto, &Unobserved).unwrap();
-        carried(&twin.template, &found.deformation).nodes
-    };
-    let (plain, beside) = (fitted(&skin), fitted(&dressed));
-    let outer = &twin.template.node_sets["outer"];
-    let apart = outer.iter().map(|&node| (plain[node as usize] - beside[node as usize]).norm());
-    let farthest = apart.fold(0.0, f64::max);
-    assert!(farthest < 1.5, "{farthest} mm");
-}
-
-#[test]
 fn directions_turn_with_the_tissue_and_keep_their_length() {
     let mut twin = Twin::new();
     let fibres = vec![Vector::new(2.0, 0.0, 0.0); twin.template.cells.len()];
