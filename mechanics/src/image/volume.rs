@@ -219,26 +219,24 @@ impl ImageVolume {
 
     /// The same image with its values limited to a range, and how many were below and above it.
     pub fn limited(&self, [low, high]: [f64; 2]) -> (ImageVolume, [usize; 2]) {
-        let beyond = |values: &mut dyn Iterator<Item = f64>| {
-            values.fold([0; 2], |[below, above]: [usize; 2], value| {
-                [below + usize::from(value < low), above + usize::from(value > high)]
-            })
-        };
-        let counts = match &*self.voxels {
-            Voxels::I16(values) => beyond(&mut values.iter().map(|&value| f64::from(value))),
-            Voxels::F32(values) => beyond(&mut values.iter().map(|&value| f64::from(value))),
-        };
-        if counts == [0; 2] {
+        let (least, most) = self.range();
+        let mut counts = [0; 2];
+        if least >= low && most <= high {
             return (self.clone(), counts);
         }
+        let mut limit = |value: f64| {
+            counts[0] += usize::from(value < low);
+            counts[1] += usize::from(value > high);
+            value.clamp(low, high)
+        };
         let voxels = match &*self.voxels {
             Voxels::I16(values) => {
-                let limit = |&value: &i16| f64::from(value).clamp(low, high).round() as i16;
-                Voxels::I16(values.iter().map(limit).collect())
+                let limited = values.iter().map(|&value| limit(f64::from(value)).round() as i16);
+                Voxels::I16(limited.collect())
             }
             Voxels::F32(values) => {
-                let limit = |&value: &f32| f64::from(value).clamp(low, high) as f32;
-                Voxels::F32(values.iter().map(limit).collect())
+                let limited = values.iter().map(|&value| limit(f64::from(value)) as f32);
+                Voxels::F32(limited.collect())
             }
         };
         (ImageVolume { voxels: Arc::new(voxels), ..self.clone() }, counts)

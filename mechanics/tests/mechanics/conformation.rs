@@ -112,8 +112,7 @@ fn landmarks_skin_and_bone_bring_every_node_within_a_millimetre_and_the_skin_to_
     let errors = moved.nodes.iter().zip(&twin.patient.nodes).map(|(a, b)| (a - b).norm());
     let mean = errors.sum::<f64>() / moved.nodes.len() as f64;
     assert!(mean < 1.0, "mean {mean} mm");
-    let squares: f64 = found.skin_distances.iter().map(|d| d * d).sum();
-    let rms = (squares / found.skin_distances.len() as f64).sqrt();
+    let rms = rms(&found.skin_distances);
     assert!(rms < 0.3, "rms {rms} mm");
     assert!(found.landmark_distances.iter().all(|&left| left < 0.5));
     // What is told is what a search finds.
@@ -129,8 +128,7 @@ fn surfaces_alone_meet_the_skin_from_axes_of_inertia() {
     let skin = surface(&twin.patient, "outer");
     let patient = Patient { skin: Some(&skin), bone: None, landmarks: &[] };
     let found = conform(&twin.sheets(), &patient, Start::Auto, &Unobserved).unwrap();
-    let squares: f64 = found.skin_distances.iter().map(|d| d * d).sum();
-    let rms = (squares / found.skin_distances.len() as f64).sqrt();
+    let rms = rms(&found.skin_distances);
     assert!(rms < 0.55, "rms {rms} mm");
 }
 

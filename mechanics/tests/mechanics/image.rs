@@ -213,9 +213,24 @@ fn a_cell_across_a_step_is_one_tissue_by_its_mean_and_a_mixture_by_its_shares() 
         assert!((mixed.bulk_modulus() - bulk).abs() < 1e-10 * bulk);
         assert!((mixed.shear_modulus() - shear).abs() < 1e-10 * shear);
     }
-    // All are of one kind, that of fat, their larger part, and share their pressures.
+    // All are of one kind, and share their pressures.
     let kinds = &fraction.pressure_of_cell;
     assert!(kinds.iter().all(|kind| *kind == kinds[0]), "{kinds:?}");
+
+    // It is that of their larger part: of layers of fat, of a mixture of which five parts of eight are fat, and of muscle the first two
+    // share theirs.
+    let mut layers = block(Vector::new(60.0, 40.0, 21.0), [1, 1, 3], CellShape::Hex8);
+    for node in &mut layers.nodes {
+        node.z = [0.0, 5.0, 13.0, 21.0][(node.z / 7.0).round() as usize];
+    }
+    let case = imaged(layers, hounsfield(step(), Mixing::Fraction));
+    let scene = Scene::new(&case, &pulled(), &Settings::default()).unwrap();
+    let mut kinds = [u16::MAX; 3];
+    for (cell, &kind) in scene.pressure_of_cell.iter().enumerate() {
+        let height = scene.mesh.corners(cell).map(|x| x.z).sum::<f64>() / 8.0;
+        kinds[usize::from(height > 5.0) + usize::from(height > 13.0)] = kind;
+    }
+    assert!(kinds[0] == kinds[1] && kinds[1] != kinds[2], "{kinds:?}");
 }
 
 #[test]

@@ -221,6 +221,35 @@ impl Conformed {
             check: brought.check,
         }
     }
+
+    /// The warning of a template part of which lies far from the surface that it was fitted to, because the surface lacks that part or
+    /// lies elsewhere.
+    fn poor_fit(&self) -> Option<Warning> {
+        let surfaces = [
+            ("skin", "skin_p95_mm", &self.skin_distances, [SKIN_P95_MM, SKIN_LARGEST_MM]),
+            ("bone", "bone_p95_mm", &self.bone_distances, [BONE_P95_MM, f64::INFINITY]),
+        ];
+        let (mut told, mut warning) = (Vec::new(), Warning::new("template-apart", ""));
+        for (name, number, distances, [p95, largest]) in surfaces {
+            let Some(LeftDocument { p95_mm, max_mm, .. }) = LeftDocument::of(distances) else {
+                continue;
+            };
+            if p95_mm > p95 || max_mm > largest {
+                told.push(format!("the template lies {p95_mm:.1} mm (95 %) and {max_mm:.1} mm (largest) from the {name}"));
+                warning = warning.with(number, p95_mm);
+            }
+        }
+        let [partners, points] = self.conformation.partners;
+        if points > 0 {
+            warning = warning.with("share_with_partner", partners as f64 / points as f64);
+        }
+        warning.detail = format!(
+            "{}: the surface lacks what the template has there, or lies in another frame; nodes there follow nothing, and a prediction on \
+             them means little",
+            told.join(", and ")
+        );
+        (!told.is_empty()).then_some(warning)
+    }
 }
 
 /// Beyond these distances in mm a template does not lie on the skin or the bone that it was fitted to: on the CT of a head the 95 % and the
@@ -228,44 +257,6 @@ impl Conformed {
 const SKIN_P95_MM: f64 = 2.0;
 const SKIN_LARGEST_MM: f64 = 10.0;
 const BONE_P95_MM: f64 = 10.0;
-
-impl Conformed {
-    /// The warning of a template part of which lies far from the surface that it was fitted to, because the surface lacks that part or
-    /// lies elsewhere.
-    fn poor_fit(&self) -> Option<Warning> {
-        let skin = LeftDocument::of(&self.skin_distances);
-        let bone = LeftDocument::of(&self.bone_distances);
-        let skin = skin.filter(|left| left.p95_mm > SKIN_P95_MM || left.max_mm > SKIN_LARGEST_MM);
-        let bone = bone.filter(|left| left.p95_mm > BONE_P95_MM);
-        let words = |name: &str, left: &LeftDocument| {
-            let LeftDocument { p95_mm, max_mm, .. } = left;
-            format!(
-                "the template lies {p95_mm:.1} mm (95 %) and {max_mm:.1} mm (largest) from the {name}"
-            )
-        };
-        let told: Vec<String> = skin
-            .iter()
-            .map(|left| words("skin", left))
-            .chain(bone.iter().map(|left| words("bone", left)))
-            .collect();
-        let detail = format!(
-            "{}: the surface lacks what the template has there, or lies in another frame; nodes there follow nothing, and a prediction on \
-             them means little",
-            told.join(", and ")
-        );
-        let mut warning = Warning::new("template-apart", detail);
-        for (name, left) in [("skin_p95_mm", &skin), ("bone_p95_mm", &bone)] {
-            if let Some(left) = left {
-                warning = warning.with(name, left.p95_mm);
-            }
-        }
-        let [partners, points] = self.conformation.partners;
-        if points > 0 {
-            warning = warning.with("share_with_partner", partners as f64 / points as f64);
-        }
-        (!told.is_empty()).then_some(warning)
-    }
-}
 
 /// With its place in the spec.
 fn refused(error: &ConformationError, clock: &Observed) -> JobError {

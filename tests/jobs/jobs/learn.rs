@@ -1,7 +1,6 @@
 //! Learning without a server: what mechanics misses alike is learned and added, and bad cohorts are named.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::sync::atomic::{AtomicBool, Ordering};
 
 use facies::jobs::{
     JobContext, JobError, JobInput, JobOutput, LearnInput, LearnedCase, MeshSource, PredictInput,
@@ -11,9 +10,10 @@ use facies::schema::Limits;
 use mechanics::mesh::half_head::{LAYERS, half_head};
 use mechanics::mesh::{CellShape, TriangleSurface, Vector, VolumeMesh, sample};
 use mechanics::prediction::{equilibrium, predict};
-use mechanics::progress::{Phase, Progress, Unobserved};
+use mechanics::progress::{Phase, Unobserved};
 use serde_json::{Value, json};
 
+use super::stop_at::StopAt;
 use crate::sources::stored;
 
 /// Meshes, and what was learned.
@@ -99,23 +99,6 @@ fn done(input: JobInput, sources: &Sources) -> Result<(JobOutput, tempfile::Temp
     work(&input, &place, &Unobserved).map(|done| (done, out))
 }
 
-/// Somebody who asks the work to stop once a phase begins.
-struct StopAt(Phase, AtomicBool);
-
-impl Progress for StopAt {
-    fn phase(&self, phase: Phase) {
-        if phase == self.0 {
-            self.1.store(true, Ordering::SeqCst);
-        }
-    }
-
-    fn iteration(&self, _iteration: usize, _relative_residual: f64, _wanted: f64) {}
-
-    fn is_cancelled(&self) -> bool {
-        self.1.load(Ordering::SeqCst)
-    }
-}
-
 #[test]
 fn learning_that_is_cancelled_ends_in_every_phase_and_keeps_no_model() {
     for phase in [Phase::Solve, Phase::Compare] {
@@ -123,7 +106,7 @@ fn learning_that_is_cancelled_ends_in_every_phase_and_keeps_no_model() {
         let folder = tempfile::tempdir().unwrap();
         let out = folder.path().join("out");
         let place = JobContext { sources: &sources, limits: &Limits::default(), out: &out };
-        let progress = StopAt(phase, AtomicBool::new(false));
+        let progress = StopAt::phase(phase);
         let error = work(&JobInput::Learn(input), &place, &progress).unwrap_err();
         assert_eq!(error.kind().name(), "cancelled", "{phase:?}");
         assert!(!out.exists(), "{phase:?}");

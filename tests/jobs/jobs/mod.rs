@@ -15,6 +15,7 @@ mod predicted_head;
 mod refined;
 mod reproduce_damage;
 mod results;
+mod stop_at;
 mod stress;
 mod study_report;
 mod test_piece;

@@ -1,8 +1,8 @@
 //! Inverse planning from a job document to result files, without a server.
 
 use std::path::Path;
-use std::sync::atomic::{AtomicBool, Ordering};
 
+use super::stop_at::StopAt;
 use facies::jobs::{
     JobContext, JobError, JobInput, JobOutput, MeshSource, OptimiseInput, SourceError, StoredMesh,
     StoredShape, work,
@@ -118,29 +118,12 @@ fn a_queued_job_survives_being_written_and_read() {
     assert_eq!(serde_json::from_str::<JobInput>(&text).unwrap(), input);
 }
 
-/// Somebody who asks the work to stop when it reaches a phase.
-struct StopAt(Phase, AtomicBool);
-
-impl Progress for StopAt {
-    fn phase(&self, phase: Phase) {
-        if phase == self.0 {
-            self.1.store(true, Ordering::SeqCst);
-        }
-    }
-
-    fn iteration(&self, _iteration: usize, _relative_residual: f64, _wanted: f64) {}
-
-    fn is_cancelled(&self) -> bool {
-        self.1.load(Ordering::SeqCst)
-    }
-}
-
 #[test]
 fn a_job_that_is_cancelled_stops_in_every_phase_and_writes_nothing() {
     for phase in [Phase::Validate, Phase::Assemble, Phase::Solve, Phase::Surface, Phase::Compare] {
         let folder = tempfile::tempdir().unwrap();
         let out = folder.path().join("out");
-        let error = run(&out, &StopAt(phase, AtomicBool::default())).unwrap_err();
+        let error = run(&out, &StopAt::phase(phase)).unwrap_err();
         assert_eq!(
             (error.kind().name(), error.class()),
             ("cancelled", ErrorClass::Cancelled),

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
+use super::stop_at::StopAt;
 use facies::jobs::{
     CompareInput, JobContext, JobError, JobInput, JobOutput, MeshSource, PredictInput, SourceError,
     StoredMesh, StoredShape, work,
@@ -394,29 +395,12 @@ fn landmarks_that_are_too_few_or_on_a_line_or_far_away_align_nothing() {
     assert!(align(&good).unwrap().result.comparison.unwrap().both.max < 1e-9);
 }
 
-/// Somebody who asks the work to stop when it reaches a phase.
-struct StopAt(Phase, std::sync::atomic::AtomicBool);
-
-impl Progress for StopAt {
-    fn phase(&self, phase: Phase) {
-        if phase == self.0 {
-            self.1.store(true, std::sync::atomic::Ordering::SeqCst);
-        }
-    }
-
-    fn iteration(&self, _iteration: usize, _relative_residual: f64, _wanted: f64) {}
-
-    fn is_cancelled(&self) -> bool {
-        self.1.load(std::sync::atomic::Ordering::SeqCst)
-    }
-}
-
 #[test]
 fn a_job_that_is_cancelled_stops_in_every_phase_and_writes_nothing() {
     for phase in [Phase::Validate, Phase::Assemble, Phase::Solve, Phase::Surface, Phase::Compare] {
         let folder = tempfile::tempdir().unwrap();
         let out = folder.path().join("out");
-        let progress = StopAt(phase, Default::default());
+        let progress = StopAt::phase(phase);
         let input = JobInput::Predict(predict_input(CASE, TURN, "{}"));
         let error = run(input, &out, &progress).unwrap_err();
         assert_eq!(

@@ -128,6 +128,31 @@ async fn a_template_with_muscles_becomes_a_case_that_smiles() {
 }
 
 #[tokio::test]
+async fn a_template_that_lies_far_from_a_skin_without_its_sides_is_told() {
+    let server = Server::start();
+    let face = face();
+    let mut asked = spec(&server, &face).await;
+    let whole = ended(&server, &asked).await;
+    let is_apart = |job: &Value| {
+        let warnings = job["results"]["warnings"].as_array().unwrap().iter();
+        warnings.filter(|own| own["code"] == "template-apart").cloned().collect::<Vec<_>>()
+    };
+    assert_eq!(whole["status"], "successful", "{whole}");
+    assert!(is_apart(&whole).is_empty(), "{whole}");
+    // The sides of the head are missing in the scan.
+    let mut front = surface_of(&face, &["skin"]);
+    let (sin, cos) = 0.2_f64.sin_cos();
+    let across = |x: &Vector| (cos * x.x + sin * x.y).abs() / 1.08;
+    let points = front.points.clone();
+    front.triangles.retain(|own| own.iter().all(|&corner| across(&points[corner as usize]) < 55.0));
+    asked["patient"]["skin"] = json!(upload_surface(&server, &front).await);
+    let job = ended(&server, &asked).await;
+    assert_eq!(job["status"], "successful", "{job}");
+    let [told] = &is_apart(&job)[..] else { panic!("{job}") };
+    assert!(told["skin_p95_mm"].as_f64() > Some(2.0), "{told}");
+}
+
+#[tokio::test]
 async fn muscles_with_a_surface_or_a_box_become_surfaces_of_the_patient() {
     let server = Server::start();
     let face = face();
