@@ -7,7 +7,7 @@ use tokio::runtime::Handle;
 use super::accepted::{Accepted, LONGEST_QUEUE, queue_full};
 use super::error::{ApiError, ApiResult};
 use super::idempotency::NewId;
-use super::meshes::{TakenIn, take_in};
+use super::meshes::{UploadedMesh, take_in};
 use super::permits::Permit;
 use super::spool::SpooledBody;
 use super::{Service, accepted};
@@ -77,8 +77,8 @@ impl Draft {
         for (name, body) in parts {
             let taken = take_in(service, permit, body, &statement, false).await;
             let id = match taken.map_err(|error| in_part(error, &name))? {
-                TakenIn::Known(row) => row.id,
-                TakenIn::New(upload) => {
+                UploadedMesh::Known(row) => row.id,
+                UploadedMesh::New(upload) => {
                     let same = |other: &&Upload| other.row.sha256 == upload.row.sha256;
                     match uploads.iter().find(same) {
                         Some(other) => other.row.id.clone(),

@@ -106,11 +106,11 @@ async fn upload(
     };
     let permit = service.parse_permit().await?;
     let (row, is_new) = match take_in(&service, &permit, body, &statement, true).await? {
-        TakenIn::Known(row) => {
+        UploadedMesh::Known(row) => {
             service.store.keep_mesh(&row.id).await?;
             (row, false)
         }
-        TakenIn::New(upload) => store(&service, *upload).await?,
+        UploadedMesh::New(upload) => store(&service, *upload).await?,
     };
     let location = format!("/v1/meshes/{}", row.id);
     let status = if is_new { StatusCode::CREATED } else { StatusCode::OK };
@@ -138,7 +138,7 @@ fn single_part(mut parts: Vec<(String, SpooledBody)>) -> ApiResult<SpooledBody> 
 }
 
 /// An upload: stored before, or to be stored.
-pub enum TakenIn {
+pub enum UploadedMesh {
     Known(MeshRow),
     New(Box<Upload>),
 }
@@ -150,18 +150,18 @@ pub async fn take_in(
     mut body: SpooledBody,
     statement: &Statement,
     standalone: bool,
-) -> ApiResult<TakenIn> {
+) -> ApiResult<UploadedMesh> {
     let hash = body.sha256_hex();
     let known = service.store.mesh_by_content(&hash, &statement.identity()).await?;
     if let Some(row) = known {
-        return Ok(TakenIn::Known(row));
+        return Ok(UploadedMesh::Known(row));
     }
     let statement = statement.clone();
     let read = permit.compute(move || -> ApiResult<Upload> {
         let bytes = body.read()?;
         Ok(read_upload(&bytes, hash, &statement, standalone)?)
     });
-    Ok(TakenIn::New(Box::new(read.await??)))
+    Ok(UploadedMesh::New(Box::new(read.await??)))
 }
 
 async fn store(service: &Service, upload: Upload) -> ApiResult<(MeshRow, bool)> {

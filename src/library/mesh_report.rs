@@ -26,7 +26,7 @@ pub fn mesh_report(read: &ReadMesh) -> MeshReport {
             let faces = Faces::new(volume);
             let boundary = volume.boundary_of(&faces);
             warnings.extend(several_components(volume, &faces));
-            let triangles = boundary.iter().map(|face| face.triangles().count()).sum();
+            let triangles = boundary.iter().map(|face| face.nodes().len() - 2).sum();
             (MeshKind::Volume, bounding_box(&volume.nodes), volume.nodes.len(), triangles)
         }
         Mesh::Surface(surface) => {

@@ -18,7 +18,7 @@ use crate::schema::{CaseDocument, WarningDocument};
 use crate::store::{CaseResponses, Store, StoreError};
 use mechanics::format::{self, Mesh, ReadLimits, WriteError};
 use mechanics::mesh::{TriangleSurface, Vector};
-use mechanics::prediction::{Skin, skin_overlap};
+use mechanics::prediction::{NORMAL_TURNED, Skin, skin_overlap};
 use mechanics::response::{Amounts, COLUMNS_PER_SEGMENT, Linearity, QuadraticForm, Response};
 
 /// Jobs with a cached verdict; beyond that all are checked again.
@@ -73,13 +73,15 @@ impl LoadedResponse {
         let segments = &self.response.segments;
         let form = self.second_order.as_ref();
         let beyond = form.map(|form| form.apply(segments, movements, &mut displacement));
+        let of_case = self.description.warnings_of(plan);
+        let is_turned = of_case.iter().any(|warning| warning.code == NORMAL_TURNED);
         let linear = LinearPart {
             nonlinearity: self.linearity.of(movements),
-            acts_inside: inner.iter().any(|amount| *amount != 0.0),
+            is_unknown: is_turned || inner.iter().any(|amount| *amount != 0.0),
         };
         let summary = AppliedSummary::new(&displacement, beyond, &linear);
         let mut warnings = summary.warnings();
-        warnings.extend(self.description.warnings_of(plan));
+        warnings.extend(of_case);
         Applied { displacement, summary, warnings, skin_checked: false }
     }
 

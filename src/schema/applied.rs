@@ -50,8 +50,8 @@ pub struct AppliedSummary {
     #[schema(nullable = false)]
     pub second_order_mm: Option<f64>,
     /// The linearisation error, mean over the moving skin (by more than a tenth of the largest displacement): of order 1 the
-    /// second-order term, of order 2 the third-order term, both estimated from samples. Absent if the plan grows tissue or activates muscles:
-    /// then it is not known.
+    /// second-order term, of order 2 the third-order term, both estimated from samples. Absent if the plan grows tissue, activates muscles
+    /// or turns a wall with its segment (`sliding-normal-turned`): then it is not known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub nonlinearity_estimate_mm: Option<f64>,
@@ -65,8 +65,8 @@ pub struct AppliedSummary {
 pub struct LinearPart {
     /// Of its movements.
     pub nonlinearity: Nonlinearity,
-    /// Whether tissue grows or muscles pull, which have no estimate.
-    pub acts_inside: bool,
+    /// Whether tissue grows, muscles pull or a wall turns with its segment, which have no estimate.
+    pub is_unknown: bool,
 }
 
 /// Third-order terms above this many mm have to be smaller than this share of the second-order term, else the series is not
@@ -81,16 +81,16 @@ fn first_order() -> u8 {
 impl AppliedSummary {
     /// `beyond` of a response of second order; `nonlinearity` of the movements, reported if nothing else acts.
     pub fn new(displacement: &[Vector], beyond: Option<BeyondLinear>, linear: &LinearPart) -> Self {
-        let LinearPart { nonlinearity, acts_inside } = *linear;
+        let LinearPart { nonlinearity, is_unknown } = *linear;
         let squared = displacement.iter().map(Vector::norm_squared).fold(0.0, f64::max);
         AppliedSummary {
             max_mm: squared.sqrt(),
             largest_rotation_deg: nonlinearity.largest_rotation.to_degrees(),
             order: if beyond.is_some() { 2 } else { 1 },
             second_order_mm: beyond.map(|beyond| beyond.second),
-            nonlinearity_estimate_mm: (!acts_inside)
+            nonlinearity_estimate_mm: (!is_unknown)
                 .then(|| beyond.map_or(nonlinearity.estimate, |beyond| beyond.third)),
-            within_linear_range: !acts_inside
+            within_linear_range: !is_unknown
                 && match beyond {
                     None => nonlinearity.is_within_linear_range(),
                     Some(beyond) => outside_second_order(&beyond).is_none(),
@@ -113,7 +113,7 @@ impl AppliedSummary {
         }
         let Some(estimate) = self.nonlinearity_estimate_mm else {
             let detail =
-                "what linearity leaves out is not known where tissue grows or muscles pull"
+                "what linearity leaves out is not known where tissue grows, muscles pull, or a wall turns with its segment"
                     .to_owned();
             return vec![WarningDocument {
                 code: Self::UNKNOWN.to_owned(),

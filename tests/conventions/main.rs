@@ -294,6 +294,24 @@ fn no_module_is_a_drawer_for_what_has_no_home() {
     }
 }
 
+/// What is found, seen or told is a displacement, a region, a warning: a type has a noun of the field for its name.
+#[test]
+fn no_type_is_named_by_a_participle_alone() {
+    let vague = [
+        "Asked", "Enough", "Found", "Given", "Kept", "Known", "Made", "Place", "Said", "Seen",
+        "Shown", "TakenIn", "Taken", "Told", "Wanted",
+    ];
+    for file in sources() {
+        for line in fs::read_to_string(&file).unwrap().lines() {
+            let words: Vec<&str> = line.split(|c: char| !c.is_alphanumeric()).collect();
+            for pair in words.windows(2) {
+                let is_type = ["struct", "enum", "trait", "type"].contains(&pair[0]);
+                assert!(!(is_type && vague.contains(&pair[1])), "{}: {line}", file.display());
+            }
+        }
+    }
+}
+
 /// The description of the API knows documents by their names alone: of two with one name it has one.
 #[test]
 fn no_two_documents_have_one_name() {

@@ -9,26 +9,31 @@ pub const SAME_WALL: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
 /// For each of the nodes the unit normals of its walls: at most three, none where no face is near.
 ///
-/// The walls are the boundary faces all of whose nodes are listed; a node without such a face takes
-/// all boundary faces that touch it.
+/// The walls are the boundary faces all of whose nodes are listed, and beside these, less than 45 degrees apart, the faces whose
+/// other nodes are on bone: so it makes no difference whether a set has the nodes where its wall ends in bone. A node without such
+/// a face takes all boundary faces that touch it.
 pub fn wall_normals(
     mesh: &VolumeMesh,
     boundary: &[BoundaryFace],
     nodes: &[u32],
+    on_bone: &[bool],
 ) -> Vec<(u32, Vec<Vector>)> {
     let mut listed = vec![false; mesh.nodes.len()];
     for &node in nodes {
         listed[node as usize] = true;
     }
     let mut on_walls: Vec<Vec<Vector>> = vec![Vec::new(); mesh.nodes.len()];
-    let mut touching = on_walls.clone();
+    let (mut ending, mut touching) = (on_walls.clone(), on_walls.clone());
     for face in boundary {
-        let normal = area_vector(mesh, face);
+        let normal = face.area_vector(&mesh.nodes);
         let whole = face.nodes().iter().all(|&node| listed[node as usize]);
+        let ends = face.nodes().iter().all(|&node| listed[node as usize] || on_bone[node as usize]);
         for &node in face.nodes().iter().filter(|&&node| listed[node as usize]) {
             touching[node as usize].push(normal);
             if whole {
                 on_walls[node as usize].push(normal);
+            } else if ends {
+                ending[node as usize].push(normal);
             }
         }
     }
@@ -36,19 +41,16 @@ pub fn wall_normals(
         .iter()
         .map(|&node| {
             let walls = &on_walls[node as usize];
-            let faces = if walls.is_empty() { &touching[node as usize] } else { walls };
+            let is_of_wall = |face: &&Vector| {
+                let cosine = |wall: &Vector| wall.dot(face) / (wall.norm() * face.norm());
+                walls.iter().any(|wall| cosine(wall) > SAME_WALL)
+            };
+            let ends = ending[node as usize].iter().filter(is_of_wall);
+            let own: Vec<Vector> = walls.iter().chain(ends).copied().collect();
+            let faces = if walls.is_empty() { &touching[node as usize] } else { &own };
             (node, group_by_wall(faces))
         })
         .collect()
-}
-
-/// Half the cross product of the diagonals of a quadrilateral or of two edges of a triangle.
-pub fn area_vector(mesh: &VolumeMesh, face: &BoundaryFace) -> Vector {
-    let corner = |local: usize| mesh.nodes[face.nodes()[local] as usize];
-    match face.nodes().len() {
-        3 => (corner(1) - corner(0)).cross(&(corner(2) - corner(0))) * 0.5,
-        _ => (corner(2) - corner(0)).cross(&(corner(3) - corner(1))) * 0.5,
-    }
 }
 
 /// Sums area vectors wall by wall and scales the sums to length 1.
@@ -68,6 +70,8 @@ fn group_by_wall(faces: &[Vector]) -> Vec<Vector> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::mesh::CellShape;
+    use crate::mesh::sample::block;
 
     #[test]
     fn the_two_sides_of_a_thin_edge_are_one_wall() {
@@ -76,6 +80,26 @@ mod tests {
         let walls = group_by_wall(&[above, below]);
         assert_eq!(walls.len(), 1);
         assert!((walls[0] - Vector::z()).norm() < 1e-15, "{}", walls[0]);
+    }
+
+    /// A curved floor that ends in bone at x = 0.
+    #[test]
+    fn a_wall_that_ends_in_bone_has_the_same_normals_with_and_without_the_nodes_on_bone() {
+        let mut mesh = block(Vector::new(3.0, 1.0, 1.0), [3, 1, 1], CellShape::Hex8);
+        mesh.nodes.iter_mut().for_each(|node| node.z -= 0.1 * node.x * node.x);
+        let floor = mesh.node_sets["z_min"].clone();
+        let is_on_bone: Vec<bool> = mesh.nodes.iter().map(|node| node.x < 0.5).collect();
+        let (beside, _): (Vec<u32>, Vec<u32>) =
+            floor.iter().partition(|&&node| !is_on_bone[node as usize]);
+        let boundary = mesh.boundary_faces();
+        let normals = |nodes: &[u32], on_bone: &[bool]| -> Vec<(u32, Vec<Vector>)> {
+            let found = wall_normals(&mesh, &boundary, nodes, on_bone).into_iter();
+            found.filter(|(node, _)| !is_on_bone[*node as usize]).collect()
+        };
+        let nowhere = vec![false; mesh.nodes.len()];
+        let whole = normals(&floor, &nowhere);
+        assert_eq!(normals(&beside, &is_on_bone), whole);
+        assert_ne!(normals(&beside, &nowhere), whole);
     }
 
     #[test]

@@ -4,6 +4,7 @@
 //! 3.5.3, who fit octree splines (Szeliski, Lavallee 1996); here only control points near the tissue exist.
 
 use super::affine::Affine;
+use super::covering::{Covering, uncovered};
 use super::deformation::Deformation;
 use super::error::{ConformationError, SheetName};
 use super::landmark::{self, Landmark, refuse_scale};
@@ -57,12 +58,15 @@ pub struct Conformation {
     pub landmark_distances: Vec<f64>,
     /// Points of the template's skin with a partner, and all of them.
     pub partners: [usize; 2],
+    /// What covers the patient's skin, and was left out.
+    pub covering: Covering,
 }
 
 /// A sheet of the template with the surface that it meets.
 struct Pair {
     sheet: Sheet,
     target: Target,
+    covering: Covering,
 }
 
 /// Brings a template to a patient.
@@ -108,9 +112,13 @@ fn pair(
     if sheet.is_empty() {
         return Err(ConformationError::NoSheet { sheet: name, nodes });
     }
-    let target = Target::new(surface, name == SheetName::Bone)
-        .map_err(|error| ConformationError::Surface { sheet: name, error })?;
-    Ok(Some(Pair { sheet, target }))
+    let refused = |error| ConformationError::Surface { sheet: name, error };
+    let (surface, covering) = match name {
+        SheetName::Skin => uncovered(surface).map_err(refused)?,
+        SheetName::Bone => (surface.clone(), Covering::default()),
+    };
+    let target = Target::new(&surface, name == SheetName::Bone).map_err(refused)?;
+    Ok(Some(Pair { sheet, target, covering }))
 }
 
 fn started(
@@ -291,6 +299,7 @@ fn measured(
         bone_distances: distances(bone),
         landmark_distances: landmarks.iter().map(left).collect(),
         partners: skin.map_or([0, 0], |pair| pair.target.partners(&moved(pair))),
+        covering: skin.map(|pair| pair.covering).unwrap_or_default(),
         deformation,
     }
 }

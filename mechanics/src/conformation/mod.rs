@@ -3,6 +3,7 @@
 mod affine;
 mod carried;
 mod conform;
+mod covering;
 mod deformation;
 mod error;
 mod fibres;
@@ -19,6 +20,7 @@ mod warp;
 pub use affine::Affine;
 pub use carried::carried;
 pub use conform::{Conformation, Patient, Template, conform};
+pub use covering::Covering;
 pub use deformation::Deformation;
 pub use error::{ConformationError, SheetName};
 pub use fibres::{

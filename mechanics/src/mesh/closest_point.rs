@@ -17,7 +17,7 @@ use parry3d_f64::{
     bounding_volume::Aabb,
     math::Vector as ParryVector,
     partitioning::{Bvh, BvhBuildStrategy, BvhNode},
-    query::{PointQuery, PointQueryWithLocation},
+    query::{PointQuery, PointQueryWithLocation, Ray, RayCast},
     shape::{Triangle, TrianglePointLocation},
 };
 
@@ -148,6 +148,23 @@ impl SurfaceSearch {
             },
         )?;
         Some(self.closest_on(leaf as usize, query))
+    }
+
+    /// The first triangle that a ray meets from a point, but for one of them, and how far that is, in mm, if less than `most`; the
+    /// direction has length 1.
+    pub fn first_hit(
+        &self,
+        from: &Vector,
+        direction: &Vector,
+        except: usize,
+        most: f64,
+    ) -> Option<(usize, f64)> {
+        let ray = Ray::new(to_parry(&(from - self.origin)), to_parry(direction));
+        let (leaf, distance) = self.tree.cast_ray(&ray, most, |leaf, best| {
+            let is_other = self.numbers[leaf as usize] as usize != except;
+            is_other.then(|| self.triangles[leaf as usize].cast_local_ray(&ray, best, false))?
+        })?;
+        Some((self.numbers[leaf as usize] as usize, distance))
     }
 
     /// Distance from `point` to `closest`, the closest point to it: positive outside, in mm.

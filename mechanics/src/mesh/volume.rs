@@ -1,5 +1,6 @@
 //! Volume meshes of mixed first-order cells with regions and named sets.
 
+use std::cmp::Ordering;
 use std::collections::BTreeMap;
 
 use super::IgnoredArrays;
@@ -139,10 +140,14 @@ pub struct VolumeMesh {
     pub ignored: IgnoredArrays,
 }
 
+/// Diagonals whose squares differ by less than this part of their sum are equally long.
+const AS_LONG: f64 = 1e-9;
+
 /// A face that belongs to one cell only, oriented outwards; 3 or 4 nodes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct BoundaryFace {
     pub cell: u32,
+    /// Of a triangle the first one comes again.
     nodes: [u32; 4],
     count: u8,
 }
@@ -152,10 +157,41 @@ impl BoundaryFace {
         &self.nodes[..self.count as usize]
     }
 
-    /// The face as one triangle or, cut along its diagonal 0-2, as two.
-    pub fn triangles(&self) -> impl Iterator<Item = [u32; 3]> + '_ {
+    /// The face as one triangle or, cut along its shorter diagonal, as two. Of equal diagonals it is that through the corner whose
+    /// coordinates come first, so that the cut does not depend on how nodes are numbered.
+    pub fn triangles(&self, nodes: &[Vector]) -> impl Iterator<Item = [u32; 3]> + use<> {
         let [a, b, c, d] = self.nodes;
-        [[a, b, c], [a, c, d]].into_iter().take(self.count as usize - 2)
+        let is_triangle = self.count == 3;
+        let cut = match is_triangle || self.is_cut_from_first(nodes) {
+            true => [[a, b, c], [a, c, d]],
+            false => [[a, b, d], [b, c, d]],
+        };
+        cut.into_iter().take(self.count as usize - 2)
+    }
+
+    /// Half the cross product of the diagonals, or of two edges of a triangle; outwards, in mm².
+    pub fn area_vector(&self, nodes: &[Vector]) -> Vector {
+        let [a, b, c, d] = self.nodes.map(|node| nodes[node as usize]);
+        match self.count {
+            3 => (b - a).cross(&(c - a)) * 0.5,
+            _ => (c - a).cross(&(d - b)) * 0.5,
+        }
+    }
+
+    /// Whether the diagonal of the first corner cuts a face of four.
+    fn is_cut_from_first(&self, nodes: &[Vector]) -> bool {
+        let corners = self.nodes.map(|node| nodes[node as usize]);
+        let [a, b, c, d] = corners;
+        let [first, second] = [(c - a).norm_squared(), (d - b).norm_squared()];
+        if (first - second).abs() > AS_LONG * (first + second) {
+            return first < second;
+        }
+        let before = |one: &Vector, other: &Vector| {
+            let pairs = one.iter().zip(other).map(|(x, y)| x.total_cmp(y));
+            pairs.fold(Ordering::Equal, Ordering::then)
+        };
+        let lowest = (0..4).min_by(|&i, &j| before(&corners[i], &corners[j]));
+        lowest.is_some_and(|corner| corner % 2 == 0)
     }
 }
 
@@ -182,10 +218,7 @@ impl VolumeMesh {
     pub(super) fn face(&self, cell: u32, local: u8) -> BoundaryFace {
         let cell_nodes = self.cells.nodes(cell as usize);
         let face = self.cells.shape(cell as usize).faces()[local as usize];
-        let mut nodes = [u32::MAX; 4];
-        for (slot, &local) in nodes.iter_mut().zip(face) {
-            *slot = cell_nodes[local];
-        }
+        let nodes = std::array::from_fn(|corner| cell_nodes[face[corner % face.len()]]);
         BoundaryFace { cell, nodes, count: face.len() as u8 }
     }
 
@@ -200,7 +233,7 @@ impl VolumeMesh {
         }
         let triangles = faces
             .iter()
-            .flat_map(|face| face.triangles())
+            .flat_map(|face| face.triangles(&self.nodes))
             .map(|triangle| triangle.map(|node| point_of[node as usize]))
             .collect();
         let points = node_ids.iter().map(|&node| self.nodes[node as usize]).collect();

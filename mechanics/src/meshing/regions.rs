@@ -182,28 +182,31 @@ fn of_cells(climb: &Climb, watch: &Watch) -> Result<Vec<u8>, MeshingError> {
 fn shared(draft: &Draft, regions: &[u8]) -> Vec<Option<[u8; 2]>> {
     /// What the cells of a node have in common.
     #[derive(Clone, Copy)]
-    enum Seen {
+    enum RegionsAround {
         None,
         One(u8),
         Two([u8; 2]),
         More,
     }
-    let mut seen = vec![Seen::None; draft.nodes.len()];
+    let mut seen = vec![RegionsAround::None; draft.nodes.len()];
     for (tet, &region) in draft.tetrahedra.iter().zip(regions) {
         for &node in tet {
             let seen = &mut seen[node as usize];
             *seen = match *seen {
-                Seen::None => Seen::One(region),
-                Seen::One(one) if one != region => Seen::Two([one, region]),
-                Seen::Two(pair) if !pair.contains(&region) => Seen::More,
-                Seen::One(_) | Seen::Two(_) | Seen::More => *seen,
+                RegionsAround::None => RegionsAround::One(region),
+                RegionsAround::One(one) if one != region => RegionsAround::Two([one, region]),
+                RegionsAround::Two(pair) if !pair.contains(&region) => RegionsAround::More,
+                RegionsAround::One(_) | RegionsAround::Two(_) | RegionsAround::More => *seen,
             };
         }
     }
     let each = seen.into_iter().zip(&draft.boundaries);
     each.map(|(seen, on)| match seen {
-        Seen::Two(pair) if on.is_empty() => Some(pair),
-        Seen::None | Seen::One(_) | Seen::Two(_) | Seen::More => None,
+        RegionsAround::Two(pair) if on.is_empty() => Some(pair),
+        RegionsAround::None
+        | RegionsAround::One(_)
+        | RegionsAround::Two(_)
+        | RegionsAround::More => None,
     })
     .collect()
 }

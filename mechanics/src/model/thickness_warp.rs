@@ -114,7 +114,7 @@ impl Warped<'_> {
             if face.nodes().iter().any(|&node| held[node as usize].is_none()) {
                 continue;
             }
-            for triangle in face.triangles() {
+            for triangle in face.triangles(&self.mesh.nodes) {
                 let [a, b, c] = triangle.map(|node| self.mover(node));
                 triangles.entry(if b == c { b } else { a }).or_default().push(triangle);
             }

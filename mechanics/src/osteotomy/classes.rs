@@ -161,7 +161,7 @@ fn outward_normals(tissue: &TissueBoundary<'_>) -> Vec<Vector> {
     let mut whole = vec![Vector::zeros(); tissue.mesh.nodes.len()];
     let mut part = whole.clone();
     for face in tissue.mesh.boundary_faces() {
-        let area_vector: Vector = face.triangles().map(|corners| area(tissue.mesh, corners)).sum();
+        let area_vector = face.area_vector(&tissue.mesh.nodes);
         let normals = if face.nodes().iter().all(on_bone) { &mut whole } else { &mut part };
         for &node in face.nodes().iter().filter(|node| on_bone(node)) {
             normals[node as usize] += area_vector;
@@ -170,11 +170,6 @@ fn outward_normals(tissue: &TissueBoundary<'_>) -> Vec<Vector> {
     let unit = |normal: Vector| normal.try_normalize(f64::MIN_POSITIVE);
     let both = whole.into_iter().zip(part);
     both.map(|(whole, part)| unit(whole).or_else(|| unit(part)).unwrap_or_default()).collect()
-}
-
-fn area(mesh: &VolumeMesh, corners: [u32; 3]) -> Vector {
-    let [a, b, c] = corners.map(|corner| mesh.nodes[corner as usize]);
-    (b - a).cross(&(c - a)) / 2.0
 }
 
 /// The node set of what slides on a segment.

@@ -1,6 +1,8 @@
 //! Solution of a scene: its equilibrium, its discretisation error and its linearisation error.
 
-use super::contact::{InTouch, Touch, touch, touch_at_finite_strain};
+use super::contact::{
+    InTouch, Touch, expected_touch_at_finite_strain, touch, touch_at_finite_strain,
+};
 use super::method::MethodKind;
 use super::nonlinearity::{self, Estimated, NonlinearityUnknown};
 use super::numerical_error::{self, NotEstimated, NumericalError};
@@ -145,13 +147,20 @@ fn at_finite_strain(
     progress: &dyn Progress,
 ) -> Result<Answer, ModelError> {
     let with_error = unknown.of_mesh.is_none();
-    let (free, error) = scene.solve_at_finite_strain(with_error, progress)?;
-    let touched = touch_at_finite_strain(scene, &free, with_error, progress)?;
-    let (equilibrium, in_contact, contact) = match touched {
-        Some(found) => (found.equilibrium, found.numerical_error, Some(found.touch)),
-        None => (free, None, None),
-    };
-    let known = in_contact.or(error.map(numerical_error::at_last_tangent));
+    let in_touch = |found: InTouch| (found.equilibrium, found.numerical_error, Some(found.touch));
+    let (equilibrium, known, contact) =
+        match expected_touch_at_finite_strain(scene, with_error, progress)? {
+            Some(found) => in_touch(found),
+            None => {
+                let (free, error) = scene.solve_at_finite_strain(with_error, progress)?;
+                let touched = touch_at_finite_strain(scene, &free, with_error, progress)?;
+                let error = error.map(numerical_error::at_last_tangent);
+                match touched.map(in_touch) {
+                    Some((found, known, touch)) => (found, known.or(error), touch),
+                    None => (free, error, None),
+                }
+            }
+        };
     let not_asked = unknown.of_mesh.unwrap_or(NotEstimated::NotAsked);
     Ok(Answer {
         equilibrium,

@@ -14,6 +14,7 @@ use crate::model::fem::finite_strain;
 use crate::model::fem::linear_system::{LinearSystem, Solved};
 use crate::model::problem::{Equilibrium, ModelError};
 use crate::progress::{Phase, Progress};
+use crate::solver::SolverError;
 
 /// Parts of the boundary that lie in each other deeper than this, in mm, are reported.
 const DEEP_MM: f64 = 0.05;
@@ -85,7 +86,7 @@ pub(super) fn touch(
     with_error: bool,
     progress: &dyn Progress,
 ) -> Result<Option<InTouch>, ModelError> {
-    let found = pressed(scene, &free.equilibrium, progress, |surfaces| {
+    let found = pressed(scene, Some(&free.equilibrium), progress, |surfaces| {
         let relative_residual = scene.settings.relative_residual;
         let found = ContactProblem { system, free, surfaces, relative_residual }.solve(progress)?;
         let Some(mut found) = found else { return Ok(None) };
@@ -102,30 +103,64 @@ pub(super) fn touch(
     Ok(Some(found))
 }
 
-/// The same at finite strain.
+/// The same at finite strain, on the way to an answer without contact.
 pub(super) fn touch_at_finite_strain(
     scene: &Scene,
     free: &Equilibrium,
     with_error: bool,
     progress: &dyn Progress,
 ) -> Result<Option<InTouch>, ModelError> {
-    pressed(scene, free, progress, |surfaces| {
-        let found = scene.at_finite_strain(|problem, finer| {
-            let finer = with_error.then_some(finer);
-            let may_touch = finite_strain::MayTouch { free, surfaces };
-            problem.solve_in_contact(&scene.load_case(), may_touch, finer, progress)
-        })?;
-        Ok(found.map(|finite_strain::InContact { equilibrium, contact, mesh_error }| {
-            let numerical_error = mesh_error.map(at_last_tangent);
-            Pressing { equilibrium, contact, numerical_error }
-        }))
+    pressed(scene, Some(free), progress, |surfaces| {
+        pressed_at_finite_strain(scene, &free.displacement, surfaces, with_error, progress)
     })
 }
 
-/// What a solution with contact says of an answer without; also where nothing presses and parts lie in each other nevertheless.
+/// The same where the answer of linear elasticity touches, without one of finite strain before it; none where that says nothing.
+pub(super) fn expected_touch_at_finite_strain(
+    scene: &Scene,
+    with_error: bool,
+    progress: &dyn Progress,
+) -> Result<Option<InTouch>, ModelError> {
+    pressed(scene, None, progress, |surfaces| {
+        let Some(system) = scene.assemble(progress)? else { return Ok(None) };
+        let expected = system.solve(&[scene.load_case()], progress)?.remove(0).equilibrium;
+        drop(system);
+        let displacement = &expected.displacement;
+        match pressed_at_finite_strain(scene, displacement, surfaces, with_error, progress) {
+            // What does not touch otherwise may rest.
+            Err(
+                ModelError::ContactUnsettled { .. }
+                | ModelError::Standstill { .. }
+                | ModelError::Solver(SolverError::NotConverged { .. }),
+            ) => Ok(None),
+            ended => ended,
+        }
+    })
+}
+
+fn pressed_at_finite_strain(
+    scene: &Scene,
+    free: &[Vector],
+    surfaces: &FacingSurfaces,
+    with_error: bool,
+    progress: &dyn Progress,
+) -> Result<Option<Pressing>, ModelError> {
+    let found = scene.at_finite_strain(|problem, finer| {
+        let finer = with_error.then_some(finer);
+        let may_touch = finite_strain::MayTouch { free, surfaces };
+        problem.solve_in_contact(&scene.load_case(), may_touch, finer, progress)
+    })?;
+    Ok(found.map(|finite_strain::InContact { equilibrium, contact, mesh_error }| {
+        let numerical_error = mesh_error.map(at_last_tangent);
+        Pressing { equilibrium, contact, numerical_error }
+    }))
+}
+
+/// What a solution with contact says of an answer without; also where nothing presses and parts lie in each other nevertheless,
+/// if there is such an answer.
 fn pressed(
     scene: &Scene,
-    free: &Equilibrium,
+    free: Option<&Equilibrium>,
     progress: &dyn Progress,
     solve: impl FnOnce(&FacingSurfaces) -> Result<Option<Pressing>, ModelError>,
 ) -> Result<Option<InTouch>, ModelError> {
@@ -141,11 +176,14 @@ fn pressed(
     );
     let found = solve(&surfaces)?;
     let nothing_presses = found.is_none();
-    let Pressing { equilibrium, contact, numerical_error } = found.unwrap_or_else(|| {
+    let without = || {
         let forces = vec![Vector::zeros(); scene.mesh.nodes.len()];
         let contact = Contact { forces, ..Contact::default() };
-        Pressing { equilibrium: free.clone(), contact, numerical_error: None }
-    });
+        Some(Pressing { equilibrium: free?.clone(), contact, numerical_error: None })
+    };
+    let Some(Pressing { equilibrium, contact, numerical_error }) = found.or_else(without) else {
+        return Ok(None);
+    };
     let at_rest = deepest_overlap(surfaces.rest()).map_or(0.0, |at| at.depth);
     let moved = surfaces.after(&equilibrium.displacement);
     let overlap = deepest_overlap(&moved).filter(|deepest| deepest.depth > at_rest + DEEP_MM);

@@ -72,7 +72,7 @@ pub use skin::{Skin, least_moving};
 pub use skin_overlap::{SKIN_OVERLAPS, skin_overlap};
 pub use stated::{StatedCondition, StatedHold};
 pub use unconstrained::{NOTHING_HELD, RigidlyCarried, rigidly_carried};
-pub use walls::normal_turned;
+pub use walls::{NORMAL_TURNED, normal_turned};
 
 pub use adaptive::{
     AdaptiveError, AdaptivePrediction, Level, RefinementGoal, Stop, predict_adaptively,
@@ -89,7 +89,9 @@ use crate::mesh::{Vector, Warning};
 pub use crate::model::cell_state::{CellState, CellStates};
 pub use crate::model::fem::finite_strain::Advance;
 pub use crate::model::fem::linear_states::node_states;
-use crate::model::fem::strain::{CellDeformation, deformations};
+use crate::model::fem::strain::{
+    CellDeformation, INVERTED, deformations, determinants_at_corners, inverted_cells,
+};
 pub use crate::model::problem::{InvertedCell, ModelError};
 use crate::progress::{Phase, Progress};
 use crate::solver::LoadStep;
@@ -193,8 +195,13 @@ fn described(scene: &Scene, answer: Answer, progress: &dyn Progress) -> Predicti
     warnings.extend(scene.nothing_moves());
     warnings.extend(equilibrium.warnings.iter().cloned());
     warnings.extend(contact.iter().flat_map(|touch| touch.warnings(scene)));
-    let det_f: Vec<f64> = deformation.iter().map(|cell| cell.det_f).collect();
-    warnings.extend(inverted_cells(&det_f));
+    let at_corners = determinants_at_corners(&scene.mesh, &equilibrium.displacement);
+    let pairs = deformation.iter().zip(at_corners);
+    let det_f: Vec<f64> = pairs.map(|(cell, at_corners)| cell.det_f.min(at_corners)).collect();
+    // Quadratic cells have been looked at with their edge nodes.
+    if !warnings.iter().any(|warning| warning.code == INVERTED) {
+        warnings.extend(inverted_cells(&det_f));
+    }
     warnings.extend(far_skin::outrun(scene, &equilibrium.displacement));
     warnings.extend(small_strain::left(scene, &deformation, &nonlinearity));
     warnings.extend(exponential_tissue::warnings(scene, &equilibrium.displacement));
@@ -228,17 +235,6 @@ fn described(scene: &Scene, answer: Answer, progress: &dyn Progress) -> Predicti
         deformation,
         warnings,
     }
-}
-
-/// An answer that turns cells inside out says so.
-pub(crate) fn inverted_cells(determinants: &[f64]) -> Option<Warning> {
-    let inverted = determinants.iter().filter(|det_f| **det_f <= 0.0).count();
-    let smallest = determinants.iter().copied().fold(f64::INFINITY, f64::min);
-    let detail = format!("the displacement turns {inverted} cells inside out");
-    let warning = Warning::new("cells-inverted", detail)
-        .with("cells", inverted as f64)
-        .with("share", inverted as f64 / determinants.len().max(1) as f64);
-    (inverted > 0).then(|| warning.with("smallest_det_f", smallest))
 }
 
 fn far_landmarks(landmarks: &BTreeMap<String, (Vector, f64)>) -> Vec<Warning> {

@@ -237,7 +237,7 @@ impl FinerScene<'_> {
         let mut finer =
             Membrane { sheet: membrane.sheet, triangles: Vec::new(), lines: Vec::new() };
         for (face, place) in self.parts_of(&chosen) {
-            finer.triangles.extend(face.triangles());
+            finer.triangles.extend(face.triangles(&self.mesh.nodes));
             finer.lines.extend(membrane.lines.get(place));
         }
         finer

@@ -18,8 +18,8 @@ use crate::mesh::{SurfaceSearch, TriangleSurface, Vector, Warning};
 /// The code of the warning.
 pub const SKIN_OVERLAPS: &str = "skin-overlaps";
 
-/// Triangles that pass through each other by less than this, in mm, lie on each other.
-const TOUCHING_MM: f64 = 1e-5;
+/// Triangles that pass through each other by less than this, in mm, lie on each other: contact is met to half of it.
+const TOUCHING_MM: f64 = 2e-3;
 
 /// Points of which the depth is taken, evenly chosen.
 const MEASURED_POINTS: usize = 1000;
@@ -138,8 +138,9 @@ fn deepest(surface: &TriangleSurface, pairs: &[TrianglePair]) -> Option<Deepest>
     measured.max_by(|one, other| one.depth.total_cmp(&other.depth))
 }
 
-/// For each point the part of the skin that it belongs to, where that lies behind other skin. A part with more than
-/// half of the points is what the others lie behind.
+/// For each point the part of the skin that it belongs to, where that lies behind other skin: where more edges end than begin
+/// outside, because a part of which only an edge or a corner passes is none. A part with more than half of the points is what the
+/// others lie behind.
 fn parts_inside(surface: &TriangleSurface, pairs: &[TrianglePair]) -> Vec<Option<u32>> {
     let mut is_cut = vec![false; surface.triangles.len()];
     for &triangle in pairs.as_flattened() {
@@ -156,16 +157,19 @@ fn parts_inside(surface: &TriangleSurface, pairs: &[TrianglePair]) -> Vec<Option
         points_of[parts.root(point) as usize] += 1;
     }
     let mut is_inside = vec![false; surface.points.len()];
-    for point in ends_inside(surface, pairs) {
-        let part = parts.root(point) as usize;
-        is_inside[part] = 2 * points_of[part] <= surface.points.len();
+    let mut ends_of = vec![[0_usize; 2]; surface.points.len()];
+    for ends in piercing_edges(surface, pairs) {
+        (0..2).for_each(|end| ends_of[parts.root(ends[end]) as usize][end] += 1);
+    }
+    for (part, [outside, inside]) in ends_of.into_iter().enumerate() {
+        is_inside[part] = inside > outside && 2 * points_of[part] <= surface.points.len();
     }
     let part = |point: u32| Some(parts.root(point)).filter(|&part| is_inside[part as usize]);
     (0..surface.points.len() as u32).map(part).collect()
 }
 
-/// The inner ends of edges that pierce one triangle only.
-fn ends_inside(surface: &TriangleSurface, pairs: &[TrianglePair]) -> Vec<u32> {
+/// The edges that pierce one triangle only, from outside to inside.
+fn piercing_edges(surface: &TriangleSurface, pairs: &[TrianglePair]) -> Vec<[u32; 2]> {
     let mut found: Vec<Piercing> = pairs.iter().flat_map(|pair| piercings(surface, pair)).collect();
     let edge = |piercing: &Piercing| {
         let [front, behind] = piercing.edge;
@@ -175,5 +179,5 @@ fn ends_inside(surface: &TriangleSurface, pairs: &[TrianglePair]) -> Vec<u32> {
     found.sort_unstable_by_key(|piercing| (edge(piercing), *piercing));
     found.dedup();
     let of_edges = found.chunk_by(|one, other| edge(one) == edge(other));
-    of_edges.filter(|of_edge| of_edge.len() == 1).map(|of_edge| of_edge[0].edge[1]).collect()
+    of_edges.filter(|of_edge| of_edge.len() == 1).map(|of_edge| of_edge[0].edge).collect()
 }

@@ -51,12 +51,15 @@ impl Check<'_> {
         if !settings.contact.holds_sliding() {
             return;
         }
+        let mut on_bone = vec![false; self.case.volume.nodes.len()];
+        let of_segments = held.joined.iter().flat_map(|(nodes, _)| nodes);
+        held.fixed.iter().chain(of_segments).for_each(|&node| on_bone[node as usize] = true);
         let entries = self.case.sliding.iter().enumerate().zip(carriers);
         let walls: Vec<Wall> = entries
             .map(|((index, entry), carrier)| Wall {
                 index,
                 carrier,
-                nodes: self.normals(index, entry),
+                nodes: self.normals(index, entry, &on_bone),
             })
             .collect();
         self.two_carriers(&walls, segments);
@@ -107,17 +110,29 @@ impl Check<'_> {
         place.map(|place| place as u32)
     }
 
-    fn normals(&mut self, index: usize, entry: &Sliding) -> Vec<(u32, Vec<Vector>)> {
+    fn normals(
+        &mut self,
+        index: usize,
+        entry: &Sliding,
+        on_bone: &[bool],
+    ) -> Vec<(u32, Vec<Vector>)> {
         let nodes = self.select(&entry.nodes, &format!("/case/sliding/{index}/nodes"));
-        let normals = match entry.normal {
+        let mut normals = match entry.normal {
             SlidingNormal::Surface => {
-                sliding::wall_normals(&self.case.volume, self.boundary, &nodes)
+                sliding::wall_normals(&self.case.volume, self.boundary, &nodes, on_bone)
             }
             SlidingNormal::Direction(direction) => {
                 let unit: Vec<Vector> = direction.try_normalize(1e-12).into_iter().collect();
                 nodes.iter().map(|&node| (node, unit.clone())).collect()
             }
         };
+        if normals.iter().any(|(_, normals)| normals.is_empty()) {
+            // Nodes of no cell are warned of, and move nothing.
+            let mut is_used = vec![false; self.case.volume.nodes.len()];
+            let of_cells = self.case.volume.cells.iter().flat_map(|(_, nodes)| nodes);
+            of_cells.for_each(|&node| is_used[node as usize] = true);
+            normals.retain(|(node, normals)| !normals.is_empty() || is_used[*node as usize]);
+        }
         if let Some((node, _)) = normals.iter().find(|(_, normals)| normals.is_empty()) {
             let detail = format!("node {node} has no normal for its sliding condition");
             let pointer = format!("/case/sliding/{index}/normal");

@@ -89,9 +89,9 @@ pub struct Direction {
     pub is_convex: bool,
 }
 
-/// When a direction is good enough.
+/// At which residual, or after how many iterations, a direction is taken.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Enough {
+pub struct StoppingCriterion {
     pub relative_residual: f64,
     pub most_iterations: usize,
 }
@@ -102,10 +102,10 @@ pub fn direction(
     system: &System,
     multigrid: &Multigrid,
     right_hand_side: &Unknowns,
-    enough: Enough,
+    criterion: StoppingCriterion,
     progress: &dyn Progress,
 ) -> Result<Direction, SolverError> {
-    let Enough { relative_residual, most_iterations } = enough;
+    let StoppingCriterion { relative_residual, most_iterations } = criterion;
     let mut run = Run::<1>::new(system, multigrid, std::slice::from_ref(right_hand_side));
     run.most_iterations = most_iterations;
     run.r.copy_from_slice(&run.right_hand_side);

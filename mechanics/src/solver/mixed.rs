@@ -14,7 +14,7 @@
 //! and W_i = |B_i| / D_i, which turns a volume that is left over into the forces that its pressure would
 //! put on the nodes around it. It does not lose its meaning as nu goes to 1/2.
 
-use super::conjugate_gradient::Enough;
+use super::conjugate_gradient::StoppingCriterion;
 use super::lanes::MOST_LANES;
 pub use super::mixed_iteration::MOST_DIRECTIONS;
 use super::mixed_iteration::Run;
@@ -105,14 +105,14 @@ pub struct MixedDirection {
 pub fn direction(
     system: &MixedSystem,
     right_hand_side: &MixedRightHandSide,
-    enough: Enough,
+    criterion: StoppingCriterion,
     progress: &dyn Progress,
 ) -> Result<MixedDirection, SolverError> {
     let multigrid = system.solver.hierarchy(system.stiffness, progress)?;
     let mut run = Run::<1>::new(system, multigrid, std::slice::from_ref(right_hand_side));
-    run.most_iterations = enough.most_iterations;
+    run.most_iterations = criterion.most_iterations;
     run.keep = MOST_DIRECTIONS;
-    let is_met = match run.iterate(enough.relative_residual, progress) {
+    let is_met = match run.iterate(criterion.relative_residual, progress) {
         Ok(()) => true,
         Err(SolverError::NotConverged { .. }) => false,
         Err(other) => return Err(other),

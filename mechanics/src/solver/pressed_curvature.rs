@@ -4,7 +4,7 @@
 //! Conjugate gradients on S under the multigrid cycle of K: a direction without positive curvature ends them (Steihaug 1983).
 //! S is stiffer than K by the bulk modulus, so they take more iterations the nearer Poisson's ratio is to 1/2.
 
-use super::conjugate_gradient::Enough;
+use super::conjugate_gradient::StoppingCriterion;
 use super::lanes::Lanes;
 use super::mixed_system::MixedSystem;
 use super::vector::{axpby, dot, norm, ratio, update};
@@ -21,20 +21,20 @@ type Vectors = Vec<Lanes<f64, 3, 1>>;
 pub fn is_positive_definite(
     system: &MixedSystem,
     load: &Unknowns,
-    enough: Enough,
+    criterion: StoppingCriterion,
     progress: &dyn Progress,
 ) -> Result<Option<bool>, SolverError> {
     let multigrid = system.solver.hierarchy(system.stiffness, progress)?;
     let mut workspace = multigrid.workspace::<1>();
     let mut r: Vectors = load.iter().map(|values| values.map(|value| [value])).collect();
     system.stiffness.zero_constrained(&mut r);
-    let wanted = enough.relative_residual;
+    let wanted = criterion.relative_residual;
     let scale = norm(r.as_flattened())[0];
     let zeros = || vec![[[0.0]; 3]; r.len()];
     let (mut x, mut p) = (zeros(), zeros());
     let mut rho = 0.0;
     let mut last: Option<(f64, Vectors)> = None;
-    for iteration in 1..=enough.most_iterations {
+    for iteration in 1..=criterion.most_iterations {
         let correction = multigrid.apply(&r, &mut workspace);
         let z = correction.values.as_flattened();
         // Conjugate to the last direction, whatever the cycle rounds (Golub, Ye 1999).

@@ -98,10 +98,10 @@ fn breadth_first(
     let mut is_met = vec![false; connectivity.len()];
     let mut order: Vec<u32> = Vec::with_capacity(rows);
     let mut element_order = Vec::with_capacity(connectivity.len());
-    let has_clique = |row: &usize| !around.row(*row).is_empty();
+    let has_elements = |row: &usize| !around.row(*row).is_empty();
     // Of no rows at all none is the first.
     let begin = Some(start).filter(|&start| start < rows);
-    for first in begin.into_iter().chain(0..rows).filter(has_clique) {
+    for first in begin.into_iter().chain(0..rows).filter(has_elements) {
         if std::mem::replace(&mut seen[first], true) {
             continue;
         }

@@ -10,11 +10,11 @@ use super::deadline::Deadline;
 use super::estimated::Estimates;
 use super::variant::{Strain, Variant};
 use crate::mesh::{CellShape, Vector};
-use crate::model::fem::strain::determinants;
+use crate::model::fem::strain::{determinants, inverted_cells};
 use crate::model::problem::{Equilibrium, ModelError};
 use crate::prediction::{
     Accepted, Adequate, Case, ElementChoice, Plan, Scene, SceneErrorCode, SceneErrors, Settings,
-    TimedProgress, equilibrium, estimates, inverted_cells, predict_adequately,
+    TimedProgress, equilibrium, estimates, predict_adequately,
 };
 use crate::progress::Progress;
 use crate::solver::SolverError;

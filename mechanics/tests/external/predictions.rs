@@ -16,8 +16,8 @@ use mechanics::model::fem::linear_system::Residual;
 use mechanics::model::spline::VolumeSpline;
 use mechanics::plan::{PlannedSegment, RigidMovement};
 use mechanics::prediction::{
-    Bone, Case, CaseSegment, ContactKind, Method, Plan, Scene, Settings, predict, rigidly_carried,
-    skin_overlap,
+    Accepted, Bone, Case, CaseSegment, ContactKind, Method, Plan, Rung, Scene, Settings,
+    TimedProgress, predict, predict_adequately, rigidly_carried, skin_overlap,
 };
 use mechanics::progress::Unobserved;
 use mechanics::response::{ResponseOrder, build, build_to};
@@ -33,6 +33,7 @@ trials! {
     the_sum_of_columns_is_the_direct_solution_on_the_face_like_shell
     a_jaw_raised_into_the_lips_of_a_real_face_is_reported
     lips_of_real_faces_press_on_each_other_with_contact
+    the_cheapest_model_of_a_jaw_far_up_is_finite_strain_with_contact
     the_second_order_of_a_face_like_shell_is_stored_to_a_thousandth_of_a_millimetre
     the_search_for_crossings_tries_few_pairs_for_each_triangle
     swapped_sets_and_the_inside_of_a_real_face_are_reported
@@ -136,11 +137,33 @@ fn lips_of_real_faces_press_on_each_other_with_contact() -> Result<(), Missing> 
     Ok(())
 }
 
+/// There contact does not settle in linear elasticity.
+fn the_cheapest_model_of_a_jaw_far_up_is_finite_strain_with_contact() -> Result<(), Missing> {
+    let (case, plan) = (template()?, raised(15.0));
+    let settings = Settings { contact: ContactKind::Unilateral, ..Settings::default() };
+    let scene = Scene::new(&case, &plan, &settings).unwrap();
+    let accepted = Accepted { time_s: 1e6, ..Accepted::default() };
+    let watched = TimedProgress { stopwatch: &|| 0.0, progress: &Unobserved };
+    let found = predict_adequately(&case, &plan, &scene, &accepted, watched).unwrap();
+    assert_eq!(found.rung.solution(), Rung::FiniteStrain);
+    assert!(found.prediction.contact.unwrap().area() > 10.0);
+    Ok(())
+}
+
 /// Pairs of triangles of the skin that cross with contact and did not at rest.
 fn crossings_in_contact(case: &Case, by: f64, settings: &Settings, name: &str) -> u64 {
     let scene = Scene::new(case, &raised(by), settings).unwrap();
     let begun = Instant::now();
-    let found = predict(&scene, &Unobserved).unwrap();
+    let found = match predict(&scene, &Unobserved) {
+        Ok(found) => found,
+        // In linear elasticity points may go on from face to face where cells turn inside out.
+        Err(error) => {
+            println!("{name} {by} mm: {error}");
+            let is_named = error.code() == "contact-unsettled";
+            assert!(is_named && by == 15.0 && settings.method == Method::FemLinear, "{error}");
+            return 0;
+        }
+    };
     let took = begun.elapsed();
     let moved = scene.skin.moved(&found.displacement);
     let rest = &scene.skin.surface;

@@ -282,3 +282,47 @@ fn nothing_to_fit_is_an_error() {
     let error = conform(&twin.sheets(), &patient, Start::Auto, &Unobserved).unwrap_err();
     assert_eq!(error, ConformationError::NothingToFit);
 }
+
+/// A round piece of a surface, so far before it.
+fn sheet_before(skin: &TriangleSurface, middle: usize, radius: f64, by: f64) -> TriangleSurface {
+    let (at, normals) = (skin.points[middle], skin.point_normals());
+    let is_near = |corner: &u32| (skin.points[*corner as usize] - at).norm() < radius;
+    let near = skin.triangles.iter().filter(|corners| corners.iter().any(is_near)).copied();
+    let points: Vec<Vector> = skin.points.iter().map(|x| x + normals[middle] * by).collect();
+    TriangleSurface { points, triangles: near.collect(), node_ids: None }
+}
+
+fn together(one: &TriangleSurface, other: &TriangleSurface) -> TriangleSurface {
+    let first = one.points.len() as u32;
+    let moved = other.triangles.iter().map(|corners| corners.map(|corner| corner + first));
+    TriangleSurface {
+        points: one.points.iter().chain(&other.points).copied().collect(),
+        triangles: one.triangles.iter().copied().chain(moved).collect(),
+        node_ids: None,
+    }
+}
+
+/// It once pulled the template by 11 mm to a sheet 15 mm before the skin.
+#[test]
+fn a_dressing_before_the_skin_of_a_scan_pulls_nothing_and_is_told() {
+    let twin = Twin::new();
+    let skin = surface(&twin.patient, "outer");
+    let landmarks = landmarks(&twin.template, 11);
+    let middle = skin.points.len() / 2;
+    let fitted = |skin: &TriangleSurface| {
+        let patient = Patient { skin: Some(skin), bone: None, landmarks: &landmarks };
+        conform(&twin.sheets(), &patient, Start::Auto, &Unobserved).unwrap()
+    };
+    let clean = fitted(&skin);
+    assert_eq!(clean.covering.area_mm2, 0.0);
+    for by in [5.0, 15.0, 40.0] {
+        let sheet = sheet_before(&skin, middle, 15.0, by);
+        let found = fitted(&together(&skin, &sheet));
+        let nodes = twin.template.nodes.iter();
+        let apart = nodes.map(|x| (found.deformation.apply(x) - clean.deformation.apply(x)).norm());
+        let most = apart.fold(0.0, f64::max);
+        println!("{by} mm: {most:.3} mm, {:?}", found.covering);
+        assert!(most < 0.3, "{by} mm: {most}");
+        assert!((found.covering.area_mm2 / sheet.area() - 1.0).abs() < 0.1, "{:?}", found.covering);
+    }
+}

@@ -21,7 +21,7 @@ use crate::schema::predict::result::ResultDocument;
 use crate::schema::repair::RepairResultDocument;
 use crate::schema::{CaseDocument, ErrorCode, Pointer, Problem};
 use mechanics::conformation::{
-    Conformation, ConformationError, Patient, SheetName, Template, carried, conform,
+    Conformation, ConformationError, Covering, Patient, SheetName, Template, carried, conform,
 };
 use mechanics::format::vtk::{vtp, vtu};
 use mechanics::format::{SurfaceOutput, VolumeOutput};
@@ -72,7 +72,7 @@ pub fn conform_job(
     }
     let told = prepared.meshes.iter().flat_map(|(_, mesh)| &mesh.warnings);
     let warnings = found.after.warnings().into_iter().chain(brought.refused.clone());
-    let warnings = warnings.chain(found.poor_fit());
+    let warnings = warnings.chain(found.poor_fit()).chain(found.covered_skin());
     let warnings: Vec<Warning> = warnings.collect();
     let warnings = warning_documents(told.chain(&warnings));
     let mut provenance = origin.provenance(&clock);
@@ -222,6 +222,20 @@ impl Conformed {
         }
     }
 
+    /// The warning of what covers the patient's skin.
+    fn covered_skin(&self) -> Option<Warning> {
+        let Covering { area_mm2, middle } = self.conformation.covering;
+        let detail = format!(
+            "{area_mm2:.0} mm2 of the patient's skin, around ({:.0}, {:.0}, {:.0}) mm, cover skin with air between, as a dressing or a \
+             tube does: the template is fitted to what lies behind",
+            middle.x, middle.y, middle.z
+        );
+        let warning = Warning::new("skin-covered", detail).with("area_mm2", area_mm2);
+        let place = [("x_mm", middle.x), ("y_mm", middle.y), ("z_mm", middle.z)];
+        let warning = place.into_iter().fold(warning, |told, (name, at)| told.with(name, at));
+        (area_mm2 > COVERED_MM2).then_some(warning)
+    }
+
     /// The warning of a template part of which lies far from the surface that it was fitted to, because the surface lacks that part or
     /// lies elsewhere.
     fn poor_fit(&self) -> Option<Warning> {
@@ -257,6 +271,9 @@ impl Conformed {
 const SKIN_P95_MM: f64 = 2.0;
 const SKIN_LARGEST_MM: f64 = 10.0;
 const BONE_P95_MM: f64 = 10.0;
+
+/// Less than this covers nothing that a template would be pulled to.
+const COVERED_MM2: f64 = 25.0;
 
 /// With its place in the spec.
 fn refused(error: &ConformationError, clock: &Observed) -> JobError {

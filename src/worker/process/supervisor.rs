@@ -53,7 +53,7 @@ pub struct SlotWork {
 /// An attempt under way.
 struct Attempt<'a> {
     shared: &'a SlotSettings,
-    /// In the hand of the tenant of the job.
+    /// Scoped to the tenant of the job.
     library: Library,
     process: &'a Process,
     progress: &'a dyn Progress,

@@ -149,6 +149,7 @@ async fn a_wall_goes_with_its_bone_in_predictions_and_responses_alike() {
         let mean = &direct["results"]["statistics"]["skin"]["nodes"]["mean"];
         means.push(mean.as_f64().unwrap());
         let is_carried = case != &stays;
+        assert_eq!(told["nonlinearity_estimate_mm"].is_null(), is_carried, "{told}");
         for warnings in [&direct["results"]["warnings"], &told["warnings"]] {
             let has_turned = codes(warnings).contains(&"sliding-normal-turned");
             assert_eq!(has_turned, is_carried, "{warnings}");

@@ -298,7 +298,7 @@ export const de: Words = {
     "surface-turned": "eine Fläche wurde nach außen gedreht", "surfaces-apart": "die Flächen liegen weit auseinander",
     "surfaces-opposed": "eine Fläche zeigt nach innen", tearing: "gehaltene Nachbarn werden auseinandergerissen",
     "teeth-joined": "Gewebe ist mit den Zähnen verbunden", "thin-stiff-layer": "eine dünne steife Schicht biegt sich zu wenig",
-    "template-apart": "die Vorlage liegt fern von einem Teil der Flächen des Patienten", "tissue-cut-off": "Weichgewebe jenseits des Bereichs fehlt", "tissue-left-out": "loses Gewebe ist nicht im Netz",
+    "skin-covered": "Teile der Haut des Patienten verdecken Haut und bleiben weg", "template-apart": "die Vorlage liegt fern von einem Teil der Flächen des Patienten", "tissue-cut-off": "Weichgewebe jenseits des Bereichs fehlt", "tissue-left-out": "loses Gewebe ist nicht im Netz",
     "tolerance-not-met": "der hingenommene Fehler ist nicht eingehalten", "trailing-bytes": "hinter dem Ende der Datei folgen Bytes",
     "triangles-flipped": "Dreiecke wurden gewendet", "truth-without-contact": "die Wahrheit der Studie kennt keine Berührung",
     "units-suspect": "das Netz hat vielleicht eine andere Einheit", "unregistered-suspect": "die Aufnahme nach der Operation ist vielleicht nicht registriert",

@@ -288,7 +288,7 @@ export const en = {
     "stress-unknown": "no stress is known in some cells", "subject-twice": "a subject counts twice", "subjects-differ": "groups list other subjects",
     "surface-mended": "a surface was mended", "surface-turned": "a surface was turned right side out", "surfaces-apart": "the surfaces lie far apart",
     "surfaces-opposed": "one surface faces inwards", tearing: "held neighbours are torn apart", "teeth-joined": "tissue is joined to the teeth",
-    "thin-stiff-layer": "a thin stiff layer bends too little", "template-apart": "the template lies far from a part of the patient's surfaces", "tissue-cut-off": "soft tissue beyond the region is left out",
+    "thin-stiff-layer": "a thin stiff layer bends too little", "skin-covered": "parts of the patient's skin cover skin and are left out", "template-apart": "the template lies far from a part of the patient's surfaces", "tissue-cut-off": "soft tissue beyond the region is left out",
     "tissue-left-out": "loose tissue is not in the mesh", "tolerance-not-met": "the accepted error is not kept",
     "trailing-bytes": "bytes follow the end of the file", "triangles-flipped": "triangles were turned",
     "truth-without-contact": "the truth of the study has no contact", "units-suspect": "the unit of the mesh may be another",

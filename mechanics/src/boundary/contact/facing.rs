@@ -356,9 +356,7 @@ fn partly_constrained(constraints: &[Constraint]) -> BTreeMap<u32, Constraint> {
 
 fn shares(mesh: &VolumeMesh, boundary: &[BoundaryFace]) -> Vec<(u32, Vector)> {
     let of_face = |face: &BoundaryFace| {
-        let at = |node: u32| mesh.nodes[node as usize];
-        let area = |[a, b, c]: [u32; 3]| 0.5 * (at(b) - at(a)).cross(&(at(c) - at(a)));
-        let share = face.triangles().map(area).sum::<Vector>() / face.nodes().len() as f64;
+        let share = face.area_vector(&mesh.nodes) / face.nodes().len() as f64;
         face.nodes().iter().map(|&node| (node, share)).collect::<Vec<_>>()
     };
     boundary.iter().flat_map(of_face).collect()

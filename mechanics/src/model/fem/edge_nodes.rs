@@ -2,9 +2,12 @@
 
 use crate::boundary::{Constraint, midpoint};
 use crate::element::tetrahedron10;
-use crate::mesh::{Vector, VolumeMesh};
+use crate::mesh::{Vector, VolumeMesh, Warning};
+use crate::model::fem::cell_stiffness::tetrahedron;
+use crate::model::fem::strain::inverted_cells;
 use crate::model::problem::{Equilibrium, LoadCase};
 use crate::solver::element_connectivity::ElementConnectivity;
+use nalgebra::Matrix3;
 use rayon::prelude::*;
 
 /// The middles of the edges of a mesh of tetrahedra, numbered after its nodes.
@@ -138,6 +141,23 @@ impl<'a> WithEdges<'a> {
         given.iter().map(|constraint| *constraint.values()).chain(middles).collect()
     }
 
+    /// A displacement of all nodes that turns cells inside out says so: at their corners, where nothing is integrated and a curved
+    /// cell may fold, or as the tetrahedra with flat sides that files show. Cells without volume at rest are left out.
+    pub fn inverted_cells(&self, mesh: &VolumeMesh, displacement: &[Vector]) -> Option<Warning> {
+        let cells = (0..mesh.cells.len()).into_par_iter();
+        let least = cells.map(|cell| {
+            let Ok((_, of_barycentric)) = tetrahedron(mesh, cell) else { return f64::INFINITY };
+            let u = self.edges.of_cell(mesh, cell).map(|node| displacement[node as usize]);
+            let curved = |corner: usize| {
+                let mut at = [0.0; 4];
+                at[corner] = 1.0;
+                determinant(&u, &tetrahedron10::gradients(&at, &of_barycentric))
+            };
+            (0..4).map(curved).fold(determinant(&u[..4], &of_barycentric), f64::min)
+        });
+        inverted_cells(&least.collect::<Vec<f64>>())
+    }
+
     /// Leaves the reactions of the holds that are given: what an edge node's hold exerts counts half at each of its ends.
     pub fn gather_reactions(&self, equilibrium: &mut Equilibrium) {
         let newton = equilibrium.solver.newton.iter_mut();
@@ -152,6 +172,39 @@ impl<'a> WithEdges<'a> {
     }
 }
 
+/// det F of displacements and the gradients of their shape functions.
+fn determinant(displacement: &[Vector], gradients: &[Vector]) -> f64 {
+    let pairs = displacement.iter().zip(gradients);
+    pairs.fold(Matrix3::identity(), |f, (u, g)| f + u * g.transpose()).determinant()
+}
+
 fn sorted([a, b]: [u32; 2]) -> [u32; 2] {
     [a.min(b), a.max(b)]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::CellShape;
+
+    /// On a line a quadratic map turns round at an end that its middle node comes nearer to than a quarter.
+    #[test]
+    fn a_cell_that_folds_at_a_corner_beside_its_quadrature_points_says_so() {
+        let mut mesh = VolumeMesh::default();
+        mesh.nodes.extend([Vector::zeros(), Vector::x(), Vector::y(), Vector::z()]);
+        mesh.cells.push(CellShape::Tet4, &[0, 1, 2, 3]);
+        let with = WithEdges::new(&mesh, &[]);
+        let middle = with.edges.between(0, 1) as usize;
+        let warned = |by: f64| {
+            let mut displacement = vec![Vector::zeros(); with.positions.len()];
+            displacement[middle].x = by;
+            with.inverted_cells(&mesh, &displacement)
+        };
+        assert!(warned(-0.24).is_none());
+        let warning = warned(-0.3).unwrap();
+        assert_eq!(warning.code, "cells-inverted");
+        // dx/dL at the corner is 4 (1/2 - 3/10) - 1.
+        let (name, det_f) = *warning.numbers.last().unwrap();
+        assert!(name == "smallest_det_f" && (det_f + 0.2).abs() < 1e-12, "{warning:?}");
+    }
 }

@@ -119,7 +119,7 @@ impl EdgeNodes {
         load: FaceLoad,
         forces: &mut [Vector],
     ) {
-        for [a, b, c] in faces.iter().flat_map(BoundaryFace::triangles) {
+        for [a, b, c] in faces.iter().flat_map(|face| face.triangles(&mesh.nodes)) {
             let [pa, pb, pc] = [a, b, c].map(|node| mesh.nodes[node as usize]);
             let area = (pb - pa).cross(&(pc - pa)) * 0.5;
             let force = load.on(&area);

@@ -4,7 +4,7 @@
 //! eps = P sym(grad u) P, P = I - n n^T, and with the plane stress C of `material::plane_stress`
 //!   K_jk = t int P g_j.C.g_k P dA = t sum_q A_q { lambda g_j g_k^T + mu [ g_k g_j^T + (g_j.g_k) P ] + lines },
 //! because gradients of shape functions and lines lie in the plane. On linear cells the triangles have constant
-//! strain; quadrilaterals are cut along their diagonal 0-2. Quadratic cells have six-node triangles, of the same
+//! strain; quadrilaterals are cut along their shorter diagonal. Quadratic cells have six-node triangles, of the same
 //! displacement as the face below them; four triangles of three nodes would have another one between nodes, and
 //! lose an order. Three points in the middles of the sides integrate them exactly.
 //!

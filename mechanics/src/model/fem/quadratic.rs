@@ -58,7 +58,10 @@ pub fn solve_with_edges(
     let mut equilibria = solve_displacement(&constrained, &system, &cases, progress, &solve)?;
 
     // 3. Back to the holds that were given.
-    equilibria.iter_mut().for_each(|equilibrium| with.gather_reactions(equilibrium));
+    for equilibrium in &mut equilibria {
+        with.gather_reactions(equilibrium);
+        equilibrium.warnings.extend(with.inverted_cells(mesh, &equilibrium.displacement));
+    }
     Ok(equilibria)
 }
 

@@ -8,8 +8,14 @@ use nalgebra::Matrix3;
 use rayon::prelude::*;
 
 use crate::element::PhysicalPoint;
-use crate::mesh::{Vector, VolumeMesh};
+use crate::mesh::{CellShape, Vector, VolumeMesh, Warning};
 use crate::model::reference_cell;
+
+/// The code of [`inverted_cells`].
+pub const INVERTED: &str = "cells-inverted";
+
+/// Edges of a corner whose volume is less than this part of the product of their lengths lie in a plane.
+const FLAT: f64 = 1e-6;
 
 /// How one cell is deformed.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -63,6 +69,47 @@ pub fn gradient_at_centre(mesh: &VolumeMesh, displacement: &[Vector], cell: usiz
     centre.map_or(Matrix3::zeros(), |point| gradient_of(mesh, displacement, cell, &point))
 }
 
+/// The smallest det F of every cell over its corners, in cell order, where edges have the volume of the corner at rest: hexahedra and
+/// wedges may turn inside out at corners alone. Infinite for tetrahedra and where a cell has no such corner.
+pub fn determinants_at_corners(mesh: &VolumeMesh, displacement: &[Vector]) -> Vec<f64> {
+    let cells = (0..mesh.cells.len()).into_par_iter();
+    cells.map(|cell| determinant_at_corners(mesh, displacement, cell)).collect()
+}
+
+fn determinant_at_corners(mesh: &VolumeMesh, displacement: &[Vector], cell: usize) -> f64 {
+    let (shape, nodes) = (mesh.cells.shape(cell), mesh.cells.nodes(cell));
+    if shape == CellShape::Tet4 {
+        return f64::INFINITY;
+    }
+    let rest = |corner: usize| mesh.nodes[nodes[corner] as usize];
+    let moved = |corner: usize| rest(corner) + displacement[nodes[corner] as usize];
+    let at_corner = |corner: usize| {
+        let others = shape.edges().iter().filter(|edge| edge.contains(&corner));
+        let others: Vec<usize> = others.map(|&[a, b]| a + b - corner).collect();
+        let edges = |at: &dyn Fn(usize) -> Vector| -> Matrix3<f64> {
+            Matrix3::from_columns(&[0, 1, 2].map(|side| at(others[side]) - at(corner)))
+        };
+        // The order of the edges is that of the cell, which may be the other way round at this corner.
+        let at_rest = edges(&rest);
+        let lengths: f64 = at_rest.column_iter().map(|edge| edge.norm()).product();
+        let volume = at_rest.determinant();
+        let is_corner = volume.abs() > FLAT * lengths;
+        if is_corner { edges(&moved).determinant() / volume } else { f64::INFINITY }
+    };
+    (0..nodes.len()).map(at_corner).fold(f64::INFINITY, f64::min)
+}
+
+/// An answer that turns cells inside out says so, by the smallest det F of every cell.
+pub fn inverted_cells(determinants: &[f64]) -> Option<Warning> {
+    let inverted = determinants.iter().filter(|det_f| **det_f <= 0.0).count();
+    let smallest = determinants.iter().copied().fold(f64::INFINITY, f64::min);
+    let detail = format!("the displacement turns {inverted} cells inside out");
+    let warning = Warning::new(INVERTED, detail)
+        .with("cells", inverted as f64)
+        .with("share", inverted as f64 / determinants.len().max(1) as f64);
+    (inverted > 0).then(|| warning.with("smallest_det_f", smallest))
+}
+
 fn gradient_of(
     mesh: &VolumeMesh,
     displacement: &[Vector],
@@ -97,6 +144,18 @@ mod tests {
         displacement[corner.expect("a unit cube has this corner")] = Vector::new(-0.9, -0.9, -0.9);
         let folded = deformations(&mesh, &displacement)[0];
         assert!(folded.det_f < 0.0, "{}", folded.det_f);
+    }
+
+    #[test]
+    fn a_hexahedron_may_fold_at_a_corner_beside_its_quadrature_points() {
+        let mesh = block(Vector::new(1.0, 1.0, 1.0), [1, 1, 1], CellShape::Hex8);
+        let mut displacement = vec![Vector::zeros(); 8];
+        let corner = mesh.nodes.iter().position(|x| *x == Vector::new(1.0, 1.0, 1.0)).unwrap();
+        displacement[corner] = Vector::new(-0.4, -0.4, -0.4);
+        assert!(deformations(&mesh, &displacement)[0].det_f > 0.05);
+        // 1 - 3 x 0.4.
+        let at_corners = determinants_at_corners(&mesh, &displacement)[0];
+        assert!((at_corners + 0.2).abs() < 1e-14, "{at_corners}");
     }
 
     #[test]

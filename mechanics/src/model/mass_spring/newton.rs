@@ -1,7 +1,7 @@
 //! Equilibrium by Newton's method on the energy W - f . u.
 //!
 //! K(p) d = f - dW/dp over what is free, p <- p + a d, K the tangent of the springs. The first step is the
-//! answer of springs that keep their directions. Where pressed springs make K indefinite, their sideways part
+//! answer of springs that keep their directions. Where pressed springs make K indefinite, their geometric stiffness
 //! is raised until it is positive definite. a = 1, halved until the energy falls by a part of what the slope
 //! promises (Nocedal, Wright, Numerical Optimization, 2nd ed., 2006, section 3.1).
 
@@ -24,7 +24,7 @@ const MOST_HALVINGS: usize = 40;
 /// A change of energy below this share of it is rounding.
 const ROUNDING: f64 = 1e-14;
 
-/// Steps with raised tangents after which the exact one is tried again.
+/// Steps with regularised tangents after which the exact one is tried again.
 const MOST_RAISED: usize = 4;
 
 /// The relative residual to which the system of a step is solved, at most and at least.
@@ -79,7 +79,7 @@ struct Newton<'a> {
     positions: Vec<Vector>,
     /// Relative, at the positions.
     residual: f64,
-    /// Steps to take with raised tangents before the exact one is tried again.
+    /// Steps to take with regularised tangents before the exact one is tried again.
     raised_ahead: usize,
     /// The next such number: it doubles while exact tangents stay indefinite.
     wait: usize,

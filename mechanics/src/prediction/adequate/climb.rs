@@ -4,20 +4,17 @@ use std::collections::BTreeMap;
 
 use super::accepted::{Accepted, MeanErrors, not_met};
 use super::duration::{SECOND_ORDER_TAKES, newton_relative_time};
-use super::objection::{Found, Objection};
+use super::finite_strain::{self, NoAnswer};
+use super::objection::{CandidateAnswer, Objection};
 use super::rung::{Considered, Errors, Rung};
 use crate::mesh::Vector;
-use crate::model::fem::finite_strain::Advance;
 use crate::model::fem::strain::determinants;
 use crate::model::problem::ModelError;
 use crate::prediction::answer::{self, Answer, Linear};
-use crate::prediction::case::{Case, Plan, Settings};
-use crate::prediction::fibres::FIBRES_IGNORED;
-use crate::prediction::method::Method;
+use crate::prediction::case::{Case, Plan};
 use crate::prediction::scene::Scene;
 use crate::prediction::{Prediction, described};
 use crate::progress::Progress;
-use crate::solver::SolverError;
 
 /// A rung that is not adequate is tried if it is expected to leave at most this share of the error so far, and one is as good as
 /// the best if its error is at most so many times as large.
@@ -101,22 +98,21 @@ struct Climb<'a> {
     objections: BTreeMap<Rung, Vec<Objection>>,
 }
 
-enum Failure {
-    /// By the caller, or for want of memory and time.
-    Stopped(ModelError),
-    Refused(String),
-}
-
 impl Climb<'_> {
     fn run(&mut self, case: &Case, plan: &Plan) -> Result<Adequate, ModelError> {
         // 1. The linear answer, and what it tells of itself.
         let TimedProgress { progress, .. } = self.watched;
-        let solved = answer::linear(self.scene, progress)?;
+        let solved = match answer::linear(self.scene, progress) {
+            Err(error @ ModelError::ContactUnsettled { .. }) => {
+                return self.beyond_linear_contact(error, case, plan);
+            }
+            ended => ended?,
+        };
         let known = match &solved {
             Linear::Solved(known) => Some(&**known),
             Linear::Other(_) => None,
         };
-        let first = Found::of_linear(self.scene, &solved);
+        let first = CandidateAnswer::of_linear(self.scene, &solved);
         self.read_linear_answer(&solved, &first);
         self.linear_s = self.elapsed();
         self.note(Rung::Linear, self.linear_s, &first);
@@ -133,7 +129,7 @@ impl Climb<'_> {
             self.errors.third_order = third.map(|left| self.means(&left.left_out));
             if self.is_a_series() {
                 let spent = self.elapsed() - begun;
-                self.note(Rung::SecondOrder, spent, &Found::of(self.scene, &found));
+                self.note(Rung::SecondOrder, spent, &CandidateAnswer::of(self.scene, &found));
                 second_order = Some(found);
             } else {
                 self.errors.third_order = None;
@@ -143,21 +139,7 @@ impl Climb<'_> {
         }
 
         // 3. At finite strain.
-        let mut finite_strain = None;
-        let expected = self.errors.expected(Rung::FiniteStrainCorrected);
-        if self.is_affordable(Rung::FiniteStrain, expected) {
-            let begun = self.elapsed();
-            match at_finite_strain(case, plan, &self.scene.settings, progress) {
-                Ok((scene, found)) => {
-                    let own = Found::of(&scene, &found);
-                    self.errors.mesh_at_rest = own.missing.map(|missing| self.means(missing));
-                    self.note(Rung::FiniteStrain, self.elapsed() - begun, &own);
-                    finite_strain = Some((scene, found));
-                }
-                Err(Failure::Stopped(error)) => return Err(error),
-                Err(Failure::Refused(why)) => self.pass_over(Rung::FiniteStrain, why),
-            }
-        }
+        let finite_strain = self.at_finite_strain(case, plan)?;
 
         // 4. The one that does.
         let linear = match solved {
@@ -167,8 +149,55 @@ impl Climb<'_> {
         Ok(self.taken(Answers { linear, second_order, finite_strain }))
     }
 
+    /// The answer at finite strain, if it may be accurate enough and there is one.
+    fn at_finite_strain(
+        &mut self,
+        case: &Case,
+        plan: &Plan,
+    ) -> Result<Option<(Scene, Answer)>, ModelError> {
+        let expected = self.errors.expected(Rung::FiniteStrainCorrected);
+        if !self.is_affordable(Rung::FiniteStrain, expected) {
+            return Ok(None);
+        }
+        let begun = self.elapsed();
+        match finite_strain::solved(case, plan, &self.scene.settings, self.watched.progress) {
+            Ok((scene, found)) => {
+                let own = CandidateAnswer::of(&scene, &found);
+                if self.moving.is_empty() {
+                    self.moving = scene.skin.moving_points(&own.equilibrium.displacement);
+                }
+                self.errors.mesh_at_rest = own.missing.map(|missing| self.means(missing));
+                self.note(Rung::FiniteStrain, self.elapsed() - begun, &own);
+                Ok(Some((scene, found)))
+            }
+            Err(NoAnswer::Stopped(error)) => Err(error),
+            Err(NoAnswer::Refused(why)) => {
+                self.pass_over(Rung::FiniteStrain, why);
+                Ok(None)
+            }
+        }
+    }
+
+    /// The answer at finite strain where contact in linear elasticity does not settle; without one that is the error.
+    fn beyond_linear_contact(
+        &mut self,
+        error: ModelError,
+        case: &Case,
+        plan: &Plan,
+    ) -> Result<Adequate, ModelError> {
+        self.in_contact = true;
+        self.linear_s = self.elapsed();
+        self.moving.clear();
+        for rung in [Rung::Linear, Rung::SecondOrder] {
+            self.pass_over(rung, error.to_string());
+        }
+        let (scene, answer) = self.at_finite_strain(case, plan)?.ok_or(error)?;
+        let rung = self.chosen();
+        Ok(self.adequate(rung, Some(scene), answer))
+    }
+
     /// Reads the estimates of the linear solution.
-    fn read_linear_answer(&mut self, solved: &Linear, first: &Found) {
+    fn read_linear_answer(&mut self, solved: &Linear, first: &CandidateAnswer) {
         let linearity = match solved {
             Linear::Solved(own) => &own.nonlinearity,
             Linear::Other(own) => {
@@ -185,23 +214,23 @@ impl Climb<'_> {
 
     fn taken(&mut self, answers: Answers) -> Adequate {
         let rung = self.chosen();
+        let Answers { linear, second_order, finite_strain } = answers;
+        let (scene, answer) = match (rung.solution(), second_order, finite_strain) {
+            (Rung::SecondOrder, Some(answer), _) => (None, answer),
+            (Rung::FiniteStrain, _, Some((scene, answer))) => (Some(scene), answer),
+            (_, _, _) => (None, linear),
+        };
+        self.adequate(rung, scene, answer)
+    }
+
+    /// The prediction of a rung, with the scene of its answer where that is not the linear one.
+    fn adequate(&mut self, rung: Rung, scene: Option<Scene>, answer: Answer) -> Adequate {
         let error = self.errors.on(rung);
         let is_accepted = self.accepted.share(error.as_ref()) <= 1.0;
         let objections = self.objections.remove(&rung).unwrap_or_default();
-        let is_corrected = rung.is_corrected();
-        let Answers { linear, second_order, finite_strain } = answers;
-        let progress = self.watched.progress;
-        let as_linear = |answer: Answer| {
-            (None, described(self.scene, answer.corrected(is_corrected), progress))
-        };
-        let (scene, mut prediction) = match (rung.solution(), second_order, finite_strain) {
-            (Rung::SecondOrder, Some(answer), _) => as_linear(answer),
-            (Rung::FiniteStrain, _, Some((scene, answer))) => {
-                let prediction = described(&scene, answer.corrected(is_corrected), progress);
-                (Some(scene), prediction)
-            }
-            (_, _, _) => as_linear(linear),
-        };
+        let own = scene.as_ref().unwrap_or(self.scene);
+        let answer = answer.corrected(rung.is_corrected());
+        let mut prediction = described(own, answer, self.watched.progress);
         let warnings = &mut prediction.warnings;
         warnings.extend((!is_accepted).then(|| not_met(error.as_ref(), self.accepted)));
         warnings.extend(objections.iter().map(|own| own.not_met(self.accepted)));
@@ -271,7 +300,7 @@ impl Climb<'_> {
     }
 
     /// Notes a solution and its correction, with what speaks against them.
-    fn note(&mut self, solution: Rung, spent_s: f64, found: &Found) {
+    fn note(&mut self, solution: Rung, spent_s: f64, found: &CandidateAnswer) {
         let expected_s = self.time_of(solution);
         for rung in Rung::ALL.into_iter().filter(|rung| rung.solution() == solution) {
             let error = self.errors.on(rung);
@@ -282,7 +311,7 @@ impl Climb<'_> {
     }
 
     /// Why an answer that is there is not taken where a dearer model may do.
-    fn why_not(&mut self, rung: Rung, is_known: bool, found: &Found) -> Option<String> {
+    fn why_not(&mut self, rung: Rung, is_known: bool, found: &CandidateAnswer) -> Option<String> {
         if self.least_share() <= 1.0 {
             // The answer itself is adequate: what is corrected is not looked at, which takes its time.
             return None;
@@ -346,26 +375,4 @@ impl Climb<'_> {
 /// Of the cell that a displacement presses most, or turns inside out.
 fn least_det_f(scene: &Scene, displacement: &[Vector]) -> f64 {
     determinants(&scene.mesh, displacement).into_iter().fold(f64::INFINITY, f64::min)
-}
-
-fn at_finite_strain(
-    case: &Case,
-    plan: &Plan,
-    settings: &Settings,
-    progress: &dyn Progress,
-) -> Result<(Scene, Answer), Failure> {
-    // What is expected to take some steps is not to take hundreds: whoever wants that asks for the method by its name.
-    let method = Method::FemNonlinear;
-    let settings = Settings { method, advance: Advance::AtOnce, ..settings.clone() };
-    let scene =
-        Scene::new(case, plan, &settings).map_err(|errors| Failure::Refused(errors.to_string()))?;
-    if scene.warnings.iter().any(|warning| warning.code == FIBRES_IGNORED) {
-        let why = "at finite strain fibres only pull, and those of this tissue also push";
-        return Err(Failure::Refused(why.to_owned()));
-    }
-    match answer::solve(&scene, progress) {
-        Ok(answer) => Ok((scene, answer)),
-        Err(error @ ModelError::Solver(SolverError::Stopped)) => Err(Failure::Stopped(error)),
-        Err(error) => Err(Failure::Refused(error.to_string())),
-    }
 }

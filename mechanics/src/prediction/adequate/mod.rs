@@ -11,6 +11,7 @@
 mod accepted;
 mod climb;
 mod duration;
+mod finite_strain;
 mod objection;
 mod rung;
 

@@ -14,17 +14,17 @@
 
 use super::accepted::Accepted;
 use crate::mesh::{Vector, Warning};
-use crate::model::fem::strain::determinants;
+use crate::model::fem::strain::{determinants, inverted_cells};
 use crate::model::problem::Equilibrium;
 use crate::prediction::answer::{Answer, Linear};
 use crate::prediction::contact::Touch;
+use crate::prediction::far_skin;
 use crate::prediction::scene::Scene;
 use crate::prediction::skin_overlap::{Deepest, SKIN_OVERLAPS, added_overlap, skin_overlap};
-use crate::prediction::{far_skin, inverted_cells};
 
-/// An answer that was found.
+/// An answer that may be adequate.
 #[derive(Clone, Copy)]
-pub(super) struct Found<'a> {
+pub(super) struct CandidateAnswer<'a> {
     pub scene: &'a Scene,
     pub equilibrium: &'a Equilibrium,
     /// What its mesh leaves out, where that is known.
@@ -40,21 +40,21 @@ pub struct Objection {
     pub is_of_model: bool,
 }
 
-impl<'a> Found<'a> {
+impl<'a> CandidateAnswer<'a> {
     pub fn of_linear(scene: &'a Scene, answer: &'a Linear) -> Self {
         match answer {
             Linear::Solved(own) => {
                 let missing = own.numerical_error.as_ref().ok();
                 let missing = missing.map(|error| error.missing.as_slice());
-                Found { scene, equilibrium: own.equilibrium(), missing, contact: None }
+                CandidateAnswer { scene, equilibrium: own.equilibrium(), missing, contact: None }
             }
-            Linear::Other(own) => Found::of(scene, own),
+            Linear::Other(own) => CandidateAnswer::of(scene, own),
         }
     }
 
     pub fn of(scene: &'a Scene, answer: &'a Answer) -> Self {
         let missing = answer.numerical_error.as_ref().ok();
-        Found {
+        CandidateAnswer {
             scene,
             equilibrium: &answer.equilibrium,
             missing: missing.map(|error| error.missing.as_slice()),
@@ -64,7 +64,7 @@ impl<'a> Found<'a> {
 
     /// What speaks against it, or against it with what its mesh leaves out added, where so many mm are accepted.
     pub fn objections(&self, is_corrected: bool, accepted: &Accepted) -> Vec<Objection> {
-        let Found { scene, equilibrium, missing, contact } = *self;
+        let CandidateAnswer { scene, equilibrium, missing, contact } = *self;
         let mut displacement = equilibrium.displacement.clone();
         for (u, missing) in
             displacement.iter_mut().zip(missing.filter(|_| is_corrected).into_iter().flatten())

@@ -50,7 +50,7 @@ pub(super) struct Weights {
 }
 
 impl Weights {
-    /// w = (I - omega D^-1 L) w_0, with w_0 one on the row's own aggregate and ties to held rows kept in
+    /// w = (I - omega D^-1 L) w_0, with w_0 one on the row's own aggregate and couplings to constrained rows kept in
     /// D, which draw weights to zero there.
     pub fn new(strength: &StrengthOfConnection, positions: &[Vector3<f64>], size: usize) -> Self {
         let (group, aggregates) = aggregate(strength, size);

@@ -140,7 +140,7 @@ fn top(mesh: &VolumeMesh) -> Membrane {
     let faces = mesh.boundary_faces().into_iter();
     let faces = faces.filter(|face| face.nodes().iter().all(|node| top.contains(node)));
     let triangles: Vec<[u32; 3]> =
-        faces.flat_map(|face| face.triangles().collect::<Vec<_>>()).collect();
+        faces.flat_map(|face| face.triangles(&mesh.nodes).collect::<Vec<_>>()).collect();
     Membrane { sheet: PlaneStress::new(&sheet).unwrap(), triangles, lines: Vec::new() }
 }
 

@@ -36,7 +36,8 @@ fn strip(sheet: &Sheet, lines: Vector, turn: Rotation3<f64>) -> (VolumeMesh, Mem
         .into_iter()
         .filter(|face| face.nodes().iter().all(|node| top.contains(node)))
         .collect();
-    let triangles: Vec<[u32; 3]> = faces.iter().flat_map(|face| face.triangles()).collect();
+    let triangles: Vec<[u32; 3]> =
+        faces.iter().flat_map(|face| face.triangles(&mesh.nodes)).collect();
     let sheet = PlaneStress::new(sheet).unwrap();
     let lines = match sheet.has_lines() {
         true => vec![turn * lines; triangles.len()],

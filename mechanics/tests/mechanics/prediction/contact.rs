@@ -107,7 +107,8 @@ fn met(found: &Prediction, nodes: &[u32], wanted: f64) -> Met {
 fn least_height(case: &Case, found: &Prediction, upper: &[u32], lower: &[u32]) -> f64 {
     let faces = case.volume.boundary_of(&Faces::new(&case.volume));
     let at = |node: u32| case.volume.nodes[node as usize] + found.displacement[node as usize];
-    let triangles: Vec<[u32; 3]> = faces.iter().flat_map(|face| face.triangles()).collect();
+    let triangles: Vec<[u32; 3]> =
+        faces.iter().flat_map(|face| face.triangles(&case.volume.nodes)).collect();
     // The height over the plane of the corners, where that is below the node.
     let height = |node: u32, corners: &[u32; 3]| -> Option<f64> {
         let (x, [a, b, c]) = (at(node), corners.map(at));
@@ -129,9 +130,12 @@ fn least_height(case: &Case, found: &Prediction, upper: &[u32], lower: &[u32]) -
 
 /// Two blocks, three cells to two, pressed together by a tenth.
 pub(super) fn blocks() -> (Case, Plan) {
-    let lower = block(Vector::new(12.0, 12.0, 6.0), [3, 3, 2], CellShape::Hex8);
-    let upper =
-        at(block(Vector::new(12.0, 12.0, 6.0), [2, 2, 2], CellShape::Hex8), [0.0, 0.0, 6.0]);
+    blocks_of(CellShape::Hex8)
+}
+
+pub(super) fn blocks_of(shape: CellShape) -> (Case, Plan) {
+    let lower = block(Vector::new(12.0, 12.0, 6.0), [3, 3, 2], shape);
+    let upper = at(block(Vector::new(12.0, 12.0, 6.0), [2, 2, 2], shape), [0.0, 0.0, 6.0]);
     let mesh = together(&[("lower", lower), ("upper", upper)]);
     let case = Case { allow_unfixed: true, ..case_of(mesh, material(15.0, 0.0)) };
     let plan = Plan {
@@ -171,7 +175,7 @@ pub(super) fn jaws(size: f64) -> Case {
     jaws_of(CellShape::Hex8, size)
 }
 
-fn jaws_of(shape: CellShape, size: f64) -> Case {
+pub(super) fn jaws_of(shape: CellShape, size: f64) -> Case {
     let cells = [40.0, 10.0, 45.0].map(|length| (length / size) as usize);
     let whole = block(Vector::new(40.0, 10.0, 45.0), cells, shape);
     let mut mesh = VolumeMesh { nodes: whole.nodes.clone(), ..VolumeMesh::default() };

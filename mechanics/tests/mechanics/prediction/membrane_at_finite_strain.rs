@@ -25,7 +25,7 @@ fn forces(mesh: &VolumeMesh, sheet: PlaneStress, moved: impl Fn(&Vector) -> Vect
     let top = &mesh.node_sets["z_max"];
     let faces = mesh.boundary_faces();
     let faces = faces.iter().filter(|face| face.nodes().iter().all(|node| top.contains(node)));
-    let triangles = faces.flat_map(|face| face.triangles()).collect();
+    let triangles = faces.flat_map(|face| face.triangles(&mesh.nodes)).collect();
     let membrane = Membrane { sheet, triangles, lines: Vec::new() };
     let laws = [Law::NeoHookean(NeoHookean { lambda: 50.0, mu: 5.0 })];
     let constraints: Vec<Constraint> =

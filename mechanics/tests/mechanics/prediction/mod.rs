@@ -7,6 +7,7 @@ mod conditions;
 mod contact;
 mod contact_at_finite_strain;
 mod contact_hertz;
+mod contact_numbering;
 mod contact_of_simple_bones;
 pub(crate) mod contact_on_bone;
 pub mod elements;

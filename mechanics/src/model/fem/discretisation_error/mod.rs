@@ -48,7 +48,7 @@ pub(super) use mean_stress::{Weighted, has_wedges, smooth_in_wedges};
 pub(super) use two_level::{AtCorners, EnrichedCells, OfEdges, TwoLevel};
 
 /// Relative residual of the solve: the first digit of an estimate is all that it has.
-const LOOSE: f64 = 0.1;
+const LOOSE: f64 = 0.03;
 
 /// The same where the first iterations show little of the answer: where Young's modulus differs by more than this factor, or
 /// volume changes resist much more than changes of shape.

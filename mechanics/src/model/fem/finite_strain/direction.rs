@@ -7,7 +7,7 @@ use crate::mesh::Vector;
 use crate::model::dofs::{Constrained, PrescribedValues};
 use crate::model::problem::LoadCase;
 use crate::progress::{Inner, Progress};
-use crate::solver::conjugate_gradient::{self, Enough};
+use crate::solver::conjugate_gradient::{self, StoppingCriterion};
 use crate::solver::mixed;
 use crate::solver::mixed_system::{Coupling, MixedRightHandSide, MixedSystem};
 use crate::solver::multigrid::Multigrid;
@@ -191,18 +191,19 @@ impl Directions {
         let coupling = self.pressures.as_mut();
         let coupling = coupling.map(|own| own.coupling_at(&|cell| deformed.gradients(cell)));
         let relative_residual = SURE / (load.as_flattened().len().max(1) as f64).sqrt();
-        let enough = Enough { relative_residual, most_iterations: MOST_INNER };
+        let criterion = StoppingCriterion { relative_residual, most_iterations: MOST_INNER };
         let multigrid = hierarchy.solver.hierarchy(&system, progress)?;
-        let alone = conjugate_gradient::direction(&system, multigrid, &load, enough, &inner)?;
+        let alone = conjugate_gradient::direction(&system, multigrid, &load, criterion, &inner)?;
         // Pressures can only make it stiffer, by B^T C^-1 B.
         let is_known = alone.is_convex && alone.iterations < MOST_INNER;
         let is_stable = match coupling {
             _ if is_known => Some(true),
             None => (!alone.is_convex).then_some(false),
             Some(coupling) => {
-                let enough = Enough { relative_residual, most_iterations: MOST_STIFF };
+                let criterion =
+                    StoppingCriterion { relative_residual, most_iterations: MOST_STIFF };
                 let mixed = MixedSystem { stiffness: &system, coupling, solver: &hierarchy.solver };
-                pressed_curvature::is_positive_definite(&mixed, &load, enough, &inner)?
+                pressed_curvature::is_positive_definite(&mixed, &load, criterion, &inner)?
             }
         };
         self.hierarchy = Some(hierarchy);
@@ -251,9 +252,9 @@ fn alone(
     relative_residual: f64,
     progress: &Inner,
 ) -> Result<StepSolution, SolverError> {
-    let enough = Enough { relative_residual, most_iterations: MOST_INNER };
+    let criterion = StoppingCriterion { relative_residual, most_iterations: MOST_INNER };
     let found =
-        conjugate_gradient::direction(system, multigrid, right_hand_side, enough, progress)?;
+        conjugate_gradient::direction(system, multigrid, right_hand_side, criterion, progress)?;
     let conjugate_gradient::Direction { unknowns, iterations, is_convex } = found;
     Ok(StepSolution { unknowns, pressures: Vec::new(), iterations, is_convex, is_met: true })
 }
@@ -265,8 +266,8 @@ fn together(
     relative_residual: f64,
     progress: &Inner,
 ) -> Result<StepSolution, SolverError> {
-    let enough = Enough { relative_residual, most_iterations: MOST_INNER_MIXED };
-    let found = mixed::direction(system, right_hand_side, enough, progress)?;
+    let criterion = StoppingCriterion { relative_residual, most_iterations: MOST_INNER_MIXED };
+    let found = mixed::direction(system, right_hand_side, criterion, progress)?;
     let mixed::MixedDirection { unknowns, pressures, iterations, is_met } = found;
     let pressures = pressures.into_iter().map(|[pressure]| pressure).collect();
     Ok(StepSolution { unknowns, pressures, iterations, is_convex: true, is_met })

@@ -59,10 +59,10 @@ use states::cell_states;
 use tissue::Tissue;
 use touching::Touching;
 
-/// An answer without contact, and what may touch in it.
+/// Displacements without contact, in mm by node, and what may touch on the way there.
 #[derive(Clone, Copy)]
 pub struct MayTouch<'a> {
-    pub free: &'a Equilibrium,
+    pub free: &'a [Vector],
     pub surfaces: &'a FacingSurfaces<'a>,
 }
 
@@ -121,6 +121,7 @@ impl<'a> FiniteStrain<'a> {
         let (mut equilibrium, _) =
             problem.solve_on(&with.cells, &with.case(case), None, progress)?;
         with.gather_reactions(&mut equilibrium);
+        equilibrium.warnings.extend(with.inverted_cells(self.mesh, &equilibrium.displacement));
         equilibrium.displacement.truncate(self.mesh.nodes.len());
         Ok(equilibrium)
     }
@@ -173,8 +174,8 @@ impl<'a> FiniteStrain<'a> {
         finer.map(|finer| finer.of(tissue, rest, constrained, progress)).transpose()
     }
 
-    /// The answer in which nothing passes through what it faces, by the answer without contact; none where nothing touches.
-    /// With what its mesh leaves out, as `solve_and`.
+    /// The answer in which nothing passes through what it faces; none where nothing touches on the way to where tissue goes without
+    /// contact, or nothing presses in the end. With what its mesh leaves out, as `solve_and`.
     pub fn solve_in_contact(
         &self,
         case: &LoadCase,
@@ -182,8 +183,8 @@ impl<'a> FiniteStrain<'a> {
         finer: Option<&FinerProblem>,
         progress: &dyn Progress,
     ) -> Result<Option<InContact>, ModelError> {
-        let steps = surfaces.steps(&free.displacement, STEP);
-        if !touches(surfaces, &free.displacement, steps, progress)? {
+        let steps = surfaces.steps(free, STEP);
+        if !touches(surfaces, free, steps, progress)? {
             return Ok(None);
         }
         let dof_map = number(&nodes_of_cells(self.mesh), &self.mesh.nodes, self.constraints);

@@ -10,7 +10,7 @@ use crate::model::fem::strain::determinants;
 use crate::model::parts::Parts;
 use crate::model::problem::{Equilibrium, LoadCase, ModelError};
 use crate::progress::{Inner, Progress};
-use crate::solver::conjugate_gradient::{Enough, direction};
+use crate::solver::conjugate_gradient::{StoppingCriterion, direction};
 use crate::solver::multigrid::Multigrid;
 use crate::solver::{SolveReport, SolverError, System, Tolerance, tell};
 
@@ -129,10 +129,10 @@ impl Search<'_> {
         let right_hand_side = known.right_hand_side(&system);
         let relative_residual =
             if is_first { ON_THE_WAY } else { (0.1 * at.residual).clamp(INNER[0], INNER[1]) };
-        let enough = Enough { relative_residual, most_iterations: MOST_INNER };
+        let criterion = StoppingCriterion { relative_residual, most_iterations: MOST_INNER };
         let multigrid = Multigrid::new(&system, self.progress)?;
         let inner = Inner(self.progress);
-        let found = match direction(&system, &multigrid, &right_hand_side, enough, &inner) {
+        let found = match direction(&system, &multigrid, &right_hand_side, criterion, &inner) {
             Ok(found) => found,
             Err(SolverError::NotFinite) => return Ok(false),
             Err(other) => return Err(other.into()),

@@ -10,7 +10,7 @@ use crate::material::hyperelastic::{Hyperelastic, Law, SaintVenantKirchhoff};
 use crate::mesh::Vector;
 use crate::model::fem::strain::gradient_at_centre;
 use crate::prediction::{
-    Laws, MethodKind, ModelError, Prediction, Scene, SolverError, Unknowns, predict,
+    ElementChoice, Laws, MethodKind, ModelError, Prediction, Scene, SolverError, Unknowns, predict,
 };
 use crate::progress::Unobserved;
 use crate::study::deadline::Deadline;
@@ -82,8 +82,7 @@ fn mistake(scene: &Scene, prediction: &Prediction) -> Option<String> {
     }
     let least = prediction.deformation.iter().map(|cell| cell.det_f).fold(f64::INFINITY, f64::min);
     let is_told = prediction.warnings.iter().any(|warning| warning.code == "cells-inverted");
-    let kind = scene.settings.method.kind();
-    if least.is_nan() || (least <= 0.0 && (!is_told || kind == MethodKind::FemNonlinear)) {
+    if least.is_nan() || (least <= 0.0 && (!is_told || never_inverts(scene))) {
         return Some(format!("the least det F is {least}"));
     }
     let knows_constraints = match scene.settings.method.properties().unknowns {
@@ -97,6 +96,14 @@ fn mistake(scene: &Scene, prediction: &Prediction) -> Option<String> {
     }
     let residual = out_of_balance(scene, prediction).unwrap_or(0.0);
     (residual > AT_REST).then(|| format!("the relative residual is {residual}"))
+}
+
+/// Whether a method keeps every cell as it is turned: det F stays positive at the points where it is integrated, and tetrahedra
+/// with edge nodes may fold beside theirs.
+fn never_inverts(scene: &Scene) -> bool {
+    let settings = &scene.settings;
+    settings.method.kind() == MethodKind::FemNonlinear
+        && settings.element != ElementChoice::Quadratic
 }
 
 /// The farthest that a held node is from where it is held, in mm or relative to its movement.

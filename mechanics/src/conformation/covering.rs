@@ -1,0 +1,54 @@
+//! What covers the skin of a scan: sheets of dressings, straps and tubes, behind which there are air and then skin.
+
+use rayon::prelude::*;
+
+use crate::mesh::{SearchError, SurfaceSearch, TriangleSurface, Vector};
+
+/// Skin lies so far behind what covers it, in mm: nearer is noise or a second sheet, farther is another part of the body.
+const BEHIND_MM: [f64; 2] = [1.0, 100.0];
+
+/// What covers more than this share of a surface is none: that surface is not skin that faces out.
+const MOST: f64 = 0.5;
+
+/// Triangles that cover other ones, which no template is fitted to.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Covering {
+    pub area_mm2: f64,
+    /// The mean of their middles by area, in mm.
+    pub middle: Vector,
+}
+
+/// A surface without the triangles whose back faces the front of another one across air, and what these are.
+pub(super) fn uncovered(
+    surface: &TriangleSurface,
+) -> Result<(TriangleSurface, Covering), SearchError> {
+    let search = SurfaceSearch::new(surface)?;
+    let covers = |triangle: usize| {
+        let Some(normal) = surface.area_vector(triangle).try_normalize(f64::MIN_POSITIVE) else {
+            return false;
+        };
+        let behind = search.first_hit(&middle(surface, triangle), &-normal, triangle, BEHIND_MM[1]);
+        behind.is_some_and(|(other, distance)| {
+            distance > BEHIND_MM[0] && surface.area_vector(other).dot(&normal) > 0.0
+        })
+    };
+    let triangles = 0..surface.triangles.len();
+    let is_covering: Vec<bool> = triangles.into_par_iter().with_min_len(64).map(covers).collect();
+    let mut covering = Covering::default();
+    for triangle in (0..is_covering.len()).filter(|&triangle| is_covering[triangle]) {
+        let area = surface.area_vector(triangle).norm();
+        covering.area_mm2 += area;
+        covering.middle += middle(surface, triangle) * area;
+    }
+    if covering.area_mm2 == 0.0 || covering.area_mm2 > MOST * surface.area() {
+        return Ok((surface.clone(), Covering::default()));
+    }
+    covering.middle /= covering.area_mm2;
+    let others = surface.triangles.iter().zip(&is_covering).filter(|(_, covers)| !**covers);
+    let triangles = others.map(|(triangle, _)| *triangle).collect();
+    Ok((TriangleSurface { triangles, ..surface.clone() }, covering))
+}
+
+fn middle(surface: &TriangleSurface, triangle: usize) -> Vector {
+    surface.corners(triangle).iter().sum::<Vector>() / 3.0
+}

@@ -1,0 +1,41 @@
+//! The answer at finite strain that a search for the cheapest adequate model tries.
+
+use crate::model::fem::finite_strain::Advance;
+use crate::model::problem::ModelError;
+use crate::prediction::answer::{self, Answer};
+use crate::prediction::case::{Case, Plan, Settings};
+use crate::prediction::fibres::FIBRES_IGNORED;
+use crate::prediction::method::Method;
+use crate::prediction::scene::Scene;
+use crate::progress::Progress;
+use crate::solver::SolverError;
+
+/// Why there is none.
+pub(super) enum NoAnswer {
+    /// By the caller, or for want of memory and time.
+    Stopped(ModelError),
+    Refused(String),
+}
+
+/// The scene at finite strain, and its answer.
+pub(super) fn solved(
+    case: &Case,
+    plan: &Plan,
+    settings: &Settings,
+    progress: &dyn Progress,
+) -> Result<(Scene, Answer), NoAnswer> {
+    // What is expected to take some steps is not to take hundreds: whoever wants that asks for the method by its name.
+    let method = Method::FemNonlinear;
+    let settings = Settings { method, advance: Advance::AtOnce, ..settings.clone() };
+    let scene = Scene::new(case, plan, &settings)
+        .map_err(|errors| NoAnswer::Refused(errors.to_string()))?;
+    if scene.warnings.iter().any(|warning| warning.code == FIBRES_IGNORED) {
+        let why = "at finite strain fibres only pull, and those of this tissue also push";
+        return Err(NoAnswer::Refused(why.to_owned()));
+    }
+    match answer::solve(&scene, progress) {
+        Ok(answer) => Ok((scene, answer)),
+        Err(error @ ModelError::Solver(SolverError::Stopped)) => Err(NoAnswer::Stopped(error)),
+        Err(error) => Err(NoAnswer::Refused(error.to_string())),
+    }
+}
