@@ -28,6 +28,19 @@ impl TriangleSurface {
         (0..self.triangles.len()).map(|triangle| self.area_vector(triangle).norm()).sum()
     }
 
+    /// How often some of the triangles wind around a point: 1 within a closed surface, 0 outside.
+    /// Source: Van Oosterom, Strackee, The solid angle of a plane triangle, IEEE Transactions on Biomedical Engineering 30
+    /// (1983), equation 8.
+    pub fn winding_number(&self, triangles: impl Iterator<Item = usize>, point: &Vector) -> f64 {
+        let angle = |triangle: usize| {
+            let [a, b, c] = self.corners(triangle).map(|corner| corner - point);
+            let [la, lb, lc] = [a.norm(), b.norm(), c.norm()];
+            let across = la * lb * lc + a.dot(&b) * lc + b.dot(&c) * la + c.dot(&a) * lb;
+            2.0 * a.dot(&b.cross(&c)).atan2(across)
+        };
+        triangles.map(angle).sum::<f64>() / (4.0 * std::f64::consts::PI)
+    }
+
     /// The lowest and the highest corner of the box around the points that triangles use, in mm.
     /// Without triangles the lowest is above the highest.
     pub fn bounds(&self) -> (Vector, Vector) {

@@ -128,7 +128,7 @@ impl Shells {
         let is_within = |shell: usize| {
             let first = self.of.iter().position(|other| *other == shell);
             first.is_some_and(|triangle| {
-                winding_number(surface, &solid, &surface.corners(triangle)[0]) > 0.5
+                surface.winding_number(solid.iter().copied(), &surface.corners(triangle)[0]) > 0.5
             })
         };
         let cavities: Vec<bool> = (0..self.volumes.len())
@@ -154,17 +154,4 @@ impl Shells {
     fn triangles(&self, surface: &TriangleSurface, counts: impl Fn(usize) -> bool) -> Vec<usize> {
         (0..surface.triangles.len()).filter(|&triangle| counts(self.of[triangle])).collect()
     }
-}
-
-/// How often triangles wind around a point: 1 within a closed surface, 0 outside.
-/// Source: Van Oosterom, Strackee, The solid angle of a plane triangle, IEEE Transactions on Biomedical Engineering 30
-/// (1983), equation 8.
-fn winding_number(surface: &TriangleSurface, triangles: &[usize], point: &Vector) -> f64 {
-    let angle = |&triangle: &usize| {
-        let [a, b, c] = surface.corners(triangle).map(|corner| corner - point);
-        let [la, lb, lc] = [a.norm(), b.norm(), c.norm()];
-        let across = la * lb * lc + a.dot(&b) * lc + b.dot(&c) * la + c.dot(&a) * lb;
-        2.0 * a.dot(&b.cross(&c)).atan2(across)
-    };
-    triangles.iter().map(angle).sum::<f64>() / (4.0 * std::f64::consts::PI)
 }

@@ -4,7 +4,8 @@
 //! of their triangles cross at rest. How deep: the triangles that cross cut the skin into parts, and an edge that
 //! pierces one triangle only begins outside and ends inside. Points of the parts that such edges end in lie inside what
 //! is not theirs; their depth is the distance to the closest triangle of another part that crosses or lies inside. It
-//! is not above the true one, because a point may be closer to the rim of its own part.
+//! is not above the true one, because a point may be closer to the rim of its own part. Where skin does not wind around a point in
+//! front of it the point lies outside after all.
 
 use std::collections::BTreeSet;
 
@@ -20,6 +21,13 @@ pub const SKIN_OVERLAPS: &str = "skin-overlaps";
 
 /// Triangles that pass through each other by less than this, in mm, lie on each other: contact is met to half of it.
 const TOUCHING_MM: f64 = 2e-3;
+
+/// Skin winds around a point just in front of its own by about 1 where the point lies behind other skin, and by about 0 where not.
+const BEHIND: f64 = 0.3;
+
+/// So far in front, in mm; and how many angles of triangles are looked at for that.
+const BEFORE_MM: f64 = 1e-3;
+const MOST_ANGLES: usize = 5_000_000;
 
 /// Points of which the depth is taken, evenly chosen.
 const MEASURED_POINTS: usize = 1000;
@@ -134,13 +142,21 @@ fn deepest(surface: &TriangleSurface, pairs: &[TrianglePair]) -> Option<Deepest>
         (depth > 0.0).then_some(Deepest { depth, at, area })
     };
     let step = inside.len().div_ceil(MEASURED_POINTS).max(1);
-    let measured = inside.iter().step_by(step).filter_map(depth);
-    measured.max_by(|one, other| one.depth.total_cmp(&other.depth))
+    let measured = inside.iter().step_by(step).filter_map(|point| Some((*point, depth(point)?)));
+    let mut measured: Vec<(u32, Deepest)> = measured.collect();
+    measured.sort_by(|(_, one), (_, other)| other.depth.total_cmp(&one.depth));
+    // Where only an edge or a corner passes, what hangs together with its end lies outside.
+    let normals = surface.point_normals();
+    let is_behind = |(point, own): &(u32, Deepest)| {
+        let before = own.at + normals[*point as usize] * BEFORE_MM;
+        surface.winding_number(0..surface.triangles.len(), &before) > BEHIND
+    };
+    let looked_at = MOST_ANGLES.div_ceil(surface.triangles.len().max(1));
+    measured.into_iter().take(looked_at).find(is_behind).map(|(_, deepest)| deepest)
 }
 
-/// For each point the part of the skin that it belongs to, where that lies behind other skin: where more edges end than begin
-/// outside, because a part of which only an edge or a corner passes is none. A part with more than half of the points is what the
-/// others lie behind.
+/// For each point the part of the skin that it belongs to, where that lies behind other skin. A part with more than
+/// half of the points is what the others lie behind.
 fn parts_inside(surface: &TriangleSurface, pairs: &[TrianglePair]) -> Vec<Option<u32>> {
     let mut is_cut = vec![false; surface.triangles.len()];
     for &triangle in pairs.as_flattened() {
@@ -157,19 +173,16 @@ fn parts_inside(surface: &TriangleSurface, pairs: &[TrianglePair]) -> Vec<Option
         points_of[parts.root(point) as usize] += 1;
     }
     let mut is_inside = vec![false; surface.points.len()];
-    let mut ends_of = vec![[0_usize; 2]; surface.points.len()];
-    for ends in piercing_edges(surface, pairs) {
-        (0..2).for_each(|end| ends_of[parts.root(ends[end]) as usize][end] += 1);
-    }
-    for (part, [outside, inside]) in ends_of.into_iter().enumerate() {
-        is_inside[part] = inside > outside && 2 * points_of[part] <= surface.points.len();
+    for point in ends_inside(surface, pairs) {
+        let part = parts.root(point) as usize;
+        is_inside[part] = 2 * points_of[part] <= surface.points.len();
     }
     let part = |point: u32| Some(parts.root(point)).filter(|&part| is_inside[part as usize]);
     (0..surface.points.len() as u32).map(part).collect()
 }
 
-/// The edges that pierce one triangle only, from outside to inside.
-fn piercing_edges(surface: &TriangleSurface, pairs: &[TrianglePair]) -> Vec<[u32; 2]> {
+/// The inner ends of edges that pierce one triangle only.
+fn ends_inside(surface: &TriangleSurface, pairs: &[TrianglePair]) -> Vec<u32> {
     let mut found: Vec<Piercing> = pairs.iter().flat_map(|pair| piercings(surface, pair)).collect();
     let edge = |piercing: &Piercing| {
         let [front, behind] = piercing.edge;
@@ -179,5 +192,5 @@ fn piercing_edges(surface: &TriangleSurface, pairs: &[TrianglePair]) -> Vec<[u32
     found.sort_unstable_by_key(|piercing| (edge(piercing), *piercing));
     found.dedup();
     let of_edges = found.chunk_by(|one, other| edge(one) == edge(other));
-    of_edges.filter(|of_edge| of_edge.len() == 1).map(|of_edge| of_edge[0].edge).collect()
+    of_edges.filter(|of_edge| of_edge.len() == 1).map(|of_edge| of_edge[0].edge[1]).collect()
 }
