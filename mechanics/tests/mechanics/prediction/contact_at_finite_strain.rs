@@ -10,7 +10,7 @@ use mechanics::prediction::{Advance, Case, CaseSegment, Method, Settings};
 use super::contact::{
     PRESSING, at, bar, blocks, force, jaws, pushed, raised, together, unilateral,
 };
-use crate::scenes::{case_of, material, set, solve};
+use crate::scenes::{case_of, largest_error, material, set, solve};
 
 fn at_finite_strain() -> Settings {
     Settings { method: Method::FemNonlinear, ..unilateral() }
@@ -121,6 +121,33 @@ fn holds_of_tissue_in_contact_at_finite_strain_are_in_balance() {
     let pressed: f64 = touch.pairs.iter().map(|pair| pair.force).sum::<f64>();
     let wanted = 144.0 * 7.5 * (1.0 / 0.9 - 0.9);
     assert!((pressed / wanted - 1.0).abs() < 0.02, "{pressed} {wanted}");
+}
+
+/// Where meshes match, the row of a node repeats that of the node it faces, and one of both has all of the force: the faces of
+/// both press nevertheless, and nothing acts on their edges that would move them.
+#[test]
+fn nothing_is_missing_of_blocks_that_press_evenly_at_finite_strain() {
+    let (_, plan) = blocks();
+    for (shape, element) in PRESSING {
+        for cells in [3, 2] {
+            // Hexahedra that do not match press unevenly.
+            if shape == CellShape::Hex8 && cells == 2 {
+                continue;
+            }
+            let lower = block(Vector::new(12.0, 12.0, 6.0), [3, 3, 2], shape);
+            let upper = block(Vector::new(12.0, 12.0, 6.0), [cells, cells, 2], shape);
+            let mesh = together(&[("lower", lower), ("upper", at(upper, [0.0, 0.0, 6.0]))]);
+            let case = Case { allow_unfixed: true, ..case_of(mesh, material(15.0, 0.0)) };
+            let found = solve(&case, &plan, &Settings { element, ..at_finite_strain() });
+            let told = format!("{shape:?} {element:?}, 3 cells to {cells}");
+            let even = |x: &Vector| Vector::z() * (-0.1 * x.z);
+            let off = largest_error(&case.volume, &found.displacement, even);
+            assert!(off < 1e-7, "{told}: {off:e}");
+            let missing = found.numerical_error.unwrap().missing;
+            let largest = missing.iter().map(Vector::norm).fold(0.0, f64::max);
+            assert!(largest < 1e-6, "{told}: {largest:e}");
+        }
+    }
 }
 
 /// Bone of 2 mm between nodes of tissue that are 5 mm apart is faced by none of them.

@@ -132,9 +132,10 @@ impl<'a> Touching<'a> {
         forces.filter(|(_, force)| *force != 0.0)
     }
 
-    /// Holds of tissue, with those of the points that press.
+    /// Holds of tissue, with those of the points that press, also where the rows of what they face have all of the force.
     pub fn held(&self, constraints: &[Constraint]) -> Vec<Constraint> {
-        with_pressing(constraints, self.pressing().map(|(row, _)| &self.kept_rows.rows[row]))
+        let KeptRows { rows, pressing } = &self.kept_rows;
+        with_pressing(constraints, rows.iter().filter(|row| pressing.contains(&row.node)))
     }
 
     /// What presses after a step, and what that changes of it; nothing where nothing presses before and after.
