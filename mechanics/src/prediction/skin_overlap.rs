@@ -4,8 +4,8 @@
 //! of their triangles cross at rest. How deep: the triangles that cross cut the skin into parts, and an edge that
 //! pierces one triangle only begins outside and ends inside. Points of the parts that such edges end in lie inside what
 //! is not theirs; their depth is the distance to the closest triangle of another part that crosses or lies inside. It
-//! is not above the true one, because a point may be closer to the rim of its own part. Where skin does not wind around a point in
-//! front of it the point lies outside after all.
+//! is not above the true one, because a point may be closer to the rim of its own part. Where a closed surface does not wind around a point
+//! in front of it the point lies outside after all.
 
 use std::collections::BTreeSet;
 
@@ -14,6 +14,7 @@ use crate::mesh::crossing::{
     Piercing, TrianglePair, cross, pass, pass_inside, piercings, self_crossings,
 };
 use crate::mesh::disjoint_sets::DisjointSets;
+use crate::mesh::surface_edges::edges;
 use crate::mesh::{SurfaceSearch, TriangleSurface, Vector, Warning};
 
 /// The code of the warning.
@@ -22,7 +23,7 @@ pub const SKIN_OVERLAPS: &str = "skin-overlaps";
 /// Triangles that pass through each other by less than this, in mm, lie on each other: contact is met to half of it.
 const TOUCHING_MM: f64 = 2e-3;
 
-/// Skin winds around a point just in front of its own by about 1 where the point lies behind other skin, and by about 0 where not.
+/// A closed surface winds around a point just in front of its own by about 1 where the point lies behind other skin, and by about 0 where not.
 const BEHIND: f64 = 0.3;
 
 /// So far in front, in mm; and how many angles of triangles are looked at for that.
@@ -147,7 +148,11 @@ fn deepest(surface: &TriangleSurface, pairs: &[TrianglePair]) -> Option<Deepest>
     measured.sort_by(|(_, one), (_, other)| other.depth.total_cmp(&one.depth));
     // Where only an edge or a corner passes, what hangs together with its end lies outside.
     let normals = surface.point_normals();
+    let is_closed = edges(&surface.sorted_sides()).all(|edge| edge.len() > 1);
     let is_behind = |(point, own): &(u32, Deepest)| {
+        if !is_closed {
+            return true;
+        }
         let before = own.at + normals[*point as usize] * BEFORE_MM;
         surface.winding_number(0..surface.triangles.len(), &before) > BEHIND
     };

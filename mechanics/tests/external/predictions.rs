@@ -90,18 +90,20 @@ fn crossings(case: &Case, plan: &Plan) -> (u64, u64, Option<Warning>) {
     (count(&scene.skin.surface), count(&moved), told)
 }
 
-/// The 6 pairs at rest were counted by another program too.
+/// Cut along the diagonals of the first nodes of faces 6 pairs cross at rest, which another program counted too; along the shorter
+/// diagonals 4 of these do.
 fn a_jaw_raised_into_the_lips_of_a_real_face_is_reported() -> Result<(), Missing> {
     let case = subject()?;
     let (rest, moved, told) = crossings(&case, &Plan::default());
-    assert_eq!((rest, moved, told), (6, 6, None));
-    for (by, wanted) in [(4.0, 25), (8.0, 71)] {
+    assert_eq!((rest, moved, told), (4, 4, None));
+    for (by, wanted) in [(4.0, 20), (8.0, 70)] {
         let (_, moved, told) = crossings(&case, &raised(by));
         println!("{by} mm: {moved} pairs, {told:?}");
-        assert_eq!(moved, wanted, "{by} mm");
+        // A few pass by less than is told of.
+        assert!((wanted..wanted + 5).contains(&moved), "{by} mm: {moved}");
         let numbers: BTreeMap<&str, f64> = told.unwrap().numbers.into_iter().collect();
         // Those that crossed at rest do so no longer.
-        assert_eq!((numbers["pairs"], numbers["pairs_at_rest"]), (wanted as f64, 6.0));
+        assert_eq!((numbers["pairs"], numbers["pairs_at_rest"]), (wanted as f64, 4.0));
         assert!(numbers["depth_mm"] > 0.1 && numbers["depth_mm"] < by, "{by} mm: {numbers:?}");
     }
     Ok(())
@@ -118,11 +120,11 @@ pub fn template() -> Result<Case, Missing> {
     })
 }
 
-/// Of the pairs that cross without contact (25, 71 and 49 of the subject, 61, 112 and 61 of the template) those at the
-/// corners of the mouth are left, where edges cross edges; at finite strain (23, 71 and 68, 61, 108 and 34) none are.
+/// Of the pairs that cross without contact (20 and 70 of the subject at 4 and 8 mm) those at the corners of the mouth of the template are
+/// left, where edges cross edges; at finite strain none are.
 fn lips_of_real_faces_press_on_each_other_with_contact() -> Result<(), Missing> {
     for (name, case, most) in
-        [("subject", subject()?, [6, 2, 2]), ("template", template()?, [2, 20, 30])]
+        [("subject", subject()?, [0, 0, 0]), ("template", template()?, [2, 20, 30])]
     {
         for (by, most) in [4.0, 8.0, 15.0].into_iter().zip(most) {
             let linear = Settings { contact: ContactKind::Unilateral, ..Settings::default() };
