@@ -20,8 +20,10 @@ use crate::mesh::{SurfaceSearch, TriangleSurface, Vector, Warning};
 /// The code of the warning.
 pub const SKIN_OVERLAPS: &str = "skin-overlaps";
 
-/// Triangles that pass through each other by less than this, in mm, lie on each other: contact is met to half of it.
-const TOUCHING_MM: f64 = 2e-3;
+/// Triangles that pass through each other by less than this, in mm, lie on each other; and by less than that they are not told of,
+/// because contact is met to half of it.
+const TOUCHING_MM: f64 = 1e-5;
+const TOLD_MM: f64 = 2e-3;
 
 /// A closed surface winds around a point just in front of its own by about 1 where the point lies behind other skin, and by about 0 where not.
 const BEHIND: f64 = 0.3;
@@ -64,13 +66,14 @@ pub(super) fn added_overlap(skin: &Skin, moved: &TriangleSurface) -> Option<Deep
 /// skin have to be finite.
 pub fn skin_overlap(skin: &Skin, moved: &TriangleSurface) -> Option<Warning> {
     let rest = &skin.surface;
-    let passes = |surface: &TriangleSurface, pair: &TrianglePair| pass(surface, pair, TOUCHING_MM);
+    let passes = |surface: &TriangleSurface, pair: &TrianglePair| pass(surface, pair, TOLD_MM);
     let found = self_crossings(moved, |pair| !cross(rest, pair) && passes(moved, pair));
     if found.count == 0 && found.untried == 0 {
         return None;
     }
     let at_rest = self_crossings(rest, |pair| passes(rest, pair)).count;
-    let deepest = deepest(moved, &self_crossings(moved, |pair| passes(moved, pair)).pairs);
+    let through = |pair: &TrianglePair| pass(moved, pair, TOUCHING_MM);
+    let deepest = deepest(moved, &self_crossings(moved, through).pairs);
     let (few, depth) = (
         if found.untried > 0 { "at least " } else { "" },
         deepest.as_ref().map_or_else(String::new, |own| {
