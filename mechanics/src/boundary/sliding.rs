@@ -41,10 +41,8 @@ pub fn wall_normals(
         .iter()
         .map(|&node| {
             let walls = &on_walls[node as usize];
-            let is_of_wall = |face: &&Vector| {
-                let cosine = |wall: &Vector| wall.dot(face) / (wall.norm() * face.norm());
-                walls.iter().any(|wall| cosine(wall) > SAME_WALL)
-            };
+            let is_of_wall =
+                |face: &&Vector| walls.iter().any(|wall| cosine(wall, face) > SAME_WALL);
             let ends = ending[node as usize].iter().filter(is_of_wall);
             let own: Vec<Vector> = walls.iter().chain(ends).copied().collect();
             let faces = if walls.is_empty() { &touching[node as usize] } else { &own };
@@ -57,14 +55,18 @@ pub fn wall_normals(
 fn group_by_wall(faces: &[Vector]) -> Vec<Vector> {
     let mut walls: Vec<Vector> = Vec::new();
     for face in faces.iter().filter(|face| face.norm() > 0.0) {
-        let cosine = |wall: &Vector| wall.dot(face) / (wall.norm() * face.norm());
-        match walls.iter_mut().find(|wall| cosine(wall).abs() > SAME_WALL) {
-            Some(wall) => *wall += face * cosine(wall).signum(),
+        match walls.iter_mut().find(|wall| cosine(wall, face).abs() > SAME_WALL) {
+            Some(wall) => *wall += face * cosine(wall, face).signum(),
             None => walls.push(*face),
         }
     }
     walls.truncate(3);
     walls.iter().map(|wall| wall.normalize()).collect()
+}
+
+/// Of the angle between two area vectors.
+fn cosine(one: &Vector, other: &Vector) -> f64 {
+    one.dot(other) / (one.norm() * other.norm())
 }
 
 #[cfg(test)]

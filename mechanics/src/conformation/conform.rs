@@ -14,7 +14,7 @@ use super::pull::Pull;
 use super::schedule::{BONE, LANDMARK, Level, levels};
 use super::sheet::Sheet;
 use super::start::{self, Start};
-use crate::mesh::{TriangleSurface, Vector, VolumeMesh};
+use crate::mesh::{SurfaceSearch, TriangleSurface, Vector, VolumeMesh};
 use crate::progress::{Phase, Progress};
 
 /// Rounds of the affine map, and what keeps it near a similarity.
@@ -113,11 +113,16 @@ fn pair(
         return Err(ConformationError::NoSheet { sheet: name, nodes });
     }
     let refused = |error| ConformationError::Surface { sheet: name, error };
-    let (surface, covering) = match name {
-        SheetName::Skin => uncovered(surface).map_err(refused)?,
-        SheetName::Bone => (surface.clone(), Covering::default()),
+    let (search, is_bone) =
+        (SurfaceSearch::new(surface).map_err(refused)?, name == SheetName::Bone);
+    let covered = if is_bone { None } else { uncovered(&search, surface) };
+    let (target, covering) = match covered {
+        None => (Target::new(search, surface, is_bone), Covering::default()),
+        Some((skin, covering)) => {
+            let search = SurfaceSearch::new(&skin).map_err(refused)?;
+            (Target::new(search, &skin, is_bone), covering)
+        }
     };
-    let target = Target::new(&surface, name == SheetName::Bone).map_err(refused)?;
     Ok(Some(Pair { sheet, target, covering }))
 }
 

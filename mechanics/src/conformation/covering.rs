@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use crate::mesh::{SearchError, SurfaceSearch, TriangleSurface, Vector};
+use crate::mesh::{SurfaceSearch, TriangleSurface, Vector};
 
 /// Skin lies so far behind what covers it, in mm: nearer is noise or a second sheet, farther is another part of the body.
 const BEHIND_MM: [f64; 2] = [1.0, 100.0];
@@ -18,16 +18,17 @@ pub struct Covering {
     pub middle: Vector,
 }
 
-/// A surface without the triangles whose back faces the front of another one across air, and what these are.
+/// A surface, prepared for its search, without the triangles whose back faces the front of another one across air, and what these
+/// are; nothing where there are none.
 pub(super) fn uncovered(
+    search: &SurfaceSearch,
     surface: &TriangleSurface,
-) -> Result<(TriangleSurface, Covering), SearchError> {
-    let search = SurfaceSearch::new(surface)?;
+) -> Option<(TriangleSurface, Covering)> {
     let covers = |triangle: usize| {
         let Some(normal) = surface.area_vector(triangle).try_normalize(f64::MIN_POSITIVE) else {
             return false;
         };
-        let behind = search.first_hit(&middle(surface, triangle), &-normal, triangle, BEHIND_MM[1]);
+        let behind = search.first_hit(&surface.middle(triangle), &-normal, triangle, BEHIND_MM[1]);
         behind.is_some_and(|(other, distance)| {
             distance > BEHIND_MM[0] && surface.area_vector(other).dot(&normal) > 0.0
         })
@@ -38,17 +39,13 @@ pub(super) fn uncovered(
     for triangle in (0..is_covering.len()).filter(|&triangle| is_covering[triangle]) {
         let area = surface.area_vector(triangle).norm();
         covering.area_mm2 += area;
-        covering.middle += middle(surface, triangle) * area;
+        covering.middle += surface.middle(triangle) * area;
     }
     if covering.area_mm2 == 0.0 || covering.area_mm2 > MOST * surface.area() {
-        return Ok((surface.clone(), Covering::default()));
+        return None;
     }
     covering.middle /= covering.area_mm2;
     let others = surface.triangles.iter().zip(&is_covering).filter(|(_, covers)| !**covers);
     let triangles = others.map(|(triangle, _)| *triangle).collect();
-    Ok((TriangleSurface { triangles, ..surface.clone() }, covering))
-}
-
-fn middle(surface: &TriangleSurface, triangle: usize) -> Vector {
-    surface.corners(triangle).iter().sum::<Vector>() / 3.0
+    Some((TriangleSurface { triangles, ..surface.clone() }, covering))
 }

@@ -49,8 +49,7 @@ struct Match {
 }
 
 impl Target {
-    pub fn new(surface: &TriangleSurface, two_sided: bool) -> Result<Target, SearchError> {
-        let search = SurfaceSearch::new(surface)?;
+    pub fn new(search: SurfaceSearch, surface: &TriangleSurface, two_sided: bool) -> Target {
         let samples = area_sampling::equal_areas(surface, SAMPLES);
         let samples = samples
             .iter()
@@ -62,7 +61,7 @@ impl Target {
                 )
             })
             .collect();
-        Ok(Target { search, samples, two_sided })
+        Target { search, samples, two_sided }
     }
 
     /// The pulls on the points of `rest`, which now lie at `now`.

@@ -7,6 +7,7 @@ use super::error::{FormatError, Offenders};
 use super::limits::ReadLimits;
 use super::surface_cleaning::clean;
 use super::{Mesh, MeshFormat, ReadMesh};
+use crate::mesh::check::referenced;
 use crate::mesh::duplicate_cells::duplicate_cells;
 use crate::mesh::orientation::CellJacobian;
 use crate::mesh::{
@@ -212,11 +213,7 @@ impl Parsed {
     }
 
     fn warn_of_unreferenced<'a>(&mut self, nodes: usize, named: impl Iterator<Item = &'a u32>) {
-        let mut is_named = vec![false; nodes];
-        for &node in named {
-            is_named[node as usize] = true;
-        }
-        let count = is_named.iter().filter(|named| !**named).count();
+        let count = referenced(nodes, named).iter().filter(|named| !**named).count();
         if count > 0 {
             let detail =
                 format!("{count} nodes belong to no cell or triangle; they stay where they are");

@@ -264,9 +264,12 @@ fn largest(parts: &[u64]) -> Vec<u64> {
 }
 
 fn unreferenced<'a>(nodes: usize, named: impl Iterator<Item = &'a u32>) -> u64 {
+    referenced(nodes, named).iter().filter(|named| !**named).count() as u64
+}
+
+/// For each of so many nodes whether it is among those that cells or triangles name.
+pub fn referenced<'a>(nodes: usize, named: impl Iterator<Item = &'a u32>) -> Vec<bool> {
     let mut is_named = vec![false; nodes];
-    for &node in named {
-        is_named[node as usize] = true;
-    }
-    is_named.iter().filter(|named| !**named).count() as u64
+    named.for_each(|&node| is_named[node as usize] = true);
+    is_named
 }

@@ -17,6 +17,11 @@ impl TriangleSurface {
         self.triangles[triangle].map(|point| self.points[point as usize])
     }
 
+    /// The mean of the corners of a triangle.
+    pub fn middle(&self, triangle: usize) -> Vector {
+        self.corners(triangle).iter().sum::<Vector>() / 3.0
+    }
+
     /// Half the cross product of two edges: along the normal, as long as the triangle's area in mm².
     pub fn area_vector(&self, triangle: usize) -> Vector {
         let [a, b, c] = self.corners(triangle);

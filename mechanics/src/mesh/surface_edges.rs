@@ -40,6 +40,11 @@ impl TriangleSurface {
         sides
     }
 
+    /// Whether every edge belongs to more than one triangle.
+    pub fn is_closed(&self) -> bool {
+        count_edges(&self.sorted_sides()).open == 0
+    }
+
     /// The same surface with every triangle cut into four at the middles of its sides; a closed one stays closed.
     #[must_use]
     pub fn with_sides_halved(&self) -> TriangleSurface {

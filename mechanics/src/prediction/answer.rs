@@ -1,7 +1,7 @@
 //! Solution of a scene: its equilibrium, its discretisation error and its linearisation error.
 
 use super::contact::{
-    InTouch, Touch, expected_touch_at_finite_strain, touch, touch_at_finite_strain,
+    InTouch, Touch, expected_touch_at_finite_strain, facing_surfaces, touch, touch_at_finite_strain,
 };
 use super::method::MethodKind;
 use super::nonlinearity::{self, Estimated, NonlinearityUnknown};
@@ -147,20 +147,27 @@ fn at_finite_strain(
     progress: &dyn Progress,
 ) -> Result<Answer, ModelError> {
     let with_error = unknown.of_mesh.is_none();
+    let surfaces = facing_surfaces(scene);
+    let expected = match &surfaces {
+        Some(surfaces) => expected_touch_at_finite_strain(scene, surfaces, with_error, progress)?,
+        None => None,
+    };
     let in_touch = |found: InTouch| (found.equilibrium, found.numerical_error, Some(found.touch));
-    let (equilibrium, known, contact) =
-        match expected_touch_at_finite_strain(scene, with_error, progress)? {
-            Some(found) => in_touch(found),
-            None => {
-                let (free, error) = scene.solve_at_finite_strain(with_error, progress)?;
-                let touched = touch_at_finite_strain(scene, &free, with_error, progress)?;
-                let error = error.map(numerical_error::at_last_tangent);
-                match touched.map(in_touch) {
-                    Some((found, known, touch)) => (found, known.or(error), touch),
-                    None => (free, error, None),
-                }
+    let (equilibrium, known, contact) = match expected {
+        Some(found) => in_touch(found),
+        None => {
+            let (free, error) = scene.solve_at_finite_strain(with_error, progress)?;
+            let touched = match &surfaces {
+                Some(own) => touch_at_finite_strain(scene, own, &free, with_error, progress)?,
+                None => None,
+            };
+            let error = error.map(numerical_error::at_last_tangent);
+            match touched.map(in_touch) {
+                Some((found, known, touch)) => (found, known.or(error), touch),
+                None => (free, error, None),
             }
-        };
+        }
+    };
     let not_asked = unknown.of_mesh.unwrap_or(NotEstimated::NotAsked);
     Ok(Answer {
         equilibrium,

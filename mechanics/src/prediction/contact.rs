@@ -77,6 +77,13 @@ struct Pressing {
     numerical_error: Option<ErrorOrReason>,
 }
 
+/// What may touch in a scene; none where contact is not asked for.
+pub(super) fn facing_surfaces(scene: &Scene) -> Option<FacingSurfaces<'_>> {
+    let Scene { mesh, boundary, conditions, bones, .. } = scene;
+    let is_asked = scene.settings.contact.is_unilateral();
+    is_asked.then(|| FacingSurfaces::new(mesh, boundary, &conditions.constraints, bones))
+}
+
 /// The answer of linear elasticity in which what touches presses; none where nothing does or contact is not asked for. On
 /// request with what the mesh leaves out.
 pub(super) fn touch(
@@ -86,7 +93,8 @@ pub(super) fn touch(
     with_error: bool,
     progress: &dyn Progress,
 ) -> Result<Option<InTouch>, ModelError> {
-    let found = pressed(scene, Some(&free.equilibrium), progress, |surfaces| {
+    let Some(surfaces) = &facing_surfaces(scene) else { return Ok(None) };
+    let found = pressed(scene, surfaces, Some(&free.equilibrium), progress, || {
         let relative_residual = scene.settings.relative_residual;
         let found = ContactProblem { system, free, surfaces, relative_residual }.solve(progress)?;
         let Some(mut found) = found else { return Ok(None) };
@@ -106,11 +114,12 @@ pub(super) fn touch(
 /// The same at finite strain, on the way to an answer without contact.
 pub(super) fn touch_at_finite_strain(
     scene: &Scene,
+    surfaces: &FacingSurfaces,
     free: &Equilibrium,
     with_error: bool,
     progress: &dyn Progress,
 ) -> Result<Option<InTouch>, ModelError> {
-    pressed(scene, Some(free), progress, |surfaces| {
+    pressed(scene, surfaces, Some(free), progress, || {
         pressed_at_finite_strain(scene, &free.displacement, surfaces, with_error, progress)
     })
 }
@@ -118,10 +127,11 @@ pub(super) fn touch_at_finite_strain(
 /// The same where the answer of linear elasticity touches, without one of finite strain before it; none where that says nothing.
 pub(super) fn expected_touch_at_finite_strain(
     scene: &Scene,
+    surfaces: &FacingSurfaces,
     with_error: bool,
     progress: &dyn Progress,
 ) -> Result<Option<InTouch>, ModelError> {
-    pressed(scene, None, progress, |surfaces| {
+    pressed(scene, surfaces, None, progress, || {
         let Some(system) = scene.assemble(progress)? else { return Ok(None) };
         let expected = system.solve(&[scene.load_case()], progress)?.remove(0).equilibrium;
         drop(system);
@@ -160,21 +170,13 @@ fn pressed_at_finite_strain(
 /// if there is such an answer.
 fn pressed(
     scene: &Scene,
+    surfaces: &FacingSurfaces,
     free: Option<&Equilibrium>,
     progress: &dyn Progress,
-    solve: impl FnOnce(&FacingSurfaces) -> Result<Option<Pressing>, ModelError>,
+    solve: impl FnOnce() -> Result<Option<Pressing>, ModelError>,
 ) -> Result<Option<InTouch>, ModelError> {
-    if !scene.settings.contact.is_unilateral() {
-        return Ok(None);
-    }
     progress.phase(Phase::Contact);
-    let surfaces = FacingSurfaces::new(
-        &scene.mesh,
-        &scene.boundary,
-        &scene.conditions.constraints,
-        &scene.bones,
-    );
-    let found = solve(&surfaces)?;
+    let found = solve()?;
     let nothing_presses = found.is_none();
     let without = || {
         let forces = vec![Vector::zeros(); scene.mesh.nodes.len()];
@@ -195,10 +197,10 @@ fn pressed(
     let of_step = |pressed: &Vec<PressingRow>| {
         let forces = forces_of(pressed, scene.mesh.nodes.len());
         let contact = Contact { pressed: pressed.clone(), forces, ..Contact::default() };
-        StepTouch::of(&Touch::new(scene, &surfaces, contact))
+        StepTouch::of(&Touch::new(scene, surfaces, contact))
     };
     let at_load_steps = contact.at_load_steps.iter().map(of_step).collect();
-    let touch = Touch::new(scene, &surfaces, contact);
+    let touch = Touch::new(scene, surfaces, contact);
     let touch = Touch { overlap, bones_inside, at_load_steps, ..touch };
     Ok(Some(InTouch { equilibrium, touch, numerical_error }))
 }

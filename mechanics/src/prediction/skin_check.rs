@@ -74,7 +74,7 @@ fn inward_skin(scene: &Scene) -> Option<Warning> {
         .par_iter()
         .map(|&triangle| {
             let normal = surface.area_vector(triangle);
-            let middle = surface.corners(triangle).iter().sum::<Vector>() / 3.0;
+            let middle = surface.middle(triangle);
             let way = held.step_to_closest(&middle);
             let faces_it = way.dot(&normal) > FACING * way.norm() * normal.norm();
             [normal.norm(), if faces_it { normal.norm() } else { 0.0 }]

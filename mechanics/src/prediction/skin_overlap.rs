@@ -14,7 +14,6 @@ use crate::mesh::crossing::{
     Piercing, TrianglePair, cross, pass, pass_inside, piercings, self_crossings,
 };
 use crate::mesh::disjoint_sets::DisjointSets;
-use crate::mesh::surface_edges::edges;
 use crate::mesh::{SurfaceSearch, TriangleSurface, Vector, Warning};
 
 /// The code of the warning.
@@ -149,13 +148,12 @@ fn deepest(surface: &TriangleSurface, pairs: &[TrianglePair]) -> Option<Deepest>
     let measured = inside.iter().step_by(step).filter_map(|point| Some((*point, depth(point)?)));
     let mut measured: Vec<(u32, Deepest)> = measured.collect();
     measured.sort_by(|(_, one), (_, other)| other.depth.total_cmp(&one.depth));
+    if !surface.is_closed() {
+        return measured.into_iter().next().map(|(_, deepest)| deepest);
+    }
     // Where only an edge or a corner passes, what hangs together with its end lies outside.
     let normals = surface.point_normals();
-    let is_closed = edges(&surface.sorted_sides()).all(|edge| edge.len() > 1);
     let is_behind = |(point, own): &(u32, Deepest)| {
-        if !is_closed {
-            return true;
-        }
         let before = own.at + normals[*point as usize] * BEFORE_MM;
         surface.winding_number(0..surface.triangles.len(), &before) > BEHIND
     };

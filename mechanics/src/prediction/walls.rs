@@ -12,8 +12,9 @@ use super::scene::Scene;
 use super::stated::StatedHold;
 use crate::boundary::sliding::SAME_WALL;
 use crate::boundary::{HeldNodes, NodeSelection, WallNode, sliding};
+use crate::mesh::check::referenced;
 use crate::mesh::ignored::listed;
-use crate::mesh::{Vector, Warning};
+use crate::mesh::{Vector, VolumeMesh, Warning};
 use crate::plan::{PlannedSegment, RigidMovement};
 
 /// Above this turn of a segment, in degrees, small strain is told to keep the normals of its walls.
@@ -128,9 +129,8 @@ impl Check<'_> {
         };
         if normals.iter().any(|(_, normals)| normals.is_empty()) {
             // Nodes of no cell are warned of, and move nothing.
-            let mut is_used = vec![false; self.case.volume.nodes.len()];
-            let of_cells = self.case.volume.cells.iter().flat_map(|(_, nodes)| nodes);
-            of_cells.for_each(|&node| is_used[node as usize] = true);
+            let VolumeMesh { nodes, cells, .. } = &*self.case.volume;
+            let is_used = referenced(nodes.len(), cells.iter().flat_map(|(_, nodes)| nodes));
             normals.retain(|(node, normals)| !normals.is_empty() || is_used[*node as usize]);
         }
         if let Some((node, _)) = normals.iter().find(|(_, normals)| normals.is_empty()) {

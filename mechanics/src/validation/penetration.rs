@@ -3,7 +3,6 @@
 use rayon::prelude::*;
 
 use crate::mesh::area_sampling::{self, AreaSample};
-use crate::mesh::surface_edges::count_edges;
 use crate::mesh::{SurfaceSearch, TriangleSurface, Vector};
 
 /// Deeper than this, in mm, the side of an open surface says nothing about inside and outside.
@@ -54,7 +53,7 @@ const MOST_SAMPLES: f64 = 4e5;
 /// What two closed surfaces have in common; nothing where they do not overlap, or one is open. V = 1/3 ∫ x . n over what of each
 /// lies inside the other.
 pub fn overlap(one: &TriangleSurface, other: &TriangleSurface) -> Option<Overlap> {
-    if !(is_closed(one) && is_closed(other)) {
+    if !(one.is_closed() && other.is_closed()) {
         return None;
     }
     let searches = [SurfaceSearch::new(one).ok()?, SurfaceSearch::new(other).ok()?];
@@ -77,10 +76,6 @@ pub fn overlap(one: &TriangleSurface, other: &TriangleSurface) -> Option<Overlap
         middle,
         radius: inside.iter().map(|part| (part.point - middle).norm()).fold(0.0, f64::max),
     })
-}
-
-fn is_closed(surface: &TriangleSurface) -> bool {
-    count_edges(&surface.sorted_sides()).open == 0
 }
 
 /// A piece of a surface.

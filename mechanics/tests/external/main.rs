@@ -5,6 +5,7 @@ mod conformation;
 mod estimates;
 mod files;
 mod interop;
+mod lips;
 mod muscle_mapping;
 mod muscles;
 mod needs;
@@ -24,6 +25,7 @@ fn main() -> ExitCode {
         estimates::trials(),
         files::trials(),
         interop::trials(),
+        lips::trials(),
         muscle_mapping::trials(),
         muscles::trials(),
         needs::trials(),

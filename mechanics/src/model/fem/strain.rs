@@ -133,7 +133,6 @@ fn rotation(gradient: &Matrix3<f64>) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::CellShape;
     use crate::mesh::sample::block;
 
     #[test]
