@@ -10,6 +10,7 @@ use super::error::{ConformationError, SheetName};
 use super::landmark::{self, Landmark, refuse_scale};
 use super::lattice::{Aabb, Field, Lattice};
 use super::matching::{MatchWeights, Target};
+use super::outlier::{DoubtfulLandmark, doubtful};
 use super::pull::Pull;
 use super::schedule::{BONE, LANDMARK, Level, levels};
 use super::sheet::Sheet;
@@ -60,6 +61,15 @@ pub struct Conformation {
     pub partners: [usize; 2],
     /// What covers the patient's skin, and was left out.
     pub covering: Covering,
+    /// Landmarks far from where the others and the surfaces put them.
+    pub doubtful: Vec<DoubtfulLandmark>,
+}
+
+impl Conformation {
+    /// Whether a landmark was found to lie elsewhere, and was not used.
+    pub fn leaves_out(&self, landmark: &str) -> bool {
+        self.doubtful.iter().any(|own| own.is_left_out && own.name == landmark)
+    }
 }
 
 /// A sheet of the template with the surface that it meets.
@@ -85,21 +95,45 @@ pub fn conform(
         return Err(ConformationError::NothingToFit);
     }
     landmark::refuse_distant(patient.landmarks, template.mesh)?;
-    let first = started(start, patient, skin.as_ref().or(bone.as_ref()))?;
-    let affine = affinely(first, skin.as_ref(), patient.landmarks)?;
-    if let Some(pair) = &skin {
-        refuse_other_shapes(pair, &affine)?;
+    let surfaces = Surfaces { mesh: template.mesh, skin, bone };
+    let (doubtful, landmarks) = doubtful(&surfaces, patient, start, progress)?;
+    let used = Patient { landmarks: &landmarks, ..*patient };
+    let levels = levels(surfaces.bone.is_some());
+    let deformation = surfaces.fitted(&used, start, &levels, progress)?;
+    let found = measured(deformation, &surfaces, patient.landmarks);
+    Ok(Conformation { doubtful, ..found })
+}
+
+/// The template's sheets with the surfaces that they meet.
+pub(super) struct Surfaces<'a> {
+    mesh: &'a VolumeMesh,
+    skin: Option<Pair>,
+    bone: Option<Pair>,
+}
+
+impl Surfaces<'_> {
+    pub fn fitted(
+        &self,
+        patient: &Patient,
+        start: Start,
+        levels: &[Level],
+        progress: &dyn Progress,
+    ) -> Result<Deformation, ConformationError> {
+        let (skin, bone, landmarks) = (self.skin.as_ref(), self.bone.as_ref(), patient.landmarks);
+        let affine = affinely(started(start, patient, skin.or(bone))?, skin, landmarks)?;
+        if let Some(pair) = skin {
+            refuse_other_shapes(pair, &affine)?;
+        }
+        let fitting = Fitting {
+            skin: skin.map(|pair| pair.placed(&affine)),
+            bone: bone.map(|pair| pair.placed(&affine)),
+            landmarks: landmark_pulls(landmarks, &affine, LANDMARK),
+            boxes: boxes(self.mesh, landmarks, &affine),
+            progress,
+        };
+        let field = fitting.run(levels)?;
+        Ok(Deformation { affine, field })
     }
-    let fitting = Fitting {
-        skin: skin.as_ref().map(|pair| pair.placed(&affine)),
-        bone: bone.as_ref().map(|pair| pair.placed(&affine)),
-        landmarks: landmark_pulls(patient.landmarks, &affine, LANDMARK),
-        boxes: boxes(template.mesh, patient.landmarks, &affine),
-        progress,
-    };
-    let field = fitting.run(&levels(bone.is_some()))?;
-    let deformation = Deformation { affine, field };
-    Ok(measured(deformation, skin.as_ref(), bone.as_ref(), patient.landmarks))
 }
 
 fn pair(
@@ -288,12 +322,8 @@ impl Fitting<'_> {
     }
 }
 
-fn measured(
-    deformation: Deformation,
-    skin: Option<&Pair>,
-    bone: Option<&Pair>,
-    landmarks: &[Landmark],
-) -> Conformation {
+fn measured(deformation: Deformation, surfaces: &Surfaces, landmarks: &[Landmark]) -> Conformation {
+    let (skin, bone) = (surfaces.skin.as_ref(), surfaces.bone.as_ref());
     let moved = |pair: &Pair| pair.sheet.moved(|x| deformation.apply(x));
     let distances = |pair: Option<&Pair>| {
         pair.map_or(Vec::new(), |pair| pair.target.distances(&moved(pair).points))
@@ -305,6 +335,7 @@ fn measured(
         landmark_distances: landmarks.iter().map(left).collect(),
         partners: skin.map_or([0, 0], |pair| pair.target.partners(&moved(pair))),
         covering: skin.map(|pair| pair.covering).unwrap_or_default(),
+        doubtful: Vec::new(),
         deformation,
     }
 }

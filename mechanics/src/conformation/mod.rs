@@ -11,6 +11,7 @@ mod fit;
 mod landmark;
 mod lattice;
 mod matching;
+mod outlier;
 mod pull;
 mod schedule;
 mod sheet;
@@ -28,5 +29,6 @@ pub use fibres::{
     mapped_surface,
 };
 pub use landmark::Landmark;
+pub use outlier::DoubtfulLandmark;
 pub use start::Start;
 pub use warp::{Warp, spline_of};

@@ -36,6 +36,11 @@ pub(super) fn levels(has_bone: bool) -> Vec<Level> {
     skin.chain(both.filter(|_| has_bone)).collect()
 }
 
+/// The skin alone, on the two coarsest lattices.
+pub(super) fn coarse_levels() -> Vec<Level> {
+    (0..2).map(|lattice| level(lattice, false)).collect()
+}
+
 fn level(lattice: i32, with_bone: bool) -> Level {
     let coarser = LATTICES - 1 - lattice;
     let (rounds, across) =

@@ -326,3 +326,31 @@ fn a_dressing_before_the_skin_of_a_scan_pulls_nothing_and_is_told() {
         assert!((found.covering.area_mm2 / sheet.area() - 1.0).abs() < 0.1, "{:?}", found.covering);
     }
 }
+
+/// One of them 15 mm along the skin once pulled the template there by as much, without a word.
+#[test]
+fn a_landmark_elsewhere_than_the_others_say_is_left_out_and_correct_ones_are_not_doubted() {
+    let twin = Twin::new();
+    let skin = surface(&twin.patient, "outer");
+    let search = SurfaceSearch::new(&skin).unwrap();
+    let right = landmarks(&twin.template, 5);
+    let fitted = |landmarks: &[Landmark]| {
+        let patient = Patient { skin: Some(&skin), bone: None, landmarks };
+        conform(&twin.sheets(), &patient, Start::Auto, &Unobserved).unwrap()
+    };
+    assert_eq!(fitted(&right).doubtful, []);
+    for (wrong, by) in [(3, 15.0), (7, 10.0), (11, 25.0)] {
+        let mut landmarks = right.clone();
+        let name = landmarks[wrong].name.clone();
+        let before = landmarks[wrong].patient;
+        landmarks[wrong].patient = search.closest(&(before + Vector::new(by, -by, by))).point;
+        let moved = (landmarks[wrong].patient - before).norm();
+        let found = fitted(&landmarks);
+        println!("{moved:.1} mm: {:?}", found.doubtful);
+        let [doubtful] = &found.doubtful[..] else { panic!("{:?}", found.doubtful) };
+        assert!(doubtful.is_left_out && found.leaves_out(&name), "{doubtful:?}");
+        assert!((doubtful.distance - moved).abs() < 3.0, "{doubtful:?} of {moved}");
+        landmarks.remove(wrong);
+        assert_eq!(found.deformation, fitted(&landmarks).deformation);
+    }
+}

@@ -21,7 +21,8 @@ use crate::schema::predict::result::ResultDocument;
 use crate::schema::repair::RepairResultDocument;
 use crate::schema::{CaseDocument, ErrorCode, Pointer, Problem};
 use mechanics::conformation::{
-    Conformation, ConformationError, Covering, Patient, SheetName, Template, carried, conform,
+    Conformation, ConformationError, Covering, DoubtfulLandmark, Patient, SheetName, Template,
+    carried, conform,
 };
 use mechanics::format::vtk::{vtp, vtu};
 use mechanics::format::{SurfaceOutput, VolumeOutput};
@@ -73,6 +74,7 @@ pub fn conform_job(
     let told = prepared.meshes.iter().flat_map(|(_, mesh)| &mesh.warnings);
     let warnings = found.after.warnings().into_iter().chain(brought.refused.clone());
     let warnings = warnings.chain(found.poor_fit()).chain(found.covered_skin());
+    let warnings = warnings.chain(found.conformation.doubtful.iter().map(in_doubt));
     let warnings: Vec<Warning> = warnings.collect();
     let warnings = warning_documents(told.chain(&warnings));
     let mut provenance = origin.provenance(&clock);
@@ -149,9 +151,10 @@ impl PreparedConformation {
         place: &JobContext,
     ) -> Result<ConformedCase, JobError> {
         let volume = OutputName::VolumeVtu.file_name();
+        let conformation = &found.conformation;
         let mut case = case_of(spec, volume, self.frame.into());
-        let deformation = &found.conformation.deformation;
-        let maps = TissueMaps::new(self, deformation, spec.muscles_by, place.limits);
+        case.landmarks.retain(|name, _| !conformation.leaves_out(name));
+        let maps = TissueMaps::new(self, conformation, spec.muscles_by, place.limits);
         let muscles = maps.bring(&mut case, &mut found.mesh);
         let shape = StoredShape::Volume(Arc::new(found.mesh.clone()));
         let volume = (volume.to_owned(), StoredMesh::made(shape, self.frame));
@@ -264,6 +267,21 @@ impl Conformed {
         );
         (!told.is_empty()).then_some(warning)
     }
+}
+
+/// The warning of a landmark far from where the others and the surfaces put it.
+fn in_doubt(landmark: &DoubtfulLandmark) -> Warning {
+    let DoubtfulLandmark { name, distance, median, is_left_out } = landmark;
+    let ending = match is_left_out {
+        true => "it is left out",
+        false => "it is used: correct it if it was picked wrongly",
+    };
+    let detail = format!(
+        "the landmark {name:?} lies {distance:.1} mm from where the other landmarks and the surfaces put it, {median:.1} mm is their \
+         median: {ending}"
+    );
+    let warning = Warning::new("landmark-doubtful", detail).with("distance_mm", *distance);
+    warning.with("median_mm", *median).with("left_out", f64::from(u8::from(*is_left_out)))
 }
 
 /// Beyond these distances in mm a template does not lie on the skin or the bone that it was fitted to: on the CT of a head the 95 % and the

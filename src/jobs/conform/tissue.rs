@@ -13,7 +13,8 @@ use crate::schema::conform::result::{MapDifferenceDocument, MappedMuscleDocument
 use crate::schema::predict::keep::MadeName;
 use crate::schema::{CaseDocument, Faults, Limits, Pointer, Triple};
 use mechanics::conformation::{
-    Deformation, Warp, cell_axes, fibre_difference, mapped_lines, mapped_surface, spline_of,
+    Conformation, Deformation, Warp, cell_axes, fibre_difference, mapped_lines, mapped_surface,
+    spline_of,
 };
 use mechanics::mesh::{Frame, TriangleSurface, Vector, VolumeMesh};
 use mechanics::registration::ThinPlateSpline;
@@ -66,14 +67,16 @@ impl<'a> TissueMaps<'a> {
     /// Whether muscles can be mapped by landmarks, if requested, was checked with the document.
     pub fn new(
         prepared: &'a PreparedConformation,
-        conformation: &'a Deformation,
+        conformation: &'a Conformation,
         by: MuscleMapName,
         limits: &Limits,
     ) -> Self {
+        let landmarks = prepared.landmarks.iter();
+        let used = landmarks.filter(|landmark| !conformation.leaves_out(&landmark.name));
         TissueMaps {
             prepared,
-            conformation,
-            spline: spline_of(&prepared.landmarks).ok(),
+            conformation: &conformation.deformation,
+            spline: spline_of(&used.cloned().collect::<Vec<_>>()).ok(),
             by,
             most_points: limits.map_entries as usize,
         }

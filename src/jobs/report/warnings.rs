@@ -6,7 +6,7 @@ use crate::schema::WarningDocument;
 
 /// Codes that precede all others, in this order: those of doubtful input or measurements, those of a result that
 /// has larger errors than reported elsewhere, and those of an impossible one.
-const GRAVE: [&str; 45] = [
+const GRAVE: [&str; 46] = [
     "nothing-moves",
     "nothing-performed",
     "units-suspect",
@@ -15,6 +15,7 @@ const GRAVE: [&str; 45] = [
     "moduli-far-apart",
     "frame-suspect",
     "landmarks-swapped",
+    "landmark-doubtful",
     "mirrored?",
     "another-person-suspect",
     "before-operation-suspect",

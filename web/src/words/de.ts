@@ -253,7 +253,7 @@ export const de: Words = {
     "held-nodes-missed": "der Spline verfehlt gehaltene Knoten", "held-off-bone": "gehaltene Knoten liegen an keinem Knochen",
     "image-place-doubtful": "eine Datei sagt zweierlei über die Lage ihres Bilds",
     "jaw-overlaps": "ein geschlossener Kiefer liegt in anderem Knochen", "jaws-touch": "die Kiefer hängen in der Aufnahme zusammen",
-    "landmark-far": "eine Landmarke liegt weit weg", "landmarks-crowded": "Landmarken liegen in einem Millimeter",
+    "landmark-doubtful": "eine Landmarke liegt woanders, als die übrigen sagen", "landmark-far": "eine Landmarke liegt weit weg", "landmarks-crowded": "Landmarken liegen in einem Millimeter",
     "landmarks-insufficient": "zu wenige Landmarken für einen Spline", "landmarks-swapped": "links und rechts sind vertauscht",
     "large-rotation": "das Gewebe dreht sich mehr, als eine lineare Antwort verträgt",
     "large-strain": "das Gewebe dehnt sich mehr, als eine lineare Antwort verträgt", "law-at-rest": "das Gesetz des Gewebes gilt wie in Ruhe",

@@ -249,7 +249,7 @@ export const en = {
     "frame-unstated": "the frame of the mesh is not stated", "gantry-tilt": "the scanner was tilted",
     "growth-left-out": "growth of tissue was left out of the search", "held-nodes-missed": "the spline misses held nodes",
     "held-off-bone": "held nodes lie on no bone", "image-place-doubtful": "a file says twice where its image stands",
-    "jaw-overlaps": "a closed jaw lies in other bone", "jaws-touch": "the jaws hang together in the scan", "landmark-far": "a landmark lies far away",
+    "jaw-overlaps": "a closed jaw lies in other bone", "jaws-touch": "the jaws hang together in the scan", "landmark-doubtful": "a landmark lies elsewhere than the others say", "landmark-far": "a landmark lies far away",
     "landmarks-crowded": "landmarks lie within a millimetre", "landmarks-insufficient": "too few landmarks for a spline",
     "landmarks-swapped": "left and right are swapped", "large-rotation": "the tissue turns more than a linear answer bears",
     "large-strain": "the tissue stretches more than a linear answer bears", "law-at-rest": "the law of the tissue is taken as at rest",
