@@ -6,7 +6,7 @@ use tokio::runtime::Handle;
 
 use super::accepted::{Accepted, LONGEST_QUEUE, queue_full};
 use super::error::{ApiError, ApiResult};
-use super::idempotency::NewId;
+use super::idempotency::{KeyedRequest, NewId};
 use super::meshes::{UploadedMesh, take_in};
 use super::permits::Permit;
 use super::spool::SpooledBody;
@@ -39,14 +39,55 @@ pub(super) fn split(mut parts: FormParts) -> ApiResult<(SpooledBody, FormParts)>
     Ok((document, parts))
 }
 
+/// So often a case is tried to be stored while others store and erase the same bytes.
+const ATTEMPTS: usize = 8;
+
+/// A posted case.
+pub(super) struct PostedCase {
+    pub document: CaseBody,
+    pub parts: FormParts,
+    pub allow_any_scale: bool,
+}
+
+impl PostedCase {
+    /// Stores the case with its meshes; its id.
+    pub async fn stored(
+        &self,
+        service: &Service,
+        asked: &KeyedRequest,
+        traceparent: Option<String>,
+    ) -> ApiResult<String> {
+        // Its meshes are in memory until the case is stored.
+        let permit = service.parse_permit().await?;
+        let mut left = ATTEMPTS;
+        loop {
+            left -= 1;
+            let (document, scale) = (self.document.clone(), self.allow_any_scale);
+            let draft = Draft::read(service, &permit, document, &self.parts, scale).await?;
+            let checked = match draft.check(service).await {
+                Err(error) if left > 0 && draft.may_lack_known(&error) => continue,
+                checked => checked?,
+            };
+            // What comes before this changes nothing, so that it ends with its client.
+            let new = asked.reserve(service).await?;
+            match draft.store(service, &new, &checked, traceparent.clone()).await {
+                Err(error) if left > 0 && error.problem.code == ErrorCode::Conflict => {}
+                stored => return stored.map(|()| new.id),
+            }
+        }
+    }
+}
+
 /// A case to be stored, with the meshes uploaded with it.
-pub(super) struct Draft {
+struct Draft {
     document: CaseBody,
     uploads: Vec<Upload>,
+    /// Whether the bytes of a part were stored before: somebody may erase them meanwhile.
+    has_known: bool,
 }
 
 /// The checks of a case before it is stored.
-pub(super) enum Checked {
+enum Checked {
     /// Boundary conditions of its nodes; `None` if they depend on a plan.
     Whole(Box<Option<CheckDocument>>),
     /// For each mesh or image of the meshing the hash of its content.
@@ -55,29 +96,28 @@ pub(super) enum Checked {
 
 impl Draft {
     /// Parses the meshes, with the permit of their request, and replaces the names of their parts in the document by ids.
-    pub async fn read(
+    async fn read(
         service: &Service,
         permit: &Permit,
         mut document: CaseBody,
-        parts: FormParts,
-        allow_any_scale: Option<bool>,
+        parts: &FormParts,
+        allow_any_scale: bool,
     ) -> ApiResult<Draft> {
         let (units, frame) = match &document {
             CaseBody::Whole(case) => (Some(case.units), Some(case.frame)),
             CaseBody::ToMesh(_) => (None, None),
         };
-        let statement = Statement {
-            units,
-            frame,
-            role: None,
-            allow_any_scale: allow_any_scale.unwrap_or(false),
-        };
+        let statement = Statement { units, frame, role: None, allow_any_scale };
         let mut ids: BTreeMap<String, String> = BTreeMap::new();
         let mut uploads: Vec<Upload> = Vec::new();
+        let mut has_known = false;
         for (name, body) in parts {
-            let taken = take_in(service, permit, body, &statement, false).await;
-            let id = match taken.map_err(|error| in_part(error, &name))? {
-                UploadedMesh::Known(row) => row.id,
+            let taken = take_in(service, permit, body.clone(), &statement, false).await;
+            let id = match taken.map_err(|error| in_part(error, name))? {
+                UploadedMesh::Known(row) => {
+                    has_known = true;
+                    row.id
+                }
                 UploadedMesh::New(upload) => {
                     let same = |other: &&Upload| other.row.sha256 == upload.row.sha256;
                     match uploads.iter().find(same) {
@@ -90,7 +130,7 @@ impl Draft {
                     }
                 }
             };
-            ids.insert(name, id);
+            ids.insert(name.clone(), id);
         }
         let mut unused: Vec<String> = ids.keys().cloned().collect();
         for (_, reference) in document.mesh_references_mut() {
@@ -100,14 +140,14 @@ impl Draft {
             }
         }
         if unused.is_empty() {
-            return Ok(Draft { document, uploads });
+            return Ok(Draft { document, uploads, has_known });
         }
         let detail = format!("the case does not refer to part {}", unused.join(", "));
         Err(ApiError::new(ErrorCode::UnusedPart, detail))
     }
 
     /// Checks the document with its meshes.
-    pub async fn check(&self, service: &Service) -> ApiResult<Checked> {
+    async fn check(&self, service: &Service) -> ApiResult<Checked> {
         match &self.document {
             CaseBody::Whole(case) => {
                 self.check_whole(service, case).await.map(Box::new).map(Checked::Whole)
@@ -160,13 +200,18 @@ impl Draft {
         })
     }
 
+    /// Whether an error of its check can be that a mesh known before is erased now, and another attempt reads its part.
+    fn may_lack_known(&self, error: &ApiError) -> bool {
+        self.has_known && error.problem.is_only(ErrorCode::UnknownMesh)
+    }
+
     /// The meshes uploaded with the case, by their ids.
     fn brought(&self) -> BTreeMap<String, StoredMesh> {
         self.uploads.iter().map(|upload| (upload.row.id.clone(), upload.mesh.clone())).collect()
     }
 
     /// Stores the case and its meshes under an id, unless an earlier request with its key has done so.
-    pub async fn store(
+    async fn store(
         self,
         service: &Service,
         new: &NewId,

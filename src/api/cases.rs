@@ -11,7 +11,7 @@ use utoipa::{IntoParams, ToSchema};
 use utoipa_axum::routes;
 
 use super::caller::Caller;
-use super::case_draft::{Draft, checked, split};
+use super::case_draft::{PostedCase, checked, split};
 use super::case_state::{CaseMeshingView, CaseState, meshing_view, tag_of};
 use super::error::{ApiError, ApiResult};
 use super::idempotency::KeyedRequest;
@@ -168,16 +168,11 @@ async fn create(
     {
         return created(&service, &known.id, wait).await;
     }
-    // Its meshes are in memory until the case is stored.
-    let permit = service.parse_permit().await?;
-    let draft = Draft::read(&service, &permit, document, parts, parameters.allow_any_scale).await?;
-    let checked = draft.check(&service).await?;
-    // What comes before this changes nothing, so that it ends with its client.
-    let new = asked.reserve(&service).await?;
     let place = place.map(|place| place.to_string());
-    draft.store(&service, &new, &checked, place).await?;
-    drop(permit);
-    created(&service, &new.id, wait).await
+    let allow_any_scale = parameters.allow_any_scale.unwrap_or(false);
+    let posted = PostedCase { document, parts, allow_any_scale };
+    let id = posted.stored(&service, &asked, place).await?;
+    created(&service, &id, wait).await
 }
 
 /// The response to a request that created a case, or found it.

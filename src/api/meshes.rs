@@ -147,7 +147,7 @@ pub enum UploadedMesh {
 pub async fn take_in(
     service: &Service,
     permit: &Permit,
-    mut body: SpooledBody,
+    body: SpooledBody,
     statement: &Statement,
     standalone: bool,
 ) -> ApiResult<UploadedMesh> {

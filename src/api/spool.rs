@@ -45,7 +45,8 @@ pub struct Spool {
     bytes: u64,
 }
 
-/// A received body.
+/// A received body, which can be read again.
+#[derive(Clone)]
 pub struct SpooledBody {
     content: Content,
     pub bytes: u64,
@@ -53,9 +54,10 @@ pub struct SpooledBody {
     _held: Arc<ByteReservation>,
 }
 
+#[derive(Clone)]
 enum Content {
     Memory(Bytes),
-    File(File),
+    File(Arc<File>),
 }
 
 /// Bytes to write at once, on a thread that may block.
@@ -100,7 +102,8 @@ impl Spool {
             Content::Memory(bytes)
         } else {
             self.write().await?;
-            Content::File(self.file.take().ok_or_else(|| ApiError::internal("a lost file"))?)
+            let file = self.file.take().ok_or_else(|| ApiError::internal("a lost file"))?;
+            Content::File(Arc::new(file))
         };
         let sha256 = self.hasher.finalize().into();
         Ok(SpooledBody { content, bytes: self.bytes, sha256, _held: self.held })
@@ -121,10 +124,11 @@ impl Batch {
 
 impl SpooledBody {
     /// All of its bytes. Reads a file: not for an async thread.
-    pub fn read(&mut self) -> Result<Bytes, StoreError> {
-        match &mut self.content {
+    pub fn read(&self) -> Result<Bytes, StoreError> {
+        match &self.content {
             Content::Memory(bytes) => Ok(bytes.clone()),
             Content::File(file) => {
+                let mut file = &**file;
                 let mut bytes = Vec::with_capacity(usize::try_from(self.bytes).unwrap_or(0));
                 file.rewind()?;
                 file.read_to_end(&mut bytes)?;
@@ -134,7 +138,7 @@ impl SpooledBody {
     }
 
     /// The bytes of a body known to be small.
-    pub async fn into_bytes(mut self) -> ApiResult<Bytes> {
+    pub async fn into_bytes(self) -> ApiResult<Bytes> {
         if let Content::Memory(bytes) = self.content {
             return Ok(bytes);
         }
