@@ -8,15 +8,21 @@
 
 mod measure;
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use measure::split::tetrahedra;
 use measure::{face, process, shell};
+use mechanics::boundary::NodeSelection;
+use mechanics::material::LinearElastic;
 use mechanics::mesh::refinement::refine;
-use mechanics::mesh::{CellShape, Vector};
+use mechanics::mesh::sample::block;
+use mechanics::mesh::{CellShape, Vector, VolumeMesh};
 use mechanics::model::fem::discretisation_error::Estimate;
 use mechanics::plan::{PlannedSegment, RigidMovement};
-use mechanics::prediction::{Case, ElementChoice, Method, Plan, Scene, Settings, predict};
+use mechanics::prediction::{
+    Case, CaseSegment, ElementChoice, Load, Method, Plan, Scene, Settings, predict,
+};
 use mechanics::progress::Unobserved;
 use mechanics::study::StudyScene;
 use mechanics::study::scenes::{half_head, slab, slab_hex, slab_wedge, sphere_of};
@@ -42,11 +48,12 @@ struct Row {
 /// A name, and what makes its rows.
 type Entry = (&'static str, fn() -> Vec<Row>);
 
-const SCENES: [Entry; 7] = [
+const SCENES: [Entry; 8] = [
     ("slab", slabs),
     ("half_head", half_heads),
     ("sphere", spheres),
     ("slab_cells", slabs_of_cells),
+    ("layers", layers),
     ("face", faces),
     ("shell", shells),
     ("finite", at_finite_strain),
@@ -172,6 +179,11 @@ fn true_skin(row: &Row) -> Option<Vec<Vector>> {
     Some(nodes.skin.nodes().iter().map(|&node| solved[node as usize]).collect())
 }
 
+fn nodes_where(mesh: &VolumeMesh, is_in: impl Fn(&Vector) -> bool) -> Vec<u32> {
+    let nodes = (0..).zip(&mesh.nodes);
+    nodes.filter(|(_, x)| is_in(x)).map(|(node, _)| node).collect()
+}
+
 fn slabs() -> Vec<Row> {
     let scene = slab();
     let row = |materials: &mechanics::study::Materials| Row {
@@ -233,6 +245,75 @@ fn slabs_of_cells() -> Vec<Row> {
         scene.materials.iter().map(row).collect::<Vec<_>>()
     };
     [slab_hex(), slab_wedge()].into_iter().flat_map(rows).collect()
+}
+
+/// Flat cells in layers over a bone that moves beside a fixed one, and beams that bend under a load at their end.
+fn layers() -> Vec<Row> {
+    let shapes = [CellShape::Hex8, CellShape::Wedge6];
+    let slabs =
+        shapes.into_iter().flat_map(|shape| [1, 2, 3, 6].map(|count| layered(shape, count)));
+    let beams = [([6, 1, 1], 0.3), ([6, 2, 2], 0.3), ([6, 2, 2], 0.46), ([12, 2, 2], 0.46)];
+    let beams =
+        shapes.into_iter().flat_map(|shape| beams.map(|(cells, nu)| beam(shape, cells, nu)));
+    slabs.chain(beams).collect()
+}
+
+fn layered(shape: CellShape, layers: usize) -> Row {
+    let mut mesh = block(Vector::new(60.0, 60.0, 9.0), [6, 6, layers], shape);
+    let base = |x: &Vector| x.z < 1e-6;
+    let sets = [
+        ("moved", nodes_where(&mesh, |x| base(x) && x.x < 25.0)),
+        ("fixed", nodes_where(&mesh, |x| base(x) && x.x > 25.0)),
+    ];
+    mesh.node_sets.extend(sets.map(|(name, nodes)| (name.to_owned(), nodes)));
+    let by = Vector::new(2.0, 0.0, 2.0);
+    let movement = RigidMovement::about_pivot(Vector::zeros(), Vector::zeros(), by);
+    let case = Case {
+        segments: vec![CaseSegment { name: "moved".to_owned(), nodes: set("moved") }],
+        fixed: vec![set("fixed")],
+        ..bare(mesh, 0.46)
+    };
+    let segments = vec![PlannedSegment { name: "moved".to_owned(), movement }];
+    Row {
+        name: format!("{layers} layers of {}, 10 x 10 x {} mm", shape.name(), 9.0 / layers as f64),
+        case,
+        plan: Plan { segments, ..Plan::default() },
+        elements: vec![ElementChoice::MeanDilatation],
+        truth: Truth {
+            halved: if layers > 3 { 2 } else { 3 },
+            element: ElementChoice::MeanDilatation,
+        },
+        method: Method::FemLinear,
+    }
+}
+
+fn beam(shape: CellShape, cells: [usize; 3], nu: f64) -> Row {
+    let mesh = block(Vector::new(60.0, 10.0, 10.0), cells, shape);
+    let traction = Vector::new(0.0, 0.0, -0.05);
+    let loads = vec![Load::Traction { faces: set("x_max"), traction }];
+    Row {
+        name: format!("beam of {cells:?} {}, nu {nu}", shape.name()),
+        case: Case { fixed: vec![set("x_min")], ..bare(mesh, nu) },
+        plan: Plan { loads, ..Plan::default() },
+        elements: vec![ElementChoice::MeanDilatation],
+        truth: Truth { halved: 3, element: ElementChoice::MeanDilatation },
+        method: Method::FemLinear,
+    }
+}
+
+/// Tissue of 15 kPa under a skin at the top.
+fn bare(mesh: VolumeMesh, nu: f64) -> Case {
+    let tissue = LinearElastic::new(15.0, nu, 1.0).expect("constants of tissue");
+    Case {
+        skin: Some(set("z_max")),
+        materials: BTreeMap::from([("*".to_owned(), tissue)]),
+        volume: Arc::new(mesh),
+        ..Case::default()
+    }
+}
+
+fn set(name: &str) -> NodeSelection {
+    NodeSelection::NodeSet(name.to_owned())
 }
 
 fn shells() -> Vec<Row> {
