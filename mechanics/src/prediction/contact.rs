@@ -131,20 +131,21 @@ pub(super) fn expected_touch_at_finite_strain(
     with_error: bool,
     progress: &dyn Progress,
 ) -> Result<Option<InTouch>, ModelError> {
-    pressed(scene, surfaces, None, progress, || {
+    let from_linear = || {
         let Some(system) = scene.assemble(progress)? else { return Ok(None) };
         let expected = system.solve(&[scene.load_case()], progress)?.remove(0).equilibrium;
         drop(system);
         let displacement = &expected.displacement;
-        match pressed_at_finite_strain(scene, displacement, surfaces, with_error, progress) {
-            // What does not touch otherwise may rest.
-            Err(
-                ModelError::ContactUnsettled { .. }
-                | ModelError::Standstill { .. }
-                | ModelError::Solver(SolverError::NotConverged { .. }),
-            ) => Ok(None),
-            ended => ended,
-        }
+        pressed_at_finite_strain(scene, displacement, surfaces, with_error, progress)
+    };
+    pressed(scene, surfaces, None, progress, || match from_linear() {
+        // What does not touch otherwise may rest.
+        Err(
+            ModelError::ContactUnsettled { .. }
+            | ModelError::Standstill { .. }
+            | ModelError::Solver(SolverError::NotConverged { .. }),
+        ) => Ok(None),
+        ended => ended,
     })
 }
 
