@@ -145,8 +145,13 @@ fn adaptive_row(scene: &Scene, cells: usize) -> (Row, AdaptivePrediction) {
 }
 
 fn adapted(scene: &Scene, cells: usize) -> AdaptivePrediction {
-    let wanted =
-        RefinementGoal { skin_mm: 1e-6, regions_mm: BTreeMap::new(), cells, time_s: f64::INFINITY };
+    let wanted = RefinementGoal {
+        skin_mm: 1e-6,
+        regions_mm: BTreeMap::new(),
+        landmarks_mm: BTreeMap::new(),
+        cells,
+        time_s: f64::INFINITY,
+    };
     predict_adaptively(scene, &wanted, &|| 0.0, &Unobserved).expect("it is solved")
 }
 

@@ -34,6 +34,7 @@ mod stability_random;
 pub mod study;
 mod study_screen;
 mod sweep;
+mod threshold;
 mod watch;
 pub mod worker;
 
@@ -73,6 +74,8 @@ enum Command {
     Compare(compare::Arguments),
     /// Give a surface fewer triangles, within a bound on how far it goes off
     Simplify(simplify::Arguments),
+    /// Find the threshold at which a bone is as large in one scan as in another
+    Threshold(threshold::Arguments),
     /// Hold methods against each other over comparisons with the scans of several patients
     Cohort(cohort::Arguments),
     /// Learn from operated cases what predictions miss, and say whether that helps
@@ -118,6 +121,7 @@ const GROUPS: [(&str, &[&str]); 2] = [
             "conform",
             "compare",
             "simplify",
+            "threshold",
             "cohort",
             "learn",
             "study",
@@ -169,6 +173,7 @@ pub fn run(facies: &Facies) -> ExitCode {
         Command::Conform(arguments) => conform::run(arguments),
         Command::Compare(arguments) => compare::run(arguments),
         Command::Simplify(arguments) => simplify::run(arguments),
+        Command::Threshold(arguments) => threshold::run(arguments),
         Command::Cohort(arguments) => cohort::run(arguments),
         Command::Learn(arguments) => learn::run(arguments),
         Command::Study(arguments) => study::run(arguments),

@@ -6,7 +6,10 @@ use std::process::Command;
 use serde_json::{Value, json};
 
 use crate::program::{facies, path, result, text};
-use crate::samples::{BONE_BALL, SKIN_BALL, SampleBall, ball_ct, ball_labels, ball_stl};
+use crate::samples::{
+    BONE_BALL, SKIN_BALL, SampleBall, ball_ct, ball_ct_with, ball_labels, ball_stl,
+};
+use mechanics::mesh::Vector;
 
 fn plan() -> Value {
     json!({
@@ -216,4 +219,42 @@ fn files_of_a_meshing_are_there_whoever_reads_the_summary() {
     assert_eq!(done.unwrap().status.code(), Some(141), "nobody reads");
     let case: Value = serde_json::from_slice(&fs::read(out.join("case.json")).unwrap()).unwrap();
     assert!(out.join(case["case"]["volume"].as_str().unwrap()).is_file(), "{case}");
+}
+
+/// Bone of the second scan is 840 HU in place of 1200: half of a voxel of it is 440 HU in place of 620.
+#[test]
+fn the_threshold_of_equal_bone_volume_is_that_of_the_same_share_of_bone() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = |name: &str| folder.path().join(name);
+    let share = |depth: f64| (depth / 4.0 + 0.5).clamp(0.0, 1.0);
+    let darker = ball_ct_with(|at| {
+        let bone = share(30.0 - (at - Vector::new(60.0, 55.0, 60.0)).norm());
+        (bone > 0.0).then_some((40.0 + 800.0 * bone) as i16)
+    });
+    let (before, after) = (file("before.nrrd"), file("after.nrrd"));
+    fs::write(&before, ball_ct()).unwrap();
+    fs::write(&after, darker).unwrap();
+    let threshold = |more: &[&str]| {
+        facies(&[&["threshold", path(&before), path(&after), "--bone-hu", "620"], more].concat())
+    };
+    let whole = "20,20,20,100,100,100";
+    let done = threshold(&["--box-before", whole, "--box-after", whole]);
+    assert_eq!(done.status.code(), Some(0), "{}", text(&done.stderr));
+    let told = text(&done.stdout);
+    let numbers = |line: &str| -> Vec<f64> {
+        line.split([' ', ':']).filter_map(|word| word.parse().ok()).collect()
+    };
+    let lines: Vec<Vec<f64>> = told.lines().take(2).map(numbers).collect();
+    assert!((lines[1][0] - 440.0).abs() < 20.0, "{told}");
+    assert_eq!(lines[0][1], lines[1][1], "{told}");
+    assert!((lines[0][1] - 113.1).abs() < 1.0, "a ball of 30 mm: {told}");
+    for (box_after, problem) in [
+        ("900,900,900,910,910,910", "no voxel"),
+        ("58,58,58,62,62,62", "no threshold"),
+        ("1,2,3", "six numbers"),
+    ] {
+        let refused = threshold(&["--box-before", whole, "--box-after", box_after]);
+        assert_eq!(refused.status.code(), Some(2), "{box_after}");
+        assert!(text(&refused.stderr).contains(problem), "{}", text(&refused.stderr));
+    }
 }

@@ -3,7 +3,8 @@
 //! The error that is estimated at the skin nodes of the case (`numerical_error`) is held against what is accepted, over the whole
 //! skin that moves and over parts of it that have a limit of their own. Where it is larger, the goal of the next refinement is that error
 //! itself, made linear: the mean over that skin of the displacement along the direction in which each place is estimated to
-//! be off, J(v) = int w . v dA with w = sum_g e / (|e| tol_g A_g) over the limits g that are not met. Cells with half of what
+//! be off, J(v) = int w . v dA with w = sum_g e / (|e| tol_g A_g) over the limits g that are not met; at a landmark the displacement
+//! of that point alone. Cells with half of what
 //! the mesh leaves out of it (`discretisation_error::indicators`) are halved three times. Tissue is not made anew: the finer
 //! scene asks the question of the first one (`refined_scene`), and its answer is given at the nodes of the case.
 
@@ -14,8 +15,8 @@ use super::muscle_field::MuscleField;
 use super::nonlinearity;
 use super::numerical_error::{self, NotEstimated, NumericalError};
 use super::refined_scene::NotRefined;
+use super::refinement_goal::{Limit, LimitError, Place, RefinementGoal};
 use super::scene::Scene;
-use super::skin::Skin;
 use super::{Prediction, described};
 use crate::mesh::bisection::{Bisection, HALVES_EVERY_EDGE, NotTetrahedra};
 use crate::mesh::ignored::listed;
@@ -65,19 +66,6 @@ fn muscles_stay(scene: &Scene) -> Option<Warning> {
     (!pulling.is_empty()).then(|| Warning::new("muscles-not-refined", detail))
 }
 
-/// Accepted error, and bounds of the refinement.
-#[derive(Clone, Debug, PartialEq)]
-pub struct RefinementGoal {
-    /// The mean error over the skin nodes of the case that move (`moving_points`), in mm.
-    pub skin_mm: f64,
-    /// The same for named parts of the skin.
-    pub regions_mm: BTreeMap<String, f64>,
-    /// The most cells of a mesh.
-    pub cells: usize,
-    /// For all meshes together, in s.
-    pub time_s: f64,
-}
-
 /// A mesh that was solved on.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Level {
@@ -87,8 +75,9 @@ pub struct Level {
     /// The estimated error at the skin nodes of the case that move, in mm.
     pub mean_mm: f64,
     pub p95_mm: f64,
-    /// Its mean over each part of the skin that has a limit of its own.
+    /// Its mean over each part of the skin that has a limit of its own, and itself at each landmark that has one.
     pub regions_mm: BTreeMap<String, f64>,
+    pub landmarks_mm: BTreeMap<String, f64>,
     pub spent_s: f64,
 }
 
@@ -132,18 +121,10 @@ pub enum AdaptiveError {
         "meshes are refined where an estimate of their error asks for it, and there is none: {0}"
     )]
     NotEstimated(#[from] NotEstimated),
-    #[error("{0:?} is no part of the skin")]
-    UnknownRegion(String),
+    #[error(transparent)]
+    Limit(#[from] LimitError),
     #[error(transparent)]
     Model(#[from] ModelError),
-}
-
-/// What a limit is about: a part of the skin of the case by its name, or what of it moves.
-struct Limit<'a> {
-    name: Option<&'a str>,
-    accepted_mm: f64,
-    /// Of the skin of the case.
-    points: Vec<u32>,
 }
 
 impl Stop {
@@ -155,32 +136,6 @@ impl Stop {
             Stop::Time => "time",
             Stop::Memory => "memory",
         }
-    }
-}
-
-impl RefinementGoal {
-    fn limits<'a>(&'a self, scene: &Scene) -> Result<Vec<Limit<'a>>, AdaptiveError> {
-        let mut limits =
-            vec![Limit { name: None, accepted_mm: self.skin_mm, points: scene.skin.points() }];
-        for (name, &accepted_mm) in &self.regions_mm {
-            let points = scene.skin.regions.get(name);
-            let points = points.ok_or_else(|| AdaptiveError::UnknownRegion(name.clone()))?;
-            limits.push(Limit { name: Some(name), accepted_mm, points: points.clone() });
-        }
-        Ok(limits)
-    }
-}
-
-impl Limit<'_> {
-    /// Skin nodes of a mesh that it is about, and their areas, where the nodes of that mesh are displaced so.
-    fn on(&self, scene: &Scene, displacement: &[Vector]) -> Vec<(u32, f64)> {
-        let (nodes, areas) = (scene.skin.nodes(), scene.skin.surface.point_areas());
-        let points = match self.name {
-            None => scene.skin.moving_points(displacement),
-            Some(name) => scene.skin.regions.get(name).cloned().unwrap_or_default(),
-        };
-        let at = |point: u32| (nodes[point as usize], areas[point as usize]);
-        points.into_iter().map(at).collect()
     }
 }
 
@@ -219,13 +174,10 @@ impl<'a> Step<'a> {
     fn marked(&self, limits: &[&Limit], progress: &dyn Progress) -> Result<Vec<usize>, ModelError> {
         let Scene { mesh, skin, boundary, distributed: loads, .. } = self.scene;
         let mut weights = vec![Vector::zeros(); mesh.nodes.len()];
+        let displacement = &self.solved.equilibrium.displacement;
         for limit in limits {
-            let nodes = limit.on(self.scene, &self.solved.equilibrium.displacement);
-            let area: f64 = nodes.iter().map(|(_, area)| area).sum();
-            for (node, _) in nodes {
-                let missing = self.error.missing[node as usize];
-                let along = missing.try_normalize(0.0).unwrap_or_default();
-                weights[node as usize] += along / (limit.accepted_mm * area);
+            for (node, weight) in limit.weights(self.scene, displacement, &self.error.missing) {
+                weights[node as usize] += weight;
             }
         }
         let nodes = skin.nodes();
@@ -256,22 +208,32 @@ impl<'a> Step<'a> {
         Ok(if fits { Ok(finer) } else { Err(Stop::Memory) })
     }
 
-    fn level(&self, skin: &Skin, limits: &[Limit], spent_s: f64) -> Level {
+    fn level(&self, first: &Scene, limits: &[Limit], spent_s: f64) -> Level {
         let missing = &self.error.missing;
-        let mean = |limit: &Limit| skin.mean_length(&limit.points, missing);
-        let all = skin.lengths(missing);
-        let mut lengths: Vec<f64> =
-            limits[0].points.iter().map(|&point| all[point as usize]).collect();
+        let error = |limit: &Limit| limit.error([first, self.scene], missing);
+        let all = first.skin.lengths(missing);
+        let mut lengths = match &limits[0].place {
+            Place::Moving(points) => points.iter().map(|&point| all[point as usize]).collect(),
+            Place::Region(..) | Place::Landmark(..) => all,
+        };
         lengths.sort_by(f64::total_cmp);
         let p95 = (lengths.len() * 95).div_ceil(100).max(1) - 1;
-        let named = limits.iter().filter_map(|limit| Some((limit.name?, mean(limit))));
+        let (mut regions_mm, mut landmarks_mm) = (BTreeMap::new(), BTreeMap::new());
+        for limit in limits {
+            match &limit.place {
+                Place::Moving(_) => None,
+                Place::Region(name, _) => regions_mm.insert((*name).to_owned(), error(limit)),
+                Place::Landmark(name, _) => landmarks_mm.insert((*name).to_owned(), error(limit)),
+            };
+        }
         Level {
             cells: self.scene.mesh.cells.len(),
             nodes: self.scene.mesh.nodes.len(),
             unknowns: self.solved.equilibrium.solver.unknowns,
-            mean_mm: mean(&limits[0]),
+            mean_mm: error(&limits[0]),
             p95_mm: lengths.get(p95).copied().unwrap_or_default(),
-            regions_mm: named.map(|(name, mean)| (name.to_owned(), mean)).collect(),
+            regions_mm,
+            landmarks_mm,
             spent_s,
         }
     }
@@ -296,16 +258,17 @@ pub fn predict_adaptively(
         let level_begun = stopwatch();
         let step = Step::solve(finest.as_ref().unwrap_or(scene), progress)?;
         if levels.is_empty() {
-            limits[0].points = scene.skin.moving_points(&step.solved.equilibrium.displacement);
+            let moving = scene.skin.moving_points(&step.solved.equilibrium.displacement);
+            limits[0].place = Place::Moving(moving);
         }
-        let mean = |limit: &Limit| scene.skin.mean_length(&limit.points, &step.error.missing);
-        let open: Vec<&Limit> = limits.iter().filter(|own| mean(own) > own.accepted_mm).collect();
+        let error = |limit: &Limit| limit.error([scene, step.scene], &step.error.missing);
+        let open: Vec<&Limit> = limits.iter().filter(|own| error(own) > own.accepted_mm).collect();
         let next = match open.is_empty() {
             true => Err(Stop::Met),
             false => step.finer(&bisection, &open, wanted.cells, progress)?,
         };
         let spent_s = stopwatch() - level_begun;
-        levels.push(step.level(&scene.skin, &limits, spent_s));
+        levels.push(step.level(scene, &limits, spent_s));
         let next = next.and_then(|finer| {
             let growth = finer.cell_count() as f64 / bisection.cell_count() as f64;
             let expected_s = spent_s * growth.powf(TIME_GROWTH);
@@ -359,7 +322,7 @@ fn not_met(limits: &[Limit], levels: &[Level], stop: Stop) -> Warning {
     let cells = levels.last().map_or(0, |level| level.cells);
     let detail = format!(
         "the mesh of {cells} cells leaves out an estimated {mean:.3} mm in the mean over the skin that moves, where {wanted:.3} mm were to be \
-         met there, or more over a part of it with a limit of its own: {bound} allows no finer one"
+         met there, or more over a part of it or at a landmark with a limit of its own: {bound} allows no finer one"
     );
     let warning = Warning::new("tolerance-not-met", detail).with("accepted_mm", wanted);
     warning.with("expected_mm", mean)

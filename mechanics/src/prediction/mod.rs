@@ -34,6 +34,7 @@ mod pressure_kind;
 mod problem;
 mod reaction;
 mod refined_scene;
+mod refinement_goal;
 pub mod scene;
 mod skin;
 mod skin_check;
@@ -74,15 +75,14 @@ pub use stated::{StatedCondition, StatedHold};
 pub use unconstrained::{NOTHING_HELD, RigidlyCarried, rigidly_carried};
 pub use walls::{NORMAL_TURNED, normal_turned};
 
-pub use adaptive::{
-    AdaptiveError, AdaptivePrediction, Level, RefinementGoal, Stop, predict_adaptively,
-};
+pub use adaptive::{AdaptiveError, AdaptivePrediction, Level, Stop, predict_adaptively};
 pub use adequate::{
     Accepted, Adequate, Considered, Errors, MeanErrors, NEWTON_MAY_TAKE, Objection, Rung,
     SECOND_ORDER_TAKES, TimedProgress, USUALLY_ACCEPTED_MM, predict_adequately,
 };
 use answer::Answer;
 pub use answer::{equilibrium, estimates};
+pub use refinement_goal::{LimitError, RefinementGoal};
 
 pub use crate::boundary::NodeClass;
 use crate::mesh::{Vector, Warning};

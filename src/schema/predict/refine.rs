@@ -24,6 +24,9 @@ pub struct RefineDocument {
     /// The same for parts of `skin_regions`, by name.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub regions: BTreeMap<String, f64>,
+    /// The accepted error at `landmarks` of the case on its skin, by name.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub landmarks: BTreeMap<String, f64>,
     /// The most cells of a mesh.
     #[serde(default = "default_cells")]
     #[schema(default = 400_000, minimum = 1)]
@@ -49,6 +52,8 @@ pub struct RefinementDocument {
     pub accepted_mm: f64,
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub accepted_regions_mm: BTreeMap<String, f64>,
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub accepted_landmarks_mm: BTreeMap<String, f64>,
     /// Whether the estimates on the last mesh are accepted.
     pub met: bool,
     /// Why refinement stopped: `met`, or the bound `cells`, `time` or `memory`.
@@ -68,19 +73,25 @@ pub struct RefinementLevelDocument {
     /// The mean over each part of the skin with its own limit.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub regions_mm: BTreeMap<String, f64>,
+    /// That at each landmark with its own limit.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub landmarks_mm: BTreeMap<String, f64>,
     /// Of solving, estimating and marking, in s.
     pub spent_s: f64,
 }
 
 impl RefineDocument {
     pub fn new(accept_mm: f64) -> Self {
-        RefineDocument { accept_mm, regions: BTreeMap::new(), cells: default_cells() }
+        let (regions, landmarks) = (BTreeMap::new(), BTreeMap::new());
+        RefineDocument { accept_mm, regions, landmarks, cells: default_cells() }
     }
 
     pub fn check(&self, at: &Pointer, limits: &Limits, faults: &mut Faults) {
         faults.check_range(&at.key("accept_mm"), self.accept_mm, ACCEPTED_MM, "mm");
-        for (name, &accepted) in &self.regions {
-            faults.check_range(&at.key("regions").key(name), accepted, ACCEPTED_MM, "mm");
+        for (of, limits_mm) in [("regions", &self.regions), ("landmarks", &self.landmarks)] {
+            for (name, &accepted) in limits_mm {
+                faults.check_range(&at.key(of).key(name), accepted, ACCEPTED_MM, "mm");
+            }
         }
         if !(1..=limits.mesh_cells).contains(&self.cells) {
             let detail = format!("{} is outside of 1 to {}", self.cells, limits.mesh_cells);
@@ -90,8 +101,13 @@ impl RefineDocument {
 
     /// The settings of the numerics, with the effective bounds.
     pub fn wanted(&self, cells: usize, time_s: f64) -> RefinementGoal {
-        let regions_mm = self.regions.clone();
-        RefinementGoal { skin_mm: self.accept_mm, regions_mm, cells, time_s }
+        RefinementGoal {
+            skin_mm: self.accept_mm,
+            regions_mm: self.regions.clone(),
+            landmarks_mm: self.landmarks.clone(),
+            cells,
+            time_s,
+        }
     }
 }
 
@@ -100,6 +116,7 @@ impl RefinementDocument {
         RefinementDocument {
             accepted_mm: wanted.skin_mm,
             accepted_regions_mm: wanted.regions_mm.clone(),
+            accepted_landmarks_mm: wanted.landmarks_mm.clone(),
             met: adapted.stop == Stop::Met,
             stopped: adapted.stop.name().to_owned(),
             levels: adapted.levels.iter().map(RefinementLevelDocument::from).collect(),
@@ -132,6 +149,7 @@ impl From<&Level> for RefinementLevelDocument {
             mean_mm: level.mean_mm,
             p95_mm: level.p95_mm,
             regions_mm: level.regions_mm.clone(),
+            landmarks_mm: level.landmarks_mm.clone(),
             spent_s: level.spent_s,
         }
     }

@@ -7,8 +7,8 @@ use mechanics::mesh::Vector;
 use mechanics::mesh::refinement::refine;
 use mechanics::mesh::sample::block;
 use mechanics::prediction::{
-    Activation, AdaptivePrediction, Case, ElementChoice, Muscle, MuscleCourse, Plan,
-    RefinementGoal, Scene, Settings, Stop, predict, predict_adaptively,
+    Activation, AdaptiveError, AdaptivePrediction, Case, ElementChoice, LimitError, Muscle,
+    MuscleCourse, Plan, RefinementGoal, Scene, Settings, Stop, predict, predict_adaptively,
 };
 use mechanics::progress::Unobserved;
 use mechanics::study::scenes::slab;
@@ -22,7 +22,13 @@ fn scene() -> (Case, Plan) {
 }
 
 fn wanted(skin_mm: f64, cells: usize) -> RefinementGoal {
-    RefinementGoal { skin_mm, regions_mm: BTreeMap::new(), cells, time_s: f64::INFINITY }
+    RefinementGoal {
+        skin_mm,
+        regions_mm: BTreeMap::new(),
+        landmarks_mm: BTreeMap::new(),
+        cells,
+        time_s: f64::INFINITY,
+    }
 }
 
 fn adapted(case: &Case, plan: &Plan, wanted: &RefinementGoal) -> AdaptivePrediction {
@@ -94,9 +100,8 @@ fn refinement_goes_on_until_the_estimate_is_accepted() {
     assert!(*last <= 0.5 * coarse && before.iter().all(|mean| *mean > 0.5 * coarse), "{means:?}");
 }
 
-#[test]
-fn a_part_of_the_skin_with_a_limit_of_its_own_is_refined_for() {
-    // A slab held below whose bottom moves at both ends, and only the skin above one of them counts.
+/// A slab held below whose bottom moves at both ends, with a landmark and a part of the skin above the left one.
+fn slab_moved_at_both_ends() -> (Case, Plan) {
     let mut mesh = block(Vector::new(60.0, 20.0, 10.0), [18, 6, 3], CellShape::Tet4);
     let where_ = |is_inside: &dyn Fn(&Vector) -> bool| -> Vec<u32> {
         (0_u32..).zip(&mesh.nodes).filter(|(_, x)| is_inside(x)).map(|(node, _)| node).collect()
@@ -112,6 +117,10 @@ fn a_part_of_the_skin_with_a_limit_of_its_own_is_refined_for() {
     let case = Case {
         skin: Some(set("z_max")),
         skin_regions: BTreeMap::from([("left".to_owned(), set("left"))]),
+        landmarks: BTreeMap::from([
+            ("left".to_owned(), Vector::new(8.0, 9.0, 10.5)),
+            ("below".to_owned(), Vector::new(8.0, 9.0, 0.0)),
+        ]),
         fixed: vec![set("rest")],
         ..case_of(mesh, material(15.0, 0.45))
     };
@@ -119,6 +128,19 @@ fn a_part_of_the_skin_with_a_limit_of_its_own_is_refined_for() {
         prescribed: vec![constraint("ends", [Some(0.0), Some(0.0), Some(4.0)])],
         ..Plan::default()
     };
+    (case, plan)
+}
+
+/// New nodes of the left half, and of both.
+fn new_nodes(case: &Case, adapted: &AdaptivePrediction) -> [usize; 2] {
+    let finest = adapted.finest.as_ref().unwrap();
+    let new = &finest.scene.mesh.nodes[case.volume.nodes.len()..];
+    [new.iter().filter(|x| x.x < 30.0).count(), new.len()]
+}
+
+#[test]
+fn a_part_of_the_skin_with_a_limit_of_its_own_is_refined_for() {
+    let (case, plan) = slab_moved_at_both_ends();
     let cells = 4 * case.volume.cells.len();
     let own = RefinementGoal {
         regions_mm: BTreeMap::from([("left".to_owned(), 1e-3)]),
@@ -127,11 +149,39 @@ fn a_part_of_the_skin_with_a_limit_of_its_own_is_refined_for() {
     let adapted = adapted(&case, &plan, &own);
     assert!(adapted.levels.len() > 1);
     assert!(adapted.levels.iter().all(|level| level.regions_mm.contains_key("left")));
-    let finest = adapted.finest.unwrap();
-    let first_new = case.volume.nodes.len();
-    let new = &finest.scene.mesh.nodes[first_new..];
-    let on_the_left = new.iter().filter(|x| x.x < 30.0).count();
-    assert!(on_the_left > 4 * (new.len() - on_the_left), "{on_the_left} of {}", new.len());
+    let [left, all] = new_nodes(&case, &adapted);
+    assert!(left > 4 * (all - left), "{left} of {all}");
+}
+
+#[test]
+fn a_landmark_with_a_limit_of_its_own_is_refined_for_until_its_error_is_met() {
+    let (case, plan) = slab_moved_at_both_ends();
+    let at = |name: &str, accepted: f64| RefinementGoal {
+        landmarks_mm: BTreeMap::from([(name.to_owned(), accepted)]),
+        ..wanted(100.0, 100_000)
+    };
+    let first = adapted(&case, &plan, &at("left", 100.0));
+    let [level] = &first.levels[..] else { panic!("{:?}", first.levels) };
+    let (error, told) = (level.landmarks_mm["left"], first.prediction.landmarks_missing["left"]);
+    assert!((error - told.norm()).abs() < 1e-12, "{error} {told}");
+    let accepted = 0.4 * error;
+    let adapted = adapted(&case, &plan, &at("left", accepted));
+    assert_eq!(adapted.stop, Stop::Met);
+    let errors: Vec<f64> = adapted.levels.iter().map(|own| own.landmarks_mm["left"]).collect();
+    let (last, before) = errors.split_last().unwrap();
+    assert!(*last <= accepted && before.iter().all(|own| *own > accepted), "{errors:?}");
+    assert!((last - adapted.prediction.landmarks_missing["left"].norm()).abs() < 1e-12);
+    let [left, all] = new_nodes(&case, &adapted);
+    assert!(left > 4 * (all - left), "{left} of {all}");
+
+    let scene = Scene::new(&case, &plan, &Settings::default()).unwrap();
+    for (name, error) in [
+        ("nose", LimitError::UnknownLandmark("nose".to_owned())),
+        ("below", LimitError::FarLandmark { name: "below".to_owned(), distance: 10.0 }),
+    ] {
+        let ended = predict_adaptively(&scene, &at(name, 1.0), &|| 0.0, &Unobserved);
+        assert_eq!(ended.err(), Some(AdaptiveError::Limit(error)));
+    }
 }
 
 #[test]
