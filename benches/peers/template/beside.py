@@ -119,7 +119,7 @@ class Skin:
 
 
 def prediction(run, case, output):
-    run("predict", "--case", case / "planned.json", "--out", output)
+    run("predict", "--case", case / "planned.json", "--method", "fem_linear", "--out", output)
     return Skin(output)
 
 

@@ -12,7 +12,7 @@ use super::lattice::{Aabb, Field, Lattice};
 use super::matching::{MatchWeights, Target};
 use super::outlier::{DoubtfulLandmark, doubtful};
 use super::pull::Pull;
-use super::schedule::{BONE, LANDMARK, Level, levels};
+use super::schedule::{BONE, LANDMARK, LATTICES, Level, levels};
 use super::sheet::Sheet;
 use super::start::{self, Start};
 use crate::mesh::{SurfaceSearch, TriangleSurface, Vector, VolumeMesh};
@@ -86,6 +86,18 @@ pub fn conform(
     start: Start,
     progress: &dyn Progress,
 ) -> Result<Conformation, ConformationError> {
+    conform_on(LATTICES, template, patient, start, progress)
+}
+
+/// The same on so many lattices, [`LATTICES`] or fewer: without the finest ones a template follows a patient less closely, and its cells
+/// are distorted less.
+pub fn conform_on(
+    lattices: i32,
+    template: &Template,
+    patient: &Patient,
+    start: Start,
+    progress: &dyn Progress,
+) -> Result<Conformation, ConformationError> {
     progress.phase(Phase::Solve);
     let boundary = template.mesh.boundary_faces();
     let sheet = |nodes: &[u32]| Sheet::of(template.mesh, &boundary, nodes);
@@ -98,7 +110,7 @@ pub fn conform(
     let surfaces = Surfaces { mesh: template.mesh, skin, bone };
     let (doubtful, landmarks) = doubtful(&surfaces, patient, start, progress)?;
     let used = Patient { landmarks: &landmarks, ..*patient };
-    let levels = levels(surfaces.bone.is_some());
+    let levels = levels(surfaces.bone.is_some(), lattices);
     let deformation = surfaces.fitted(&used, start, &levels, progress)?;
     let found = measured(deformation, &surfaces, patient.landmarks);
     Ok(Conformation { doubtful, ..found })

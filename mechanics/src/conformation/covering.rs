@@ -2,10 +2,14 @@
 
 use rayon::prelude::*;
 
+use crate::mesh::disjoint_sets::DisjointSets;
 use crate::mesh::{SurfaceSearch, TriangleSurface, Vector};
 
 /// Skin lies so far behind what covers it, in mm: nearer is noise or a second sheet, farther is another part of the body.
 const BEHIND_MM: [f64; 2] = [1.0, 100.0];
+
+/// Connected triangles of less area cover nothing that a template would be pulled to: folds of ears and nostrils have such.
+const LEAST_MM2: f64 = 25.0;
 
 /// What covers more than this share of a surface is none: that surface is not skin that faces out.
 const MOST: f64 = 0.5;
@@ -35,6 +39,7 @@ pub(super) fn uncovered(
     };
     let triangles = 0..surface.triangles.len();
     let is_covering: Vec<bool> = triangles.into_par_iter().with_min_len(64).map(covers).collect();
+    let is_covering = in_large_pieces(surface, &is_covering);
     let mut covering = Covering::default();
     for triangle in (0..is_covering.len()).filter(|&triangle| is_covering[triangle]) {
         let area = surface.area_vector(triangle).norm();
@@ -48,4 +53,21 @@ pub(super) fn uncovered(
     let others = surface.triangles.iter().zip(&is_covering).filter(|(_, covers)| !**covers);
     let triangles = others.map(|(triangle, _)| *triangle).collect();
     Some((TriangleSurface { triangles, ..surface.clone() }, covering))
+}
+
+/// Which of some triangles lie in pieces of at least [`LEAST_MM2`], connected by their points.
+fn in_large_pieces(surface: &TriangleSurface, chosen: &[bool]) -> Vec<bool> {
+    let mut pieces = DisjointSets::new(surface.points.len());
+    let own = || (0..chosen.len()).filter(|&triangle| chosen[triangle]);
+    for triangle in own() {
+        let [a, b, c] = surface.triangles[triangle];
+        pieces.join(a, b);
+        pieces.join(b, c);
+    }
+    let mut piece = |triangle: usize| pieces.root(surface.triangles[triangle][0]) as usize;
+    let mut areas = vec![0.0; surface.points.len()];
+    own().for_each(|triangle| areas[piece(triangle)] += surface.area_vector(triangle).norm());
+    let mut large = vec![false; chosen.len()];
+    own().for_each(|triangle| large[triangle] = areas[piece(triangle)] >= LEAST_MM2);
+    large
 }

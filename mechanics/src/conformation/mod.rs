@@ -20,7 +20,7 @@ mod warp;
 
 pub use affine::Affine;
 pub use carried::carried;
-pub use conform::{Conformation, Patient, Template, conform};
+pub use conform::{Conformation, Patient, Template, conform, conform_on};
 pub use covering::Covering;
 pub use deformation::Deformation;
 pub use error::{ConformationError, SheetName};
@@ -30,5 +30,6 @@ pub use fibres::{
 };
 pub use landmark::Landmark;
 pub use outlier::DoubtfulLandmark;
+pub use schedule::{LATTICES, finest_spacing};
 pub use start::Start;
 pub use warp::{Warp, spline_of};

@@ -6,7 +6,7 @@ use super::matching::MatchWeights;
 
 /// Between the control points of the coarsest and the finest lattice, in mm.
 const COARSEST: f64 = 64.0;
-const LATTICES: i32 = 5;
+pub const LATTICES: i32 = 5;
 
 /// λ of the finest lattice in mm; λ of each coarser one is larger by this factor.
 const BENDING: f64 = 3e-6;
@@ -29,11 +29,17 @@ pub(super) struct Level {
     pub spacing: f64,
 }
 
-/// Skin first and, where there is bone, all but the coarsest lattice again with both.
-pub(super) fn levels(has_bone: bool) -> Vec<Level> {
-    let skin = (0..LATTICES).map(|lattice| level(lattice, false));
-    let both = (1..LATTICES).map(|lattice| level(lattice, true));
+/// Skin first and, where there is bone, all but the coarsest lattice again with both; the finest one first left out where there are to
+/// be fewer than [`LATTICES`].
+pub(super) fn levels(has_bone: bool, lattices: i32) -> Vec<Level> {
+    let skin = (0..lattices).map(|lattice| level(lattice, false));
+    let both = (1..lattices).map(|lattice| level(lattice, true));
     skin.chain(both.filter(|_| has_bone)).collect()
+}
+
+/// Between the control points of the finest of so many lattices, in mm.
+pub fn finest_spacing(lattices: i32) -> f64 {
+    COARSEST * 0.5f64.powi(lattices - 1)
 }
 
 /// The skin alone, on the two coarsest lattices.
@@ -51,6 +57,6 @@ fn level(lattice: i32, with_bone: bool) -> Level {
         bending: BENDING * STIFFER.powi(coarser),
         weights: MatchWeights { along: 1.0, across, always, back: 0.5 },
         with_bone,
-        spacing: COARSEST * 0.5f64.powi(lattice),
+        spacing: finest_spacing(lattice + 1),
     }
 }

@@ -21,8 +21,8 @@ use crate::schema::predict::result::ResultDocument;
 use crate::schema::repair::RepairResultDocument;
 use crate::schema::{CaseDocument, ErrorCode, Pointer, Problem};
 use mechanics::conformation::{
-    Conformation, ConformationError, Covering, DoubtfulLandmark, Patient, SheetName, Template,
-    carried, conform,
+    Conformation, ConformationError, Covering, DoubtfulLandmark, LATTICES, Patient, SheetName,
+    Template, carried, conform_on, finest_spacing,
 };
 use mechanics::format::vtk::{vtp, vtu};
 use mechanics::format::{SurfaceOutput, VolumeOutput};
@@ -47,7 +47,7 @@ pub fn conform_job(
     clock.check()?;
 
     // 2. The template onto the patient, its cells repaired.
-    let mut found = prepared.conformed(&input.spec, &clock)?;
+    let mut found = prepared.conformed_whole(&input.spec, &clock)?;
     let is_whole = found.after.inverted == 0;
     clock.check()?;
 
@@ -73,7 +73,8 @@ pub fn conform_job(
     }
     let told = prepared.meshes.iter().flat_map(|(_, mesh)| &mesh.warnings);
     let warnings = found.after.warnings().into_iter().chain(brought.refused.clone());
-    let warnings = warnings.chain(found.poor_fit()).chain(found.covered_skin());
+    let warnings =
+        warnings.chain(found.poor_fit()).chain(found.covered_skin()).chain(found.coarse());
     let warnings = warnings.chain(found.conformation.doubtful.iter().map(in_doubt));
     let warnings: Vec<Warning> = warnings.collect();
     let warnings = warning_documents(told.chain(&warnings));
@@ -102,10 +103,43 @@ struct Conformed {
     /// After the repair, in mm.
     skin_distances: Vec<f64>,
     bone_distances: Vec<f64>,
+    coarser_than: Option<Coarser>,
+}
+
+/// Fewer lattices than there could be, because so many cells stay invalid on all of them.
+struct Coarser {
+    lattices: i32,
+    invalid: usize,
 }
 
 impl PreparedConformation {
-    fn conformed(&self, spec: &ConformDocument, clock: &Observed) -> Result<Conformed, JobError> {
+    /// On the finest lattices on which all cells are valid after their repair; on the finest ones where there are none.
+    fn conformed_whole(
+        &self,
+        spec: &ConformDocument,
+        clock: &Observed,
+    ) -> Result<Conformed, JobError> {
+        let finest = self.conformed(spec, LATTICES, clock)?;
+        let invalid = finest.after.inverted;
+        if invalid == 0 {
+            return Ok(finest);
+        }
+        for lattices in (FEWEST_LATTICES..LATTICES).rev() {
+            let coarser = self.conformed(spec, lattices, clock)?;
+            if coarser.after.inverted == 0 {
+                let coarser_than = Some(Coarser { lattices, invalid });
+                return Ok(Conformed { coarser_than, ..coarser });
+            }
+        }
+        Ok(finest)
+    }
+
+    fn conformed(
+        &self,
+        spec: &ConformDocument,
+        lattices: i32,
+        clock: &Observed,
+    ) -> Result<Conformed, JobError> {
         let template =
             Template { mesh: &self.template, skin: &self.skin_nodes, bone: &self.bone_nodes };
         let patient = Patient {
@@ -113,7 +147,7 @@ impl PreparedConformation {
             bone: self.bone.as_deref(),
             landmarks: &self.landmarks,
         };
-        let conformation = conform(&template, &patient, spec.start.into(), clock)
+        let conformation = conform_on(lattices, &template, &patient, spec.start.into(), clock)
             .map_err(|error| refused(&error, clock))?;
         let mut mesh = carried(&self.template, &conformation.deformation);
         let before = quality(&mesh);
@@ -131,6 +165,7 @@ impl PreparedConformation {
             repaired,
             skin_distances,
             bone_distances,
+            coarser_than: None,
         })
     }
 }
@@ -225,6 +260,18 @@ impl Conformed {
         }
     }
 
+    /// The warning of a template that follows the patient less closely than it might.
+    fn coarse(&self) -> Option<Warning> {
+        let Coarser { lattices, invalid } = self.coarser_than.as_ref()?;
+        let (used, left_out) = (finest_spacing(*lattices), finest_spacing(LATTICES));
+        let detail = format!(
+            "{invalid} cells stay invalid where the template is deformed by control points {left_out} mm apart: it is deformed by points \
+             {used} mm apart, all its cells are valid, and details below that size are not followed"
+        );
+        let warning = Warning::new("conformation-coarse", detail).with("spacing_mm", used);
+        Some(warning.with("cells", *invalid as f64))
+    }
+
     /// The warning of what covers the patient's skin.
     fn covered_skin(&self) -> Option<Warning> {
         let Covering { area_mm2, middle } = self.conformation.covering;
@@ -236,7 +283,7 @@ impl Conformed {
         let warning = Warning::new("skin-covered", detail).with("area_mm2", area_mm2);
         let place = [("x_mm", middle.x), ("y_mm", middle.y), ("z_mm", middle.z)];
         let warning = place.into_iter().fold(warning, |told, (name, at)| told.with(name, at));
-        (area_mm2 > COVERED_MM2).then_some(warning)
+        (area_mm2 > 0.0).then_some(warning)
     }
 
     /// The warning of a template part of which lies far from the surface that it was fitted to, because the surface lacks that part or
@@ -284,14 +331,14 @@ fn in_doubt(landmark: &DoubtfulLandmark) -> Warning {
     warning.with("median_mm", *median).with("left_out", f64::from(u8::from(*is_left_out)))
 }
 
+/// On fewer lattices than this, control points 16 mm apart, a template follows no face.
+const FEWEST_LATTICES: i32 = 3;
+
 /// Beyond these distances in mm a template does not lie on the skin or the bone that it was fitted to: on the CT of a head the 95 % and the
 /// largest distance from its skin are .4 and 3 mm. Sets of nodes on bone seldom cover what a surface of bone has.
 const SKIN_P95_MM: f64 = 2.0;
 const SKIN_LARGEST_MM: f64 = 10.0;
 const BONE_P95_MM: f64 = 10.0;
-
-/// Less than this covers nothing that a template would be pulled to.
-const COVERED_MM2: f64 = 25.0;
 
 /// With its place in the spec.
 fn refused(error: &ConformationError, clock: &Observed) -> JobError {

@@ -68,6 +68,14 @@ fn what_cannot_be_refined_is_refused_with_its_place() {
     let lips = refused(CASE, r#"{"refine":{"accept_mm":0.1,"regions":{"lips":0.1}}}"#);
     assert_eq!(lips.errors[0].pointer, "/spec/refine/regions/lips");
     assert_eq!(lips.errors[0].code.name(), "unknown-region");
+    let landmarks = r#""landmarks":{"below":[0,0,-7]},"skin":"#;
+    let landmarks = CASE.replace(r#""skin":"#, landmarks);
+    for (name, code) in [("nose", "unknown-landmark"), ("below", "out-of-range")] {
+        let spec = format!(r#"{{"refine":{{"accept_mm":0.1,"landmarks":{{"{name}":0.1}}}}}}"#);
+        let problem = refused(&landmarks, &spec);
+        assert_eq!(problem.errors[0].pointer, format!("/spec/refine/landmarks/{name}"));
+        assert_eq!(problem.errors[0].code.name(), code);
+    }
     let bricks = CASE.replace(r#""volume":"block""#, r#""volume":"bricks""#);
     let bricks = refused(&bricks, r#"{"refine":{"accept_mm":0.1}}"#);
     assert_eq!(bricks.errors[0].pointer, "/spec/refine");

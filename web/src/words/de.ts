@@ -234,7 +234,7 @@ export const de: Words = {
     "cells-inverted": "Zellen sind umgestülpt: zu groß für eine lineare Antwort", "cells-reordered": "Zellen waren andersherum nummeriert",
     "cells-skipped": "Zellen der Datei sind weggelassen", "conditions-ignored": "das Modell lässt Bedingungen des Falls weg",
     "conditions-overlap": "Knoten haben zwei Rollen; die stärkere gilt", "constant-at-end": "das Gefundene liegt an seiner Grenze",
-    "constant-not-determined": "das Gefundene ist nicht bestimmt", "constant-suspect": "eine Konstante hat vielleicht eine andere Einheit",
+    "constant-not-determined": "das Gefundene ist nicht bestimmt", "conformation-coarse": "die Vorlage folgt dem Patienten weniger genau, damit alle Zellen gültig sind", "constant-suspect": "eine Konstante hat vielleicht eine andere Einheit",
     "contact-chatter": "Punkte der Berührung kamen nicht zur Ruhe", "contact-closed": "Spalten schließen sich, und Gewebe drückt",
     "contact-overlap": "Teile des Rands liegen ineinander", "contact-points-move": "Punkte der Berührung änderten die Antwort noch",
     "correction-above-movement": "es wird mehr addiert, als die Mechanik bewegt",

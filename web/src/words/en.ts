@@ -232,7 +232,7 @@ export const en = {
     "cells-inverted": "cells are turned inside out: too large for a linear answer", "cells-reordered": "cells were numbered the other way round",
     "cells-skipped": "cells of the file were left out", "conditions-ignored": "the model leaves conditions of the case out",
     "conditions-overlap": "nodes have two roles; the stronger holds", "constant-at-end": "what was found is at its bound",
-    "constant-not-determined": "what was found is not determined", "constant-suspect": "a constant may be in another unit",
+    "constant-not-determined": "what was found is not determined", "conformation-coarse": "the template follows the patient less closely, so that all cells are valid", "constant-suspect": "a constant may be in another unit",
     "contact-chatter": "points of contact did not settle", "contact-closed": "gaps close, and tissue presses",
     "contact-overlap": "parts of the boundary lie in each other", "contact-points-move": "points of contact still moved the answer",
     "correction-above-movement": "more is added than mechanics moves",
