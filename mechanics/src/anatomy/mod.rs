@@ -50,7 +50,7 @@ const BEHIND: f64 = 1.5;
 pub struct AnatomyRules {
     /// Of scans.
     pub image: ImageOptions,
-    /// Of scans.
+    /// Of scans; of surfaces the hollows alone.
     pub whole_bone: WholeBone,
     pub osteotomy: Osteotomy,
     /// A segment that is moved before anything is meshed, beside a skin that was scanned by itself.

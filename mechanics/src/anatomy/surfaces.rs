@@ -4,7 +4,7 @@
 //! the deeper bone wins. Clipping triangles instead would need surfaces without open edges, which those of real heads have.
 
 use super::{AnatomyError, PartedBone, parted};
-use crate::domain::{Assessment, BoneDepths, SurfaceDomain, SurfaceName};
+use crate::domain::{Assessment, BoneDepths, Hollow, SurfaceDomain, SurfaceName};
 use crate::mesh::{TriangleSurface, Warning};
 use crate::osteotomy::Osteotomy;
 use crate::osteotomy::bone_image::BoneImage;
@@ -15,6 +15,8 @@ const SAME_VOLUME: f64 = 0.02;
 /// Bone is reported that lies outside the skin with more of it, as a share, and farther, in mm.
 const OUTSIDE: f64 = 0.03;
 const OFF_SKIN_MM: f64 = 2.0;
+/// Smaller hollows of a bone are not told, in ml.
+const LEAST_HOLLOW: f64 = 0.1;
 /// More of the inside than this is told to be uncertain.
 const CERTAIN: f64 = 1e-3;
 
@@ -56,6 +58,28 @@ pub fn outside(domain: &SurfaceDomain) -> Vec<Warning> {
         warning.with("outside", by.outside).with("farthest_mm", by.farthest)
     })
     .collect()
+}
+
+/// Bones with hollows, which hold no tissue.
+pub fn hollow(domain: &SurfaceDomain) -> Vec<Warning> {
+    let ml = |mm3: f64| mm3 / 1000.0;
+    let what = match domain.is_solid() {
+        true => "are bone of it",
+        false => "hold no tissue, and are neither meshed nor part of its volume",
+    };
+    let warning = |(number, hollows): (usize, &[Hollow])| {
+        let all = ml(hollows.iter().map(|hollow| hollow.volume).sum());
+        let largest = hollows.first().filter(|_| all >= LEAST_HOLLOW)?;
+        let [x, y, z] = largest.centre.into();
+        let (name, count, most) = (SurfaceName::Bone(number), hollows.len(), ml(largest.volume));
+        let detail = format!(
+            "{name}: {count} hollows of {all:.1} ml that it encloses on all sides {what}; the largest has {most:.1} ml around \
+             ({x:.0}, {y:.0}, {z:.0}) mm"
+        );
+        let warning = Warning::new("bone-hollow", detail).with("volume_ml", all);
+        Some(warning.with("hollows", count as f64))
+    };
+    domain.hollows().enumerate().filter_map(warning).collect()
 }
 
 /// What was mended of the surfaces of a body, and what of them could not be: a warning for each that is not whole.

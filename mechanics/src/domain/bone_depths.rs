@@ -38,14 +38,14 @@ struct Grid {
 impl SurfaceDomain {
     /// The depths of its bones on a grid of cubes about all of them. Without bones those of one far outside.
     pub fn bone_depths(&self) -> BoneDepths {
-        let boxes = self.bones.iter().map(|bone| bone.tree.bounds());
+        let boxes = self.bone_shells().map(|bone| bone.tree.bounds());
         let around = boxes.reduce(|(low, high), (a, b)| (low.inf(&a), high.sup(&b)));
         let grid = Grid::around(around.unwrap_or_default());
         let count: usize = grid.size.iter().product();
         let near = NEAR * grid.edge;
         let deepest = |voxel: usize| -> (f32, u16) {
             let point = grid.centre(voxel);
-            let depths = self.bones.iter().map(|bone| depth(bone, &point, near));
+            let depths = self.bone_shells().map(|bone| depth(bone, &point, near));
             let numbered = depths.zip(0u16..);
             let most = numbered.reduce(|most, one| if one.0 > most.0 { one } else { most });
             most.map_or((-1.0, 0), |(depth, bone)| (depth as f32, bone))

@@ -9,6 +9,7 @@ mod conformed_fibres;
 mod domain;
 mod format;
 mod golden;
+mod hollow_bone;
 mod image;
 mod landmarks;
 mod material;

@@ -227,6 +227,7 @@ export const de: Words = {
     "another-person-suspect": "die Flächen sind vielleicht von zwei Personen", "array-nonfinite": "Zahlen der Datei sind nicht endlich",
     "base-unmasked": "bewegter Knochen bringt die Aufnahmen mit zusammen",
     "before-operation-suspect": "die Aufnahme ist vielleicht von vor der Operation", "bone-loose": "loser Knochen ist als Gewebe vernetzt",
+    "bone-hollow": "Knochen umschließt Hohlräume, in denen kein Gewebe ist",
     "bone-made-whole": "Knochen wurde geschlossen, wo die Aufnahme Lücken zeigt", "bone-outside-skin": "Knochen liegt außerhalb der Haut",
     "bone-through-skin": "Knochen tritt durch die Haut", "bones-overlap": "der Plan schiebt Knochen ineinander",
     "bones-touch": "Knochen berühren sich, wo nichts geschnitten ist", "built-in-poisson-ratio": "Federn haben eine eigene Querkontraktionszahl",

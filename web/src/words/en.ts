@@ -225,6 +225,7 @@ export const en = {
     "all-methods": "every model was solved, as none was named", "another-equilibrium": "the tissue may rest in another way too",
     "another-person-suspect": "the surfaces may be of two persons", "array-nonfinite": "numbers of the file are not finite",
     "base-unmasked": "bone that was moved helps to bring the scans together", "before-operation-suspect": "the scan may be one before the operation",
+    "bone-hollow": "bone encloses hollows, which hold no tissue",
     "bone-loose": "loose bone is meshed as tissue", "bone-made-whole": "bone was closed where the scan shows gaps",
     "bone-outside-skin": "bone lies outside the skin", "bone-through-skin": "bone comes through the skin",
     "bones-overlap": "the plan pushes bones into each other", "bones-touch": "bones touch where nothing is cut",
