@@ -26,7 +26,8 @@ pub fn part_by_cuts(
     osteotomy: &Osteotomy,
 ) -> Result<PartedBone, AnatomyError> {
     let depths = domain.bone_depths();
-    parted(&BoneImage { image: &depths.image, threshold: 0.0 }, osteotomy)
+    let parted = parted(&BoneImage { image: &depths.image, threshold: 0.0 }, osteotomy)?;
+    Ok(PartedBone { wall_voxels: f64::INFINITY, ..parted })
 }
 
 /// Takes each bone of a body between surfaces as the segment of its number.
@@ -39,7 +40,7 @@ pub fn take_as_segments(
     let bone = BoneImage { image: &image, threshold: 0.0 };
     let labelled = label_given(&bone, segments, |voxel| Some(usize::from(deepest[voxel])))?;
     let surfaces = bones.iter().map(|&bone| bone.clone()).collect();
-    Ok(PartedBone { labelled, surfaces, teeth: None })
+    Ok(PartedBone { labelled, surfaces, teeth: None, wall_voxels: f64::INFINITY })
 }
 
 /// Bones of which a part lies outside the skin.

@@ -14,6 +14,7 @@ use super::pieces::Piece;
 use super::pinches::Pinched;
 use super::refine::Refinement;
 use super::report::{Angles, MeshingReport};
+use super::rims::clear_inner;
 use super::settings::MeshingSettings;
 use super::size::SizeField;
 use super::warp::Warp;
@@ -89,6 +90,7 @@ pub fn mesh(
     }
     watch.stage()?;
     let faces = check(&draft, !settings.keep_pieces)?;
+    clear_inner(&mut draft, &faces);
     let report = MeshingReport {
         nodes: draft.nodes.len(),
         tetrahedra: draft.tetrahedra.len(),

@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used)]
 
+mod airway_walls;
 mod anatomy;
 mod cephalometry;
 mod conformation;
