@@ -172,6 +172,7 @@ pub fn build(
     let mut warnings = classes.warnings.clone();
     warnings.extend(off_bone(&classes));
     warnings.extend(left_out::left_out_of_mesh(&tissue.report));
+    warnings.extend(left_out::thinner_than_cells(&tissue.report, bone.labels.volume()));
     if rules.teeth_slide && teeth.is_none() && !bone.segments.is_empty() {
         warnings.push(teeth_joined());
     }
@@ -240,7 +241,6 @@ fn unmeshed(name: &str, volume: &VolumeMesh) -> Option<Warning> {
     (!has_nodes).then(|| Warning::new("segment-without-nodes", detail))
 }
 
-/// Segments that touch other bone where nothing is cut, as teeth that meet do. Bone that stays touches sawdust and what is loose
 /// Nodes on what ends tissue as bone does, without bone behind it.
 fn off_bone(classes: &NodeClasses) -> Option<Warning> {
     let nodes = classes.without_bone;
@@ -251,6 +251,7 @@ fn off_bone(classes: &NodeClasses) -> Option<Warning> {
     (nodes > 0).then(|| Warning::new("nodes-off-bone", detail).with("nodes", nodes as f64))
 }
 
+/// Segments that touch other bone where nothing is cut, as teeth that meet do. Bone that stays touches sawdust and what is loose
 /// everywhere.
 fn touching(bone: &Labelled) -> Vec<Warning> {
     let name = |owner: Owner| match owner {

@@ -127,6 +127,12 @@ impl BoneLabels {
         best
     }
 
+    /// Of all bone, in mm³.
+    pub fn volume(&self) -> f64 {
+        let voxels = self.labels.iter().filter(|&&label| label != NO_BONE).count();
+        voxels as f64 * Matrix3::from_columns(&self.placement.steps).determinant().abs()
+    }
+
     /// The lowest and the highest centres of voxels of bone, in mm.
     pub fn bone_box(&self) -> Option<(Vector, Vector)> {
         let bone = (0..self.labels.len()).filter(|&voxel| self.labels[voxel] != NO_BONE);
