@@ -6,7 +6,7 @@ use mechanics::meshing::{
     MeshingSettings, RegionShape, SizeField, SizeRegion, ThicknessRule, TissueMesh,
 };
 
-use super::domains::{Body, ball, balls, shell};
+use super::domains::{Body, Distance, ball, balls, shell};
 use super::{assert_sound, meshed, off_sphere, uniform};
 
 /// The mean edge of the cells whose first node a test picks.
