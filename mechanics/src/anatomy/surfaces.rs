@@ -4,7 +4,7 @@
 //! the deeper bone wins. Clipping triangles instead would need surfaces without open edges, which those of real heads have.
 
 use super::{AnatomyError, PartedBone, parted};
-use crate::domain::{Assessment, BoneDepths, Hollow, SurfaceDomain, SurfaceName};
+use crate::domain::{Assessment, BoneDepths, Hollow, Overlap, SurfaceDomain, SurfaceName};
 use crate::mesh::{TriangleSurface, Warning};
 use crate::osteotomy::Osteotomy;
 use crate::osteotomy::bone_image::BoneImage;
@@ -59,6 +59,21 @@ pub fn outside(domain: &SurfaceDomain) -> Vec<Warning> {
         warning.with("outside", by.outside).with("farthest_mm", by.farthest)
     })
     .collect()
+}
+
+/// Bones that lie in one another.
+pub fn overlapping(domain: &SurfaceDomain) -> Vec<Warning> {
+    let warning = |overlap: &Overlap| {
+        let [one, other] = overlap.bones.map(SurfaceName::Bone);
+        let volume_ml = overlap.volume / 1000.0;
+        let [x, y, z] = overlap.centre.into();
+        let detail = format!(
+            "{one} and {other} overlap: {volume_ml:.1} ml around ({x:.0}, {y:.0}, {z:.0}) mm lie in both, and belong to the one that \
+             lies within the other, else to that in which they lie deeper"
+        );
+        Warning::new("surfaces-overlap", detail).with("volume_ml", volume_ml)
+    };
+    domain.overlaps().iter().map(warning).collect()
 }
 
 /// Bones with hollows, which hold no tissue.

@@ -39,7 +39,7 @@ pub(super) struct Shell {
     pub(super) inside: Vec<Vector>,
 }
 
-/// A bone as it was given, and with its hollows as part of it.
+/// A bone or a skin as it was given, and with its hollows as part of it.
 #[derive(Clone, Debug)]
 pub(super) struct BoneShell {
     /// Without the walls of hollows.
@@ -68,6 +68,12 @@ impl BoneShell {
         let solid = Shell { tree, cells, threshold, inside };
         let bone = BoneShell { solid, hollow: Some(given), hollows };
         Ok((bone, assessment))
+    }
+
+    /// How much of what it goes around its largest hollow is.
+    pub(super) fn hollow_share(&self, found: &Assessment) -> f64 {
+        let hollow = self.hollows.first().map_or(0.0, |hollow| hollow.volume);
+        hollow / (hollow + found.volume)
     }
 
     /// With the walls of its hollows.

@@ -26,6 +26,9 @@ const MOST_BETWEEN: f64 = 0.08;
 /// much.
 const MOST_BETWEEN_OF_TISSUE: f64 = 0.04;
 
+/// An inner wall of a skin that encloses more of what the outer one goes around, as a share, is no airway.
+const MOST_HOLLOW: f64 = 0.3;
+
 /// What holes without a lid leave uncertain of more of the tissue is refused: the volume is to be right within as much.
 const MOST_IN_HOLES: f64 = 0.01;
 
@@ -53,7 +56,8 @@ impl SurfaceDomain {
         limits: &[Limit],
     ) -> Result<SurfaceDomain, SurfaceDomainError> {
         let limits = Limits::new(limits)?;
-        let (skin, of_skin) = Shell::new(skin, SurfaceName::Skin)?;
+        let (skin, of_skin) = BoneShell::new(skin, SurfaceName::Skin)?;
+        let (skin, walls) = (skin.as_given().clone(), skin.hollow_share(&of_skin));
         let mut assessments = vec![of_skin];
         let mut shells = Vec::with_capacity(bones.len());
         for (number, bone) in bones.iter().enumerate() {
@@ -61,7 +65,8 @@ impl SurfaceDomain {
             shells.push(shell);
             assessments.push(of_bone);
         }
-        let (containments, free) = contained(&skin, &shells)?;
+        let contained = contained(&skin, &shells).map_err(|error| within_walls(error, walls));
+        let (containments, free) = contained?;
         refuse_open(&assessments, of_skin.volume * free)?;
         let ends = cut_ends(skin.tree.facets(), skin.tree.bounds(), of_skin.level);
         let airways = AirwayMap::new(ends.bounds, ends.faces, |point| skin.value(point) > 0.0);
@@ -179,6 +184,16 @@ impl SurfaceDomain {
                 found.min_by(|a, b| a.1.distance.total_cmp(&b.1.distance))
             }
         }
+    }
+}
+
+/// Bone that lies outside a skin, because that has an inner wall around the bone as well as an outer one.
+fn within_walls(error: SurfaceDomainError, walls: f64) -> SurfaceDomainError {
+    match error {
+        SurfaceDomainError::BoneOutside { .. } if walls > MOST_HOLLOW => {
+            SurfaceDomainError::TwoWalls { surface: SurfaceName::Skin, percent: 100.0 * walls }
+        }
+        other => other,
     }
 }
 

@@ -7,7 +7,9 @@ use crate::jobs::failure::JobError;
 use crate::schema::meshing::surfaces::SurfacesDocument;
 use crate::schema::{ErrorCode, Pointer, Problem};
 use mechanics::anatomy::skin_scan::FittedScan;
-use mechanics::anatomy::surfaces::{hollow, mended, outside, part_by_cuts, take_as_segments};
+use mechanics::anatomy::surfaces::{
+    hollow, mended, outside, overlapping, part_by_cuts, take_as_segments,
+};
 use mechanics::anatomy::{AnatomyRules, PartedBone};
 use mechanics::domain::{Domain, LabelBody, SurfaceDomain, SurfaceDomainError, SurfaceName};
 use mechanics::image::ImageVolume;
@@ -66,7 +68,7 @@ impl Surfaces {
         };
         let bone = parted.map_err(JobError::Anatomy)?;
         let warnings = mended(&domain).into_iter().chain(outside(&domain));
-        let warnings = warnings.chain(hollow(&domain)).collect();
+        let warnings = warnings.chain(hollow(&domain)).chain(overlapping(&domain)).collect();
         Ok(PartedBody { domain: Box::new(domain), bone, warnings, skin: None })
     }
 
