@@ -15,7 +15,7 @@ use crate::jobs::JobError;
 use crate::jobs::{JobContext, JobInput, JobOutput, MadeMesh, MeshingInput, StoredMesh};
 use crate::schema::case::document::LengthUnit;
 use crate::schema::meshing::labels::LabelsDocument;
-use crate::schema::meshing::result::MeshingResultDocument;
+use crate::schema::meshing::result::{FoundSegmentDocument, MeshingResultDocument};
 use crate::schema::meshing::surfaces::SurfacesDocument;
 use crate::schema::predict::result::FileDocument;
 use crate::schema::wire::canonical;
@@ -272,6 +272,12 @@ fn in_memory(case: &CaseDocument, done: &JobOutput) -> BTreeMap<String, StoredMe
     done.meshes.iter().filter_map(stored).collect()
 }
 
+/// Bone on the sides of a segment's cuts that is not connected with it; nothing where there is none, as without cuts.
+fn hangs_apart(segment: &FoundSegmentDocument) -> String {
+    let left = segment.left_ml;
+    if left < 0.05 { String::new() } else { format!("; {left:.1} ml on its sides hang apart") }
+}
+
 fn print_result(result: &MeshingResultDocument, total_s: f64) {
     let angles = &result.dihedral_angles_deg;
     println!(
@@ -285,8 +291,10 @@ fn print_result(result: &MeshingResultDocument, total_s: f64) {
     for segment in &result.segments {
         let [x, y, z] = segment.centre_mm.0;
         println!(
-            "segment    {} {:.1} ml around ({x:.0}, {y:.0}, {z:.0}) mm; {:.1} ml on its sides hang apart",
-            segment.name, segment.volume_ml, segment.left_ml
+            "segment    {} {:.1} ml around ({x:.0}, {y:.0}, {z:.0}) mm{}",
+            segment.name,
+            segment.volume_ml,
+            hangs_apart(segment)
         );
     }
     for cut in &result.cuts {

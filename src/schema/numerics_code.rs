@@ -120,6 +120,7 @@ impl From<&SurfaceDomainError> for ErrorCode {
             | SurfaceDomainError::Uncertain { .. }
             | SurfaceDomainError::Open { .. }
             | SurfaceDomainError::Doubled { .. }
+            | SurfaceDomainError::TwoWalls { .. }
             | SurfaceDomainError::Tangled { .. }
             | SurfaceDomainError::Limit(_) => ErrorCode::NoInside,
         }

@@ -51,14 +51,31 @@ fn found(mesh: &VolumeMesh, skin: &[u32], axes: FaceAxes) -> Result<Face, String
     let surface = mesh.surface_of(&faces);
     let plane = MidPlane::of(&surface, axes).ok_or("the skin has no front")?;
     let at = Profile::of(&surface, &plane).landmarks().map_err(|error| error.to_string())?;
-    let ProfileLandmarks { pogonion, sublabiale, subnasale, pronasale } = at;
+    let ProfileLandmarks { pogonion, sublabiale, subnasale, pronasale, shallow_fold } = at;
     let named = [("pogonion", pogonion), ("sublabiale", sublabiale), ("subnasale", subnasale)];
     let named = named.into_iter().chain(pronasale.map(|tip| ("pronasale", tip)));
     Ok(Face {
         landmarks: named.map(|(name, point)| (name.to_owned(), place(&plane, point))).collect(),
         regions: skin_regions(&mesh.nodes, skin, &plane, &at),
-        warnings: Vec::new(),
+        warnings: shallow_fold
+            .map(|depth| shallow(depth, &place(&plane, sublabiale)))
+            .into_iter()
+            .collect(),
     })
+}
+
+/// A border of chin and lips that is not certain.
+fn shallow(depth_mm: f64, sublabiale: &Vector) -> Warning {
+    let [x, y, z] = (*sublabiale).into();
+    let found = match depth_mm > 0.0 {
+        true => format!("is {depth_mm:.1} mm deep"),
+        false => "is not there, and its place is guessed from stomion and chin".to_owned(),
+    };
+    let detail = format!(
+        "the fold between chin and lower lip {found}: `skin_chin` and `skin_lips` meet at ({x:.0}, {y:.0}, {z:.0}) mm; state `landmarks` if \
+         that is not the border"
+    );
+    Warning::new("fold-shallow", detail).with("depth_mm", depth_mm)
 }
 
 /// A point of the mid-plane in the coordinates of the scan.

@@ -41,6 +41,7 @@ impl GivenLandmarks {
             sublabiale: point(&self.sublabiale),
             subnasale: point(&self.subnasale),
             pronasale: self.pronasale.as_ref().map(point),
+            shallow_fold: None,
         };
         (plane, landmarks)
     }

@@ -1,6 +1,6 @@
 //! Bone of a label map in its segments, with its teeth.
 
-use super::{AnatomyError, AnatomyRules, PartedBone, parted, surfaces_of};
+use super::{AnatomyError, AnatomyRules, PartedBone, WALL_VOXELS, parted, surfaces_of};
 use crate::domain::{ImageDomain, LabelBody};
 use crate::image::{ImageError, ImageVolume, Voxels};
 use crate::osteotomy::bone_image::BoneImage;
@@ -22,7 +22,7 @@ pub fn part_labels(
             let segments = body.segments();
             let labelled = label_given(&bone, osteotomy, |voxel| segments[voxel])?;
             let surfaces = surfaces_of(&bone, osteotomy, &labelled);
-            PartedBone { labelled, surfaces, teeth: None }
+            PartedBone { labelled, surfaces, teeth: None, wall_voxels: WALL_VOXELS }
         }
         false => parted(&bone, osteotomy)?,
     };

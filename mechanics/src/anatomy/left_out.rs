@@ -1,4 +1,4 @@
-//! Disconnected tissue: parts that do not hang together with the body and are in no mesh.
+//! Tissue that is in no mesh: parts that do not hang together with the body, and what is thinner than cells.
 
 use crate::domain::LeftOut;
 use crate::mesh::{Vector, Warning};
@@ -10,6 +10,10 @@ const LARGE_OBJECT: f64 = 0.1;
 const LEAST: f64 = 1.0;
 /// Less than this share of a mesh is what cells are too coarse for.
 const SHARE: f64 = 0.01;
+/// Less tissue in no cell than this share is what cells are too coarse for; nodes of cells of 6 mm count a ball to 1 %.
+const MOST_LOST: f64 = 0.02;
+/// Less of the bone than this share, meshed as tissue, is what cells are too coarse for.
+const MOST_FILLED: f64 = 0.03;
 const MM3_IN_ML: f64 = 1000.0;
 
 /// The largest of some pieces, and all of them. Volumes in ml.
@@ -42,6 +46,32 @@ pub(super) fn left_out_of_mesh(report: &MeshingReport) -> Option<Warning> {
         kept: ml(report.volume),
     };
     (pieces.all > SHARE * pieces.kept).then(|| pieces.warning("tissue"))
+}
+
+/// Tissue thinner than cells, which the mesh lacks, and bone thinner than cells, which is tissue in it.
+pub(super) fn thinner_than_cells(report: &MeshingReport, bone: f64) -> Vec<Warning> {
+    let ml = |mm3: f64| mm3 / MM3_IN_ML;
+    let (lost, filled) = (ml(report.volume_lost), ml(report.bone_filled));
+    let remedy = "more tetrahedra, or `size.fine` there, resolve it";
+    let place = report.sheets_lost.first().map_or(String::new(), |sheet| {
+        let [x, y, z] = sheet.centre.into();
+        format!(", most of it around ({x:.0}, {y:.0}, {z:.0}) mm")
+    });
+    let detail = format!(
+        "about {lost:.0} ml of tissue thinner than cells is missing from the mesh{place}; {:.0} ml are meshed, with cubes of {:.1} mm at \
+         the finest; {remedy}",
+        ml(report.volume),
+        report.finest
+    );
+    let sheet = (lost > MOST_LOST * ml(report.volume) && lost > LEAST)
+        .then(|| Warning::new("thin-tissue-lost", detail).with("volume_ml", lost));
+    let [x, y, z] = report.bone_filled_centre.into();
+    let detail = format!(
+        "about {filled:.1} ml of bone thinner than cells is meshed as tissue, around ({x:.0}, {y:.0}, {z:.0}) mm in the mean; {remedy}"
+    );
+    let bone = (report.bone_filled > MOST_FILLED * bone && filled > LEAST)
+        .then(|| Warning::new("thin-bone-lost", detail).with("volume_ml", filled));
+    sheet.into_iter().chain(bone).collect()
 }
 
 impl Pieces {

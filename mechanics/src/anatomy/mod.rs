@@ -44,13 +44,16 @@ use crate::progress::Progress;
 
 /// Bone this far behind a node, in lengths of a voxel's diagonal, is the bone that the node lies on.
 const BEHIND: f64 = 1.5;
+/// Of a scan, voxels of bone farther from a node are not what it lies on: the walls of airways and cavities beside bone count as
+/// bone of the body, and reach farther.
+const WALL_VOXELS: f64 = 1.0;
 
 /// How a scan or surfaces become a mesh. Lengths in mm.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct AnatomyRules {
     /// Of scans.
     pub image: ImageOptions,
-    /// Of scans.
+    /// Of scans; of surfaces the hollows alone.
     pub whole_bone: WholeBone,
     pub osteotomy: Osteotomy,
     /// A segment that is moved before anything is meshed, beside a skin that was scanned by itself.
@@ -79,6 +82,9 @@ pub struct PartedBone {
     pub surfaces: Vec<TriangleSurface>,
     /// Those that tissue slides on, with the mucosa around them; none where surfaces show no enamel.
     pub teeth: Option<Teeth>,
+    /// Nodes of a wall of bone from which all voxels of bone are farther, in edges of voxels, lie on none; infinite where the wall is
+    /// that of given surfaces.
+    pub wall_voxels: f64,
 }
 
 /// Soft tissue that is ready to be a case.
@@ -131,7 +137,7 @@ pub fn part_bone(scan: &ImageVolume, rules: &AnatomyRules) -> Result<PartedBone,
 fn parted(bone: &BoneImage<'_>, osteotomy: &Osteotomy) -> Result<PartedBone, AnatomyError> {
     let labelled = label(bone, osteotomy)?;
     let surfaces = surfaces_of(bone, osteotomy, &labelled);
-    Ok(PartedBone { labelled, surfaces, teeth: None })
+    Ok(PartedBone { labelled, surfaces, teeth: None, wall_voxels: WALL_VOXELS })
 }
 
 /// A closed surface for each segment, in their order.
@@ -151,7 +157,7 @@ pub fn build(
     rules: &AnatomyRules,
     progress: &dyn Progress,
 ) -> Result<Anatomy, AnatomyError> {
-    let PartedBone { labelled: bone, surfaces: bones, teeth } = bone;
+    let PartedBone { labelled: bone, surfaces: bones, teeth, wall_voxels } = bone;
     let mut settings = rules.meshing.clone();
     settings.size.regions.extend(size::around_segments(&bone, settings.size.finest));
     let finest = settings.size.finest;
@@ -162,9 +168,11 @@ pub fn build(
     if skin.is_empty() {
         return Err(AnatomyError::NoSkin { tissue_ml: tissue.report.volume / 1000.0 });
     }
-    let classes = classes(&tissue, &bone, teeth.as_ref(), rules);
+    let classes = classes(&tissue, (&bone, wall_voxels), teeth.as_ref(), rules);
     let mut warnings = classes.warnings.clone();
+    warnings.extend(off_bone(&classes));
     warnings.extend(left_out::left_out_of_mesh(&tissue.report));
+    warnings.extend(left_out::thinner_than_cells(&tissue.report, bone.labels.volume()));
     if rules.teeth_slide && teeth.is_none() && !bone.segments.is_empty() {
         warnings.push(teeth_joined());
     }
@@ -233,6 +241,16 @@ fn unmeshed(name: &str, volume: &VolumeMesh) -> Option<Warning> {
     (!has_nodes).then(|| Warning::new("segment-without-nodes", detail))
 }
 
+/// Nodes on what ends tissue as bone does, without bone behind it.
+fn off_bone(classes: &NodeClasses) -> Option<Warning> {
+    let nodes = classes.without_bone;
+    let detail = format!(
+        "{nodes} nodes lie on the wall of an airway or a cavity beside bone, or on bone too thin for its voxels, with no bone right \
+         behind them: they are joined to none, and are free"
+    );
+    (nodes > 0).then(|| Warning::new("nodes-off-bone", detail).with("nodes", nodes as f64))
+}
+
 /// Segments that touch other bone where nothing is cut, as teeth that meet do. Bone that stays touches sawdust and what is loose
 /// everywhere.
 fn touching(bone: &Labelled) -> Vec<Warning> {
@@ -259,7 +277,7 @@ fn touching(bone: &Labelled) -> Vec<Warning> {
 
 fn classes(
     tissue: &TissueMesh,
-    bone: &Labelled,
+    (bone, wall_voxels): (&Labelled, f64),
     teeth: Option<&Teeth>,
     rules: &AnatomyRules,
 ) -> NodeClasses {
@@ -271,7 +289,7 @@ fn classes(
     let marks: Vec<Option<Boundary>> = tissue.boundaries.iter().map(first).collect();
     let reach = BEHIND * bone.labels.placement().steps.iter().sum::<Vector>().norm();
     let contact = BoneContact {
-        behind: &|place, normal| bone.labels.nearest(place, normal, reach),
+        behind: &|place, normal| bone.labels.nearest_within(place, normal, reach, wall_voxels),
         slides: &|place| teeth.is_some_and(|teeth| teeth.near(place)),
     };
     let class_rules = ClassRules {

@@ -4,7 +4,7 @@
 //! the deeper bone wins. Clipping triangles instead would need surfaces without open edges, which those of real heads have.
 
 use super::{AnatomyError, PartedBone, parted};
-use crate::domain::{Assessment, BoneDepths, SurfaceDomain, SurfaceName};
+use crate::domain::{Assessment, BoneDepths, Hollow, Overlap, SurfaceDomain, SurfaceName};
 use crate::mesh::{TriangleSurface, Warning};
 use crate::osteotomy::Osteotomy;
 use crate::osteotomy::bone_image::BoneImage;
@@ -15,6 +15,8 @@ const SAME_VOLUME: f64 = 0.02;
 /// Bone is reported that lies outside the skin with more of it, as a share, and farther, in mm.
 const OUTSIDE: f64 = 0.03;
 const OFF_SKIN_MM: f64 = 2.0;
+/// Smaller hollows of a bone are not told, in ml.
+const LEAST_HOLLOW: f64 = 0.1;
 /// More of the inside than this is told to be uncertain.
 const CERTAIN: f64 = 1e-3;
 
@@ -24,7 +26,8 @@ pub fn part_by_cuts(
     osteotomy: &Osteotomy,
 ) -> Result<PartedBone, AnatomyError> {
     let depths = domain.bone_depths();
-    parted(&BoneImage { image: &depths.image, threshold: 0.0 }, osteotomy)
+    let parted = parted(&BoneImage { image: &depths.image, threshold: 0.0 }, osteotomy)?;
+    Ok(PartedBone { wall_voxels: f64::INFINITY, ..parted })
 }
 
 /// Takes each bone of a body between surfaces as the segment of its number.
@@ -37,7 +40,7 @@ pub fn take_as_segments(
     let bone = BoneImage { image: &image, threshold: 0.0 };
     let labelled = label_given(&bone, segments, |voxel| Some(usize::from(deepest[voxel])))?;
     let surfaces = bones.iter().map(|&bone| bone.clone()).collect();
-    Ok(PartedBone { labelled, surfaces, teeth: None })
+    Ok(PartedBone { labelled, surfaces, teeth: None, wall_voxels: f64::INFINITY })
 }
 
 /// Bones of which a part lies outside the skin.
@@ -56,6 +59,43 @@ pub fn outside(domain: &SurfaceDomain) -> Vec<Warning> {
         warning.with("outside", by.outside).with("farthest_mm", by.farthest)
     })
     .collect()
+}
+
+/// Bones that lie in one another.
+pub fn overlapping(domain: &SurfaceDomain) -> Vec<Warning> {
+    let warning = |overlap: &Overlap| {
+        let [one, other] = overlap.bones.map(SurfaceName::Bone);
+        let volume_ml = overlap.volume / 1000.0;
+        let [x, y, z] = overlap.centre.into();
+        let detail = format!(
+            "{one} and {other} overlap: {volume_ml:.1} ml around ({x:.0}, {y:.0}, {z:.0}) mm lie in both, and belong to the one that \
+             lies within the other, else to that in which they lie deeper"
+        );
+        Warning::new("surfaces-overlap", detail).with("volume_ml", volume_ml)
+    };
+    domain.overlaps().iter().map(warning).collect()
+}
+
+/// Bones with hollows, which hold no tissue.
+pub fn hollow(domain: &SurfaceDomain) -> Vec<Warning> {
+    let ml = |mm3: f64| mm3 / 1000.0;
+    let what = match domain.is_solid() {
+        true => "are bone of it",
+        false => "hold no tissue, and are neither meshed nor part of its volume",
+    };
+    let warning = |(number, hollows): (usize, &[Hollow])| {
+        let all = ml(hollows.iter().map(|hollow| hollow.volume).sum());
+        let largest = hollows.first().filter(|_| all >= LEAST_HOLLOW)?;
+        let [x, y, z] = largest.centre.into();
+        let (name, count, most) = (SurfaceName::Bone(number), hollows.len(), ml(largest.volume));
+        let detail = format!(
+            "{name}: {count} hollows of {all:.1} ml that it encloses on all sides {what}; the largest has {most:.1} ml around \
+             ({x:.0}, {y:.0}, {z:.0}) mm"
+        );
+        let warning = Warning::new("bone-hollow", detail).with("volume_ml", all);
+        Some(warning.with("hollows", count as f64))
+    };
+    domain.hollows().enumerate().filter_map(warning).collect()
 }
 
 /// What was mended of the surfaces of a body, and what of them could not be: a warning for each that is not whole.

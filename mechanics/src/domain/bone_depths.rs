@@ -18,13 +18,16 @@ const COARSER: f64 = 1.02;
 /// Within so many edges of voxels from a surface depths are exact. Farther outside they are not distinguished.
 const NEAR: f64 = 2.0;
 
+/// A bone of which more, as a share, lies in another lies within it.
+const WITHIN: f64 = 0.9;
+
 /// Bone between surfaces on a grid.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BoneDepths {
     /// From each voxel to the nearest surface in mm, to half a voxel: positive in bone, no less than two voxels
     /// below zero.
     pub image: ImageVolume,
-    /// The number of the bone in which each voxel lies deepest.
+    /// The number of the bone that each voxel belongs to, or is nearest to.
     pub deepest: Vec<u16>,
 }
 
@@ -38,17 +41,19 @@ struct Grid {
 impl SurfaceDomain {
     /// The depths of its bones on a grid of cubes about all of them. Without bones those of one far outside.
     pub fn bone_depths(&self) -> BoneDepths {
-        let boxes = self.bones.iter().map(|bone| bone.tree.bounds());
+        let boxes = self.bone_shells().map(|bone| bone.tree.bounds());
         let around = boxes.reduce(|(low, high), (a, b)| (low.inf(&a), high.sup(&b)));
         let grid = Grid::around(around.unwrap_or_default());
         let count: usize = grid.size.iter().product();
         let near = NEAR * grid.edge;
+        let order = Precedence::of(self);
         let deepest = |voxel: usize| -> (f32, u16) {
             let point = grid.centre(voxel);
-            let depths = self.bones.iter().map(|bone| depth(bone, &point, near));
-            let numbered = depths.zip(0u16..);
-            let most = numbered.reduce(|most, one| if one.0 > most.0 { one } else { most });
-            most.map_or((-1.0, 0), |(depth, bone)| (depth as f32, bone))
+            let depths = self.bone_shells().map(|bone| depth(bone, &point, near));
+            let depths: Vec<f64> = depths.collect();
+            let most = depths.iter().copied().reduce(f64::max).unwrap_or(-1.0);
+            let owner = (0..depths.len()).reduce(|own, next| order.owner(&depths, own, next));
+            (most as f32, owner.unwrap_or_default() as u16)
         };
         let (mut depths, deepest): (Vec<f32>, Vec<u16>) =
             (0..count).into_par_iter().map(deepest).unzip();
@@ -57,6 +62,45 @@ impl SurfaceDomain {
         let placement = Placement { origin: grid.low, steps };
         let image = ImageVolume::new(grid.size, placement, Voxels::F32(depths));
         BoneDepths { image: image.expect("cubes of finite depths are an image"), deepest }
+    }
+}
+
+/// Which of several bones a place belongs to that lies in more than one: the one that lies within the other, else the one in which it
+/// lies deeper, else the smaller. The order in which bones are given decides between equal ones alone.
+struct Precedence {
+    /// In mm³.
+    volumes: Vec<f64>,
+    /// For each bone those that it lies within.
+    within: Vec<Vec<bool>>,
+}
+
+impl Precedence {
+    fn of(domain: &SurfaceDomain) -> Precedence {
+        let bones: Vec<&Shell> = domain.bone_shells().collect();
+        let volumes: Vec<f64> = domain.assessments()[1..].iter().map(|of| of.volume).collect();
+        let lies_within = |one: usize, other: usize| {
+            one != other
+                && volumes[one] < volumes[other]
+                && bones[one].share(|point| bones[other].value(point) > 0.0) > WITHIN
+        };
+        let all = 0..bones.len();
+        let within =
+            all.clone().map(|one| all.clone().map(|other| lies_within(one, other)).collect());
+        Precedence { within: within.collect(), volumes }
+    }
+
+    fn owner(&self, depths: &[f64], one: usize, other: usize) -> usize {
+        if depths[other] > 0.0 && self.within[other][one] {
+            return other;
+        }
+        if depths[one] > 0.0 && self.within[one][other] {
+            return one;
+        }
+        let deeper = depths[other].total_cmp(&depths[one]);
+        match deeper.then(self.volumes[one].total_cmp(&self.volumes[other])).is_gt() {
+            true => other,
+            false => one,
+        }
     }
 }
 

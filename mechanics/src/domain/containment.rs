@@ -5,7 +5,7 @@
 
 use rayon::prelude::*;
 
-use super::shell::Shell;
+use super::shell::{BoneShell, Shell};
 use super::surface_error::{SurfaceDomainError, SurfaceName};
 use crate::mesh::Vector;
 
@@ -30,14 +30,14 @@ pub struct Containment {
 /// The containment of each bone, and the share of the inside of the skin that is free of bone; refused where the skin leaves no tissue or a bone lies elsewhere.
 pub(super) fn contained(
     skin: &Shell,
-    bones: &[Shell],
+    bones: &[BoneShell],
 ) -> Result<(Vec<Containment>, f64), SurfaceDomainError> {
-    let free = skin.share(|point| bones.iter().all(|bone| bone.value(point) <= 0.0));
-    let exchanged = bones.iter().any(|bone| reaches_around(bone, skin));
+    let free = skin.share(|point| bones.iter().all(|bone| bone.solid.value(point) <= 0.0));
+    let exchanged = bones.iter().any(|bone| reaches_around(&bone.solid, skin));
     if free < if exchanged { LEAST_FREE_AROUND } else { LEAST_FREE } {
         return Err(SurfaceDomainError::NoTissue { percent: 100.0 * (1.0 - free), exchanged });
     }
-    let each = bones.iter().enumerate();
+    let each = bones.iter().map(BoneShell::as_given).enumerate();
     let each = each.map(|(number, bone)| {
         let found = contained_bone(skin, bone);
         match found.outside > 1.0 - LEAST_INSIDE {

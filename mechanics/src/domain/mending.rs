@@ -8,6 +8,7 @@
 use std::collections::HashSet;
 
 use super::facets::{Edges, Patches, Pieces};
+use super::hollows::{Hollows, hollows};
 use super::lids::{Open, lids};
 use super::second_sheets::{SecondSheets, second_sheets};
 use super::triangle::{Corners, SolidAngles};
@@ -61,6 +62,8 @@ pub(super) struct RepairedSurface {
     pub wide_holes: usize,
     /// By how much the volumes of pieces that stood there twice differ, in mm³.
     pub second_sheets_differ: f64,
+    /// What it encloses without being its inside; walls by their place among the facets.
+    pub hollows: Hollows,
 }
 
 /// Mends a surface whose corners are finite points of it.
@@ -86,8 +89,9 @@ pub(super) fn mend(surface: &TriangleSurface) -> RepairedSurface {
     let (closed, [lids, wide_holes]) = closed.with_lids(surface, &edges);
     mending.lids = lids;
     let edges = if lids == 0 { edges } else { Edges::new(&closed.triangles) };
+    let open = edges.open_lengths(&closed.corners, &closed.turned);
+    let hollows = hollows(&closed.oriented(), &edges, &open);
     let Closed { numbers, corners, turned, .. } = closed;
-    let open = edges.open_lengths(&corners, &turned);
     let open_edges = edges.open_count(&turned);
     let facets = facets(&corners, &numbers, &turned, &open);
     let pieces = pieces.count;
@@ -99,6 +103,7 @@ pub(super) fn mend(surface: &TriangleSurface) -> RepairedSurface {
         opening,
         second_sheets_differ: differ,
         wide_holes,
+        hollows,
     }
 }
 

@@ -3,7 +3,8 @@
 use rayon::prelude::*;
 
 use super::assessment::{Assessed, Assessment, assess};
-use super::mending::{MOST_OPEN, mend};
+use super::hollows::Hollow;
+use super::mending::{MOST_OPEN, RepairedSurface, mend};
 use super::surface_error::{SurfaceDomainError, SurfaceName};
 use super::triangle_tree::TriangleTree;
 use super::winding_cells::WindingCells;
@@ -38,11 +39,62 @@ pub(super) struct Shell {
     pub(super) inside: Vec<Vector>,
 }
 
+/// A bone or a skin as it was given, and with its hollows as part of it.
+#[derive(Clone, Debug)]
+pub(super) struct BoneShell {
+    /// Without the walls of hollows.
+    pub(super) solid: Shell,
+    /// With them; none where there are no hollows.
+    hollow: Option<Shell>,
+    /// The largest first.
+    pub(super) hollows: Vec<Hollow>,
+}
+
+impl BoneShell {
+    pub(super) fn new(
+        surface: &TriangleSurface,
+        name: SurfaceName,
+    ) -> Result<(BoneShell, Assessment), SurfaceDomainError> {
+        let (given, assessment, mended) = Shell::assessed(surface, name)?;
+        let hollows = mended.hollows.list;
+        if hollows.is_empty() {
+            return Ok((BoneShell { solid: given, hollow: None, hollows }, assessment));
+        }
+        let is_wall = |n: &usize| mended.hollows.walls.binary_search(n).is_ok();
+        let facets = mended.facets.iter().enumerate().filter(|(n, _)| !is_wall(n));
+        let tree = TriangleTree::new(facets.map(|(_, facet)| facet.clone()).collect());
+        let cells = WindingCells::new(&tree);
+        let (threshold, inside) = (given.threshold, given.inside.clone());
+        let solid = Shell { tree, cells, threshold, inside };
+        let bone = BoneShell { solid, hollow: Some(given), hollows };
+        Ok((bone, assessment))
+    }
+
+    /// How much of what it goes around its largest hollow is.
+    pub(super) fn hollow_share(&self, found: &Assessment) -> f64 {
+        let hollow = self.hollows.first().map_or(0.0, |hollow| hollow.volume);
+        hollow / (hollow + found.volume)
+    }
+
+    /// With the walls of its hollows.
+    pub(super) fn as_given(&self) -> &Shell {
+        self.hollow.as_ref().unwrap_or(&self.solid)
+    }
+}
+
 impl Shell {
     pub(super) fn new(
         surface: &TriangleSurface,
         name: SurfaceName,
     ) -> Result<(Shell, Assessment), SurfaceDomainError> {
+        let (shell, assessment, _) = Shell::assessed(surface, name)?;
+        Ok((shell, assessment))
+    }
+
+    fn assessed(
+        surface: &TriangleSurface,
+        name: SurfaceName,
+    ) -> Result<(Shell, Assessment, RepairedSurface), SurfaceDomainError> {
         check(surface, name)?;
         let mended = mend(surface);
         let tree = TriangleTree::new(mended.facets.clone());
@@ -58,7 +110,7 @@ impl Shell {
         };
         refuse_uncertain_inside(&assessment, name)?;
         let threshold = 0.5 * assessment.level;
-        Ok((Shell { tree, cells, threshold, inside }, assessment))
+        Ok((Shell { tree, cells, threshold, inside }, assessment, mended))
     }
 
     /// Positive inside, at most 1 in size.

@@ -8,8 +8,9 @@ use super::airway_map::AirwayMap;
 use super::assessment::Assessment;
 use super::containment::{Containment, contained};
 use super::cut_ends::cut_ends;
+use super::hollows::Hollow;
 use super::limit::{Limit, Limits};
-use super::shell::{Shell, Side};
+use super::shell::{BoneShell, Shell, Side};
 use super::surface_error::{SurfaceDomainError, SurfaceName};
 use super::triangle_tree::Nearest;
 use super::{Boundary, Coverage, Crossing, Domain, root};
@@ -25,6 +26,9 @@ const MOST_BETWEEN: f64 = 0.08;
 /// much.
 const MOST_BETWEEN_OF_TISSUE: f64 = 0.04;
 
+/// An inner wall of a skin that encloses more of what the outer one goes around, as a share, is no airway.
+const MOST_HOLLOW: f64 = 0.3;
+
 /// What holes without a lid leave uncertain of more of the tissue is refused: the volume is to be right within as much.
 const MOST_IN_HOLES: f64 = 0.01;
 
@@ -32,7 +36,10 @@ const MOST_IN_HOLES: f64 = 0.01;
 #[derive(Clone, Debug)]
 pub struct SurfaceDomain {
     skin: Shell,
-    pub(super) bones: Vec<Shell>,
+    /// Tissue ends at them; what they enclose is none.
+    bones: Vec<BoneShell>,
+    /// Whether the hollows of bones are bone of theirs.
+    is_solid: bool,
     /// Numbers of the triangles of the skin where the scan ended, ascending.
     cut: Vec<u32>,
     airways: AirwayMap,
@@ -49,20 +56,56 @@ impl SurfaceDomain {
         limits: &[Limit],
     ) -> Result<SurfaceDomain, SurfaceDomainError> {
         let limits = Limits::new(limits)?;
-        let (skin, of_skin) = Shell::new(skin, SurfaceName::Skin)?;
+        let (skin, of_skin) = BoneShell::new(skin, SurfaceName::Skin)?;
+        let (skin, walls) = (skin.as_given().clone(), skin.hollow_share(&of_skin));
         let mut assessments = vec![of_skin];
         let mut shells = Vec::with_capacity(bones.len());
         for (number, bone) in bones.iter().enumerate() {
-            let (shell, of_bone) = Shell::new(bone, SurfaceName::Bone(number))?;
+            let (shell, of_bone) = BoneShell::new(bone, SurfaceName::Bone(number))?;
             shells.push(shell);
             assessments.push(of_bone);
         }
-        let (containments, free) = contained(&skin, &shells)?;
+        let contained = contained(&skin, &shells).map_err(|error| within_walls(error, walls));
+        let (containments, free) = contained?;
         refuse_open(&assessments, of_skin.volume * free)?;
         let ends = cut_ends(skin.tree.facets(), skin.tree.bounds(), of_skin.level);
         let airways = AirwayMap::new(ends.bounds, ends.faces, |point| skin.value(point) > 0.0);
         let cut = ends.triangles;
-        Ok(SurfaceDomain { skin, bones: shells, cut, airways, limits, assessments, containments })
+        Ok(SurfaceDomain {
+            skin,
+            bones: shells,
+            is_solid: false,
+            cut,
+            airways,
+            limits,
+            assessments,
+            containments,
+        })
+    }
+
+    /// With the hollows of bones as bone of theirs, for cuts and volumes. No tissue lies in them either way.
+    #[must_use]
+    pub fn solid(self) -> SurfaceDomain {
+        SurfaceDomain { is_solid: true, ..self }
+    }
+
+    /// Whether the hollows of bones are bone of theirs.
+    pub fn is_solid(&self) -> bool {
+        self.is_solid
+    }
+
+    /// The hollows of each bone, the largest first.
+    pub fn hollows(&self) -> impl Iterator<Item = &[Hollow]> {
+        self.bones.iter().map(|bone| &bone.hollows[..])
+    }
+
+    /// The bones, with or without their hollows.
+    pub(super) fn bone_shells(&self) -> impl Iterator<Item = &Shell> {
+        self.bones.iter().map(|bone| if self.is_solid { &bone.solid } else { bone.as_given() })
+    }
+
+    fn solids(&self) -> impl Iterator<Item = &Shell> {
+        self.bones.iter().map(|bone| &bone.solid)
     }
 
     /// What was found and mended: the skin's, then those of the bones.
@@ -98,7 +141,7 @@ impl SurfaceDomain {
         let at = |part: f64| inside + (outside - inside) * part;
         let hits = self.skin.tree.hits(inside, outside);
         let skin = hits.map(|hit| (hit.part, self.boundary_of(hit.number, &at(hit.part))));
-        let bones = self.bones.iter().flat_map(|bone| bone.tree.hits(inside, outside));
+        let bones = self.solids().flat_map(|bone| bone.tree.hits(inside, outside));
         let mut all: Vec<(f64, Boundary)> =
             skin.chain(bones.map(|hit| (hit.part, Boundary::Bone))).collect();
         if self.limits.value(outside) <= 0.0 {
@@ -117,7 +160,7 @@ impl SurfaceDomain {
         let boundary = if self.skin.value(outside) <= 0.0 {
             let nearest = self.skin.tree.nearest(&point, |_| true);
             nearest.map_or(Boundary::Skin, |nearest| self.boundary_of(nearest.number, &point))
-        } else if self.bones.iter().any(|bone| bone.value(outside) > 0.0) {
+        } else if self.solids().any(|bone| bone.value(outside) > 0.0) {
             Boundary::Bone
         } else {
             Boundary::Cut
@@ -135,12 +178,22 @@ impl SurfaceDomain {
             Boundary::Skin | Boundary::Airway => of_skin(false),
             Boundary::Cut => of_skin(true),
             Boundary::Bone => {
-                let each = self.bones.iter();
+                let each = self.solids();
                 let found =
                     each.filter_map(|bone| Some((bone, bone.tree.nearest(point, |_| true)?)));
                 found.min_by(|a, b| a.1.distance.total_cmp(&b.1.distance))
             }
         }
+    }
+}
+
+/// Bone that lies outside a skin, because that has an inner wall around the bone as well as an outer one.
+fn within_walls(error: SurfaceDomainError, walls: f64) -> SurfaceDomainError {
+    match error {
+        SurfaceDomainError::BoneOutside { .. } if walls > MOST_HOLLOW => {
+            SurfaceDomainError::TwoWalls { surface: SurfaceName::Skin, percent: 100.0 * walls }
+        }
+        other => other,
     }
 }
 
@@ -177,7 +230,7 @@ impl Domain for SurfaceDomain {
             return Coverage::Outside;
         }
         let mut is_free = true;
-        for bone in &self.bones {
+        for bone in self.solids() {
             match bone.side(centre, radius) {
                 Some(Side::In) => return Coverage::Outside,
                 Some(Side::Out) => {}
@@ -195,7 +248,7 @@ impl Domain for SurfaceDomain {
         if start <= 0.0 {
             return start;
         }
-        self.bones.iter().fold(start, |least, bone| least.min(-bone.value(point)))
+        self.solids().fold(start, |least, bone| least.min(-bone.value(point)))
     }
 
     fn crossing(&self, inside: &Vector, outside: &Vector) -> Crossing {
@@ -237,7 +290,7 @@ impl Domain for SurfaceDomain {
     fn thickness(&self, point: &Vector) -> f64 {
         let distance = |shell: &Shell| shell.tree.nearest(point, |_| true);
         let Some(skin) = distance(&self.skin) else { return f64::INFINITY };
-        let bones = self.bones.iter().filter_map(distance);
+        let bones = self.solids().filter_map(distance);
         let bone = bones.min_by(|a, b| a.distance.total_cmp(&b.distance));
         let sum = bone.map_or(f64::INFINITY, |bone| skin.distance + bone.distance);
         let nearest = bone.filter(|bone| bone.distance < skin.distance).unwrap_or(skin);
@@ -252,7 +305,7 @@ impl SurfaceDomain {
         let reach = (high - low).norm();
         let Some(way) = (point - nearest.point).try_normalize(1e-9) else { return f64::INFINITY };
         let end = point + way * reach;
-        let shells = self.bones.iter().chain([&self.skin]);
+        let shells = self.solids().chain([&self.skin]);
         let hits = shells.flat_map(|shell| shell.tree.hits(point, &end));
         let next = hits.map(|hit| hit.part * reach).reduce(f64::min);
         next.map_or(f64::INFINITY, |next| nearest.distance + next)

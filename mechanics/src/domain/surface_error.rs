@@ -58,6 +58,10 @@ pub enum SurfaceDomainError {
     )]
     Doubled { surface: SurfaceName, percent: f64 },
     #[error(
+        "{surface}: it has two walls, and {percent:.0} % of what it goes around lies within the inner one, outside of its body: give its outer wall alone"
+    )]
+    TwoWalls { surface: SurfaceName, percent: f64 },
+    #[error(
         "{surface}: its triangles have {times:.0} times the area of its box; more than 20 times is no surface of a body: is it cut into many layers, or does the file hold several bodies? Give its outer surface alone"
     )]
     Tangled { surface: SurfaceName, times: f64 },
@@ -94,6 +98,7 @@ impl SurfaceDomainError {
             | SurfaceDomainError::Uncertain { surface, .. }
             | SurfaceDomainError::Open { surface, .. }
             | SurfaceDomainError::Doubled { surface, .. }
+            | SurfaceDomainError::TwoWalls { surface, .. }
             | SurfaceDomainError::Tangled { surface, .. }
             | SurfaceDomainError::BoneOutside { surface, .. } => Some(*surface),
             SurfaceDomainError::NoTissue { .. } | SurfaceDomainError::Limit(_) => None,

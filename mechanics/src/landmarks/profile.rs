@@ -3,6 +3,10 @@
 //! From below, the profile comes forward to the pogonion, back to the sublabiale, forward to the lips, back to the
 //! subnasale and forward to the pronasale. Turns by less than 1.5 mm do not count. Closed lips may turn once between
 //! themselves, at the stomion.
+//!
+//! Where the fold between chin and lower lip is shallower, the two are one turn, and the stomion would pass for the sublabiale.
+//! Turns of .4 mm below it tell the fold; without any, a "fold" farther from the chin than from the nose is the stomion, and the sublabiale
+//! is set between it and the chin.
 
 use std::ops::RangeInclusive;
 
@@ -13,6 +17,14 @@ use crate::mesh::{TriangleSurface, Vector};
 const STEP: f64 = 1.0;
 /// A profile that turns back by less has not turned, in mm.
 const LEAST_TURN: f64 = 1.5;
+/// Below the upper fold, a fold of the lower lip is told from this depth on, in mm.
+const LEAST_FOLD: f64 = 0.4;
+/// From lower lip to chin it is this part of an upper lip at least: the two are alike in adults, some 21 mm.
+const LEAST_CHIN: f64 = 0.5;
+/// A chin is no farther behind the lower lip, in mm; a throat is.
+const MOST_BEHIND: f64 = 8.0;
+/// From the stomion a sublabiale lies at this share of the way to the pogonion: 17 of 30 mm in adults.
+const FOLD_SHARE: f64 = 0.57;
 /// What lies farther behind the foremost point is no face but a neck, or the back of a head whose front has a gap, in mm.
 const FRONT: f64 = 90.0;
 /// Landmarks have the skin between them, but for so much of it, in mm.
@@ -67,6 +79,9 @@ pub struct ProfileLandmarks {
     pub subnasale: ProfilePoint,
     /// The tip of the nose, where it is seen.
     pub pronasale: Option<ProfilePoint>,
+    /// How deep the fold at the sublabiale is, in mm, if that is too little for a turn: the border of chin and lips is doubtful. 0 where there
+    /// is none.
+    pub shallow_fold: Option<f64>,
 }
 
 impl Profile {
@@ -110,22 +125,18 @@ impl Profile {
             .enumerate()
             .max_by(|a, b| a.1.advance.total_cmp(&b.1.advance))
             .ok_or(ProfileError::Empty)?;
-        let turns = turns(&self.points[..=foremost.0]);
+        let below = &self.points[..=foremost.0];
+        let turns = turns(below, LEAST_TURN);
         match turns[..] {
-            [pogonion, sublabiale, _, subnasale, pronasale]
-            | [pogonion, sublabiale, _, _, _, subnasale, pronasale] => {
-                let above_mm = pronasale.height - subnasale.height;
-                if above_mm > HIGHEST_TIP {
-                    return Err(ProfileError::NoNose { above_mm });
-                }
-                let behind_mm = pronasale.advance - subnasale.advance;
-                if behind_mm > LONGEST_NOSE {
-                    return Err(ProfileError::NoBase { behind_mm });
-                }
-                self.check_gaps(pogonion.height..=pronasale.height)?;
-                let pronasale = Some(pronasale);
-                Ok(ProfileLandmarks { pogonion, sublabiale, subnasale, pronasale })
+            [chin, fold, _, subnasale, pronasale] => {
+                let chin = Chin::of(below, chin, fold, &subnasale);
+                self.checked(chin, subnasale, pronasale)
             }
+            [pogonion, sublabiale, _, _, _, subnasale, pronasale] => self.checked(
+                Chin { pogonion, sublabiale, shallow_fold: None },
+                subnasale,
+                pronasale,
+            ),
             _ => {
                 let (forward, back) = (turns.len().div_ceil(2), turns.len() / 2);
                 Err(ProfileError::NoFace { forward, back })
@@ -134,7 +145,65 @@ impl Profile {
     }
 }
 
+/// What bounds a chin.
+struct Chin {
+    pogonion: ProfilePoint,
+    sublabiale: ProfilePoint,
+    shallow_fold: Option<f64>,
+}
+
+impl Chin {
+    /// Of the first two turns of a profile, of which the second is the sublabiale or, where its fold is shallow, the stomion.
+    fn of(
+        profile: &[ProfilePoint],
+        chin: ProfilePoint,
+        fold: ProfilePoint,
+        subnasale: &ProfilePoint,
+    ) -> Chin {
+        let lower: Vec<ProfilePoint> =
+            profile.iter().filter(|point| point.height <= fold.height).copied().collect();
+        let fine = turns(&lower, LEAST_FOLD);
+        let upper_lip = subnasale.height - fold.height;
+        if let [.., pogonion, sublabiale, lip] = fine[..] {
+            let far = lip.height - pogonion.height >= LEAST_CHIN * upper_lip;
+            if far && lip.advance - pogonion.advance <= MOST_BEHIND {
+                let depth = lip.advance.min(pogonion.advance) - sublabiale.advance;
+                return Chin { pogonion, sublabiale, shallow_fold: Some(depth) };
+            }
+        }
+        if fold.height - chin.height <= upper_lip {
+            return Chin { pogonion: chin, sublabiale: fold, shallow_fold: None };
+        }
+        let height = fold.height + FOLD_SHARE * (chin.height - fold.height);
+        let off = |point: &&ProfilePoint| (point.height - height).abs();
+        let nearest = lower.iter().min_by(|a, b| off(a).total_cmp(&off(b)));
+        let sublabiale = nearest.copied().unwrap_or(fold);
+        Chin { pogonion: chin, sublabiale, shallow_fold: Some(0.0) }
+    }
+}
+
 impl Profile {
+    /// Landmarks that are those of a face.
+    fn checked(
+        &self,
+        chin: Chin,
+        subnasale: ProfilePoint,
+        pronasale: ProfilePoint,
+    ) -> Result<ProfileLandmarks, ProfileError> {
+        let Chin { pogonion, sublabiale, shallow_fold } = chin;
+        let above_mm = pronasale.height - subnasale.height;
+        if above_mm > HIGHEST_TIP {
+            return Err(ProfileError::NoNose { above_mm });
+        }
+        let behind_mm = pronasale.advance - subnasale.advance;
+        if behind_mm > LONGEST_NOSE {
+            return Err(ProfileError::NoBase { behind_mm });
+        }
+        self.check_gaps(pogonion.height..=pronasale.height)?;
+        let pronasale = Some(pronasale);
+        Ok(ProfileLandmarks { pogonion, sublabiale, subnasale, pronasale, shallow_fold })
+    }
+
     /// Between these heights the profile is whole.
     fn check_gaps(&self, heights: RangeInclusive<f64>) -> Result<(), ProfileError> {
         let inside: Vec<f64> = self
@@ -167,8 +236,8 @@ fn crossing(corners: &[Vector; 3], plane: &MidPlane) -> Option<[ProfilePoint; 2]
     }
 }
 
-/// Foremost and hindmost points by turns, from the first foremost one to the last.
-fn turns(points: &[ProfilePoint]) -> Vec<ProfilePoint> {
+/// Foremost and hindmost points by turns of at least so many mm, from the first foremost one to the last.
+fn turns(points: &[ProfilePoint], least: f64) -> Vec<ProfilePoint> {
     let mut turns = Vec::new();
     let Some(&first) = points.first() else { return turns };
     let (mut best, mut seeks_front) = (first, true);
@@ -176,7 +245,7 @@ fn turns(points: &[ProfilePoint]) -> Vec<ProfilePoint> {
         let sign = if seeks_front { 1.0 } else { -1.0 };
         if sign * (point.advance - best.advance) >= 0.0 {
             best = point;
-        } else if sign * (best.advance - point.advance) >= LEAST_TURN {
+        } else if sign * (best.advance - point.advance) >= least {
             turns.push(best);
             (best, seeks_front) = (point, !seeks_front);
         }

@@ -1,11 +1,14 @@
 //! Gaps and sheets of tissue thinner than a cell: lattice edges with both ends on one side that cross the other.
+//!
+//! Nodes and middles of edges are spread evenly over the lattice: of a cube of it, the node in its centre stands for one half and each of its
+//! corners for a sixteenth of its volume, and each middle of its fourteen edges for as much of it.
 
 use super::error::MeshingError;
 use super::lattice::Lattice;
 use super::missed::Edge;
 use super::octree::Leaves;
 use super::watch::Watch;
-use crate::domain::{Coverage, Domain};
+use crate::domain::{Boundary, Coverage, Domain};
 use crate::mesh::Vector;
 use crate::mesh::disjoint_sets::DisjointSets;
 
@@ -16,6 +19,8 @@ const APART: f64 = 3.0;
 const DEEP: f64 = 0.02;
 /// So many gaps are reported.
 const TOLD: usize = 20;
+/// Edges of the lattice for each of its cubes.
+const EDGES: f64 = 14.0;
 
 /// A region where the other side is thinner than a cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,12 +39,23 @@ pub struct Gap {
 pub(super) struct Thin {
     pub gaps: Vec<Gap>,
     pub sheets: Vec<Gap>,
+    /// Of all tissue before it is meshed, in mm³.
+    pub tissue: f64,
+    /// Of all gaps, in mm³.
+    pub filled: f64,
+    /// Of all gaps that are bone, in mm³, and their mean place.
+    pub bone: f64,
+    pub bone_centre: Vector,
 }
 
 /// A place on an edge of the lattice that does not lie on the side of its ends.
 struct EdgeCrossing {
     ends_inside: bool,
     place: Vector,
+    /// What it stands for, in mm³.
+    volume: f64,
+    /// Tissue ends there at bone.
+    at_bone: bool,
 }
 
 /// Candidates of gaps.
@@ -61,17 +77,41 @@ pub(super) fn find(
     let numbers: Vec<u32> = numbers.filter(mixed).collect();
     let search = Search { lattice, leaves, domain };
     let met = watch.map(&numbers, |&number| search.about(number))?;
-    let side = |inside: bool| -> Vec<Vector> {
-        let met = met.iter().flatten().filter(|met| met.ends_inside == inside);
-        met.map(|met| met.place).collect()
-    };
+    let met: Vec<EdgeCrossing> = met.into_iter().flatten().collect();
     let apart = APART * 2.0 * lattice.grid.unit;
-    Ok(Thin { gaps: clusters(&side(true), apart), sheets: clusters(&side(false), apart) })
+    let side = |inside: bool| {
+        let met = met.iter().filter(move |met| met.ends_inside == inside);
+        clusters(&met.map(|met| met.place).collect::<Vec<_>>(), apart)
+    };
+    let gaps = || met.iter().filter(|met| met.ends_inside);
+    let bone: f64 = gaps().filter(|met| met.at_bone).map(|met| met.volume).sum();
+    let moments = gaps().filter(|met| met.at_bone).map(|met| met.place * met.volume);
+    Ok(Thin {
+        gaps: side(true),
+        sheets: side(false),
+        tissue: tissue(lattice, leaves),
+        filled: gaps().map(|met| met.volume).sum(),
+        bone,
+        bone_centre: moments.sum::<Vector>() / bone.max(f64::MIN_POSITIVE),
+    })
+}
+
+/// The volume of the body by the nodes of the lattice that lie in it, in mm³.
+fn tissue(lattice: &Lattice, leaves: &Leaves) -> f64 {
+    let share = |node: u32, of: f64| if lattice.inside[node as usize] { of } else { 0.0 };
+    let volume = |(centre, corners): (usize, &[u32; 8])| {
+        let edge = f64::from(leaves.list[centre].size) * lattice.grid.unit;
+        let corners: f64 = corners.iter().map(|&corner| share(corner, 1.0 / 16.0)).sum();
+        edge.powi(3) * (share(centre as u32, 0.5) + corners)
+    };
+    lattice.corners.iter().enumerate().map(volume).sum()
 }
 
 impl Search<'_> {
     fn about(&self, number: u32) -> Vec<EdgeCrossing> {
-        self.edges(number).into_iter().filter_map(|[from, to]| self.met(from, to)).collect()
+        let cube = f64::from(self.leaves.list[number as usize].size) * self.lattice.grid.unit;
+        let met = |[from, to]: [u32; 2]| self.met(from, to, cube);
+        self.edges(number).into_iter().filter_map(met).collect()
     }
 
     /// From the centre of a leaf to its corners, and those along the axes towards higher coordinates from its lowest corner
@@ -89,14 +129,16 @@ impl Search<'_> {
         edges
     }
 
-    fn met(&self, from: u32, to: u32) -> Option<EdgeCrossing> {
+    fn met(&self, from: u32, to: u32, cube: f64) -> Option<EdgeCrossing> {
         let ends_inside = self.lattice.inside[from as usize];
         if self.lattice.inside[to as usize] != ends_inside {
             return None;
         }
         let ends = [from, to].map(|node| self.lattice.position(node));
         let place = Edge { ends, inside: ends_inside }.missed(self.domain, DEEP)?;
-        Some(EdgeCrossing { ends_inside, place })
+        let at_bone =
+            ends_inside && self.domain.crossing(&ends[0], &place).boundary == Boundary::Bone;
+        Some(EdgeCrossing { ends_inside, place, volume: cube.powi(3) / EDGES, at_bone })
     }
 }
 

@@ -6,6 +6,7 @@ use super::draft::Draft;
 use super::gaps::Gap;
 use super::pieces::Piece;
 use super::shape::dihedral_cosines;
+use crate::mesh::Vector;
 
 /// The dihedral angles of a mesh, in degrees.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -53,6 +54,11 @@ pub struct MeshingReport {
     pub gaps_closed: Vec<Gap>,
     /// Tissue that is thinner than a cell and has been lost, the largest first.
     pub sheets_lost: Vec<Gap>,
+    /// Of all tissue that is thinner than cells and in none, about, in mm³.
+    pub volume_lost: f64,
+    /// Of bone thinner than a cell that has been filled with tissue, in mm³, and its mean place.
+    pub bone_filled: f64,
+    pub bone_filled_centre: Vector,
 }
 
 impl MeshingReport {

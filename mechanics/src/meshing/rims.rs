@@ -2,6 +2,7 @@
 
 use rayon::prelude::*;
 
+use super::boundary_set::BoundarySet;
 use super::draft::{Draft, FACES};
 
 /// A face of one tetrahedron alone.
@@ -44,6 +45,15 @@ pub(super) fn boundary_faces(draft: &Draft) -> Vec<RimFace> {
     faces.par_sort_unstable();
     let alone = faces.chunk_by(|a, b| a.0 == b.0).filter(|same| same.len() == 1);
     alone.map(|same| same[0].1).collect()
+}
+
+/// Nodes that bound no face of the boundary lie on none, as where a gap thinner than a cell was filled around one.
+pub(super) fn clear_inner(draft: &mut Draft, faces: &[RimFace]) {
+    let mut bounds = vec![false; draft.nodes.len()];
+    let nodes = faces.iter().flat_map(|face| face.nodes);
+    nodes.for_each(|node| bounds[node as usize] = true);
+    let inner = draft.boundaries.iter_mut().zip(bounds).filter(|(_, bounds)| !bounds);
+    inner.for_each(|(boundary, _)| *boundary = BoundarySet::NONE);
 }
 
 /// Edges of the boundary that do not lie between exactly two triangles, ascending.

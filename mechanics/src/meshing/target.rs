@@ -1,16 +1,18 @@
 //! The scale of a size field at which a body has about so many tetrahedra.
 //!
 //! The octree of a scale takes a small part of the time that its mesh takes, and its leaves tell how many tetrahedra come of
-//! it. The scale is found by the secant rule on the logarithms of scale and number.
+//! it. The scale is found by the secant rule on the logarithms of scale and number. Large parts of tissue that hang together with the
+//! rest nowhere do not count, unless they are kept.
 
 use super::error::MeshingError;
-use super::grid::Grid;
+use super::grid::{Coordinates, Grid};
 use super::octree::{Leaf, Leaves};
 use super::refine::{PER_CUBE, Refinement};
 use super::settings::MeshingSettings;
 use super::size::SizeField;
 use super::watch::Watch;
 use crate::domain::{Coverage, Domain};
+use crate::mesh::disjoint_sets::DisjointSets;
 
 /// The finest cells of the first scale along the longest side of the body.
 const FIRST: f64 = 32.0;
@@ -27,6 +29,9 @@ const SHOWN: f64 = 1.5;
 /// Tetrahedra at a face against four smaller leaves, beyond the twelve that each leaf is worth.
 const AT_FINER: f64 = 6.0;
 
+/// Pieces of a smaller share of the volume count: they may hang together with the rest by what is thinner than a leaf.
+const LEAST_APART: f64 = 0.02;
+
 /// A scale of the size field, and how many tetrahedra it gives; both as logarithms, the number over the target.
 #[derive(Clone, Copy)]
 struct Trial {
@@ -41,7 +46,8 @@ pub(super) fn size_field(
     watch: &Watch,
 ) -> Result<SizeField, MeshingError> {
     let Some(target) = settings.target else { return Ok(settings.size.clone()) };
-    let search = Search { domain, size: &settings.size, target, watch };
+    let keep_pieces = settings.keep_pieces;
+    let search = Search { domain, size: &settings.size, target, keep_pieces, watch };
     let found = search.scale()?;
     Ok(settings.size.scaled(found.exp()))
 }
@@ -50,6 +56,7 @@ struct Search<'a> {
     domain: &'a dyn Domain,
     size: &'a SizeField,
     target: usize,
+    keep_pieces: bool,
     watch: &'a Watch<'a>,
 }
 
@@ -106,7 +113,10 @@ impl Search<'_> {
 
     /// About how many tetrahedra come of an octree.
     fn tetrahedra(&self, leaves: &Leaves) -> Result<f64, MeshingError> {
-        let inside = self.watch.map(&leaves.list, |leaf| self.is_inside(leaves, leaf))?;
+        let mut inside = self.watch.map(&leaves.list, |leaf| self.is_inside(leaves, leaf))?;
+        if !self.keep_pieces {
+            leave_out_pieces(leaves, &mut inside);
+        }
         let numbers: Vec<u32> = (0..leaves.list.len() as u32).collect();
         let of_leaves = self.watch.map(&numbers, |&leaf| of_leaf(leaves, &inside, leaf))?;
         Ok(of_leaves.into_iter().sum())
@@ -125,6 +135,37 @@ impl Search<'_> {
     }
 }
 
+/// Leaves out large pieces of leaves other than the largest.
+fn leave_out_pieces(leaves: &Leaves, inside: &mut [bool]) {
+    let numbers = || (0..leaves.list.len()).filter(|&number| inside[number]);
+    let mut joined = DisjointSets::new(leaves.list.len());
+    for number in numbers() {
+        let leaf = &leaves.list[number];
+        for (axis, high) in [0, 1, 2].into_iter().flat_map(|axis| [(axis, false), (axis, true)]) {
+            let other = leaves.at(beyond(leaf, axis, high)).filter(|&other| inside[other as usize]);
+            other.into_iter().for_each(|other| joined.join(number as u32, other));
+        }
+    }
+    let mut volumes = vec![0.0; leaves.list.len()];
+    for number in numbers() {
+        let root = joined.root(number as u32) as usize;
+        volumes[root] += f64::from(leaves.list[number].size).powi(3);
+    }
+    let all: f64 = volumes.iter().sum();
+    let largest = volumes.iter().copied().fold(0.0, f64::max);
+    let is_apart = |volume: f64| volume < largest && volume > LEAST_APART * all;
+    let apart: Vec<usize> =
+        numbers().filter(|&n| is_apart(volumes[joined.root(n as u32) as usize])).collect();
+    apart.into_iter().for_each(|number| inside[number] = false);
+}
+
+/// A place in the leaf beside a face of another.
+fn beyond(leaf: &Leaf, axis: usize, high: bool) -> Coordinates {
+    let mut beyond = leaf.corner;
+    beyond[axis] = if high { beyond[axis] + leaf.size } else { beyond[axis].wrapping_sub(1) };
+    beyond
+}
+
 fn of_leaf(leaves: &Leaves, inside: &[bool], number: u32) -> f64 {
     if !inside[number as usize] {
         return 0.0;
@@ -133,10 +174,7 @@ fn of_leaf(leaves: &Leaves, inside: &[bool], number: u32) -> f64 {
     let mut tetrahedra = PER_CUBE;
     for axis in 0..3 {
         for high in [false, true] {
-            let mut beyond = leaf.corner;
-            beyond[axis] =
-                if high { beyond[axis] + leaf.size } else { beyond[axis].wrapping_sub(1) };
-            let other = leaves.at(beyond);
+            let other = leaves.at(beyond(leaf, axis, high));
             let finer = other.is_some_and(|other| leaves.list[other as usize].level > leaf.level);
             let bare = !other.is_some_and(|other| inside[other as usize]);
             tetrahedra += if finer { AT_FINER } else { 0.0 };

@@ -14,6 +14,7 @@ use super::pieces::Piece;
 use super::pinches::Pinched;
 use super::refine::Refinement;
 use super::report::{Angles, MeshingReport};
+use super::rims::clear_inner;
 use super::settings::MeshingSettings;
 use super::size::SizeField;
 use super::warp::Warp;
@@ -89,11 +90,15 @@ pub fn mesh(
     }
     watch.stage()?;
     let faces = check(&draft, !settings.keep_pieces)?;
+    clear_inner(&mut draft, &faces);
+    let volume: f64 = draft.tetrahedra.iter().map(|tet| draft.volume(tet)).sum();
+    let apart: f64 = dropped.iter().map(|piece| piece.volume).sum();
+    let Thin { tissue, filled, .. } = counts.thin;
     let report = MeshingReport {
         nodes: draft.nodes.len(),
         tetrahedra: draft.tetrahedra.len(),
         boundary_triangles: faces.len(),
-        volume: draft.tetrahedra.iter().map(|tet| draft.volume(tet)).sum(),
+        volume,
         raw_angles,
         angles: Angles::of(&draft),
         finest: size.finest,
@@ -108,6 +113,9 @@ pub fn mesh(
         dropped,
         gaps_closed: counts.thin.gaps,
         sheets_lost: counts.thin.sheets,
+        volume_lost: (tissue + filled - volume - apart).max(0.0),
+        bone_filled: counts.thin.bone,
+        bone_filled_centre: counts.thin.bone_centre,
     };
     watch.end();
     Ok(finished(draft, &regions, report))

@@ -91,6 +91,17 @@ impl BoneLabels {
     /// The bone whose voxel is nearest to `place`, of those with their centre at most `reach` mm away from it and not
     /// behind it, seen along `ahead`. Of voxels as near as each other the first.
     pub fn nearest(&self, place: &Vector, ahead: &Vector, reach: f64) -> Option<NearestBone> {
+        self.nearest_within(place, ahead, reach, f64::INFINITY)
+    }
+
+    /// The same of voxels whose box is at most so many `voxels` away: differences along the axes in their edges, as one length.
+    pub fn nearest_within(
+        &self,
+        place: &Vector,
+        ahead: &Vector,
+        reach: f64,
+        voxels: f64,
+    ) -> Option<NearestBone> {
         let middle = self.to_index * (place - self.placement.origin);
         let half = [0, 1, 2].map(|axis| reach * self.to_index.row(axis).norm());
         let range = |axis: usize| {
@@ -106,12 +117,20 @@ impl BoneLabels {
             let Some(owner) = self.owner(voxel) else { continue };
             let way = self.centre([i, j, k]) - place;
             let distance = way.norm();
+            let beside = Vector::from([i, j, k].map(|n| n as f64)) - middle;
+            let gap = beside.map(|steps| (steps.abs() - 0.5).max(0.0)).norm();
             let nearer = best.is_none_or(|best| distance < best.distance);
-            if distance <= reach && way.dot(ahead) >= 0.0 && nearer {
+            if distance <= reach && gap <= voxels && way.dot(ahead) >= 0.0 && nearer {
                 best = Some(NearestBone { owner, distance });
             }
         }
         best
+    }
+
+    /// Of all bone, in mm³.
+    pub fn volume(&self) -> f64 {
+        let voxels = self.labels.iter().filter(|&&label| label != NO_BONE).count();
+        voxels as f64 * Matrix3::from_columns(&self.placement.steps).determinant().abs()
     }
 
     /// The lowest and the highest centres of voxels of bone, in mm.

@@ -1,9 +1,15 @@
 //! Landmarks and parts of a face made in code.
 
+use mechanics::anatomy::surfaces::part_by_cuts;
+use mechanics::anatomy::{AnatomyRules, build};
+use mechanics::domain::SurfaceDomain;
 use mechanics::landmarks::{
     FaceAxes, MidPlane, Profile, ProfileError, ProfileLandmarks, skin_regions,
 };
 use mechanics::mesh::{Frame, TriangleSurface, Vector};
+use mechanics::meshing::{MeshingSettings, RegionShape, SizeField, SizeRegion};
+use mechanics::osteotomy::Osteotomy;
+use mechanics::progress::Unobserved;
 
 use crate::surfaces::{map, unit_sphere};
 
@@ -128,4 +134,47 @@ fn what_stands_far_before_the_base_of_its_nose_is_no_face() {
     let found = landmarks(&head(0.0, &trunk)).unwrap_err();
     let ProfileError::NoBase { behind_mm } = found else { panic!("{found:?}") };
     assert!((40.0..62.0).contains(&behind_mm), "{behind_mm}");
+}
+
+/// A nose, an upper lip, and a lower lip and a chin with a fold between them that is less than 1.5 mm deep, and with none.
+const SHALLOW: [[f64; 4]; 4] =
+    [BUMPS[0], [-22.0, 8.0, 3.5, 20.0], [-36.0, 7.0, 4.0, 20.0], [-54.0, 18.0, 12.0, 18.0]];
+const FLAT: [[f64; 4]; 4] =
+    [BUMPS[0], SHALLOW[1], [-36.0, 5.0, 5.0, 20.0], [-54.0, 18.0, 10.0, 18.0]];
+
+#[test]
+fn a_shallow_fold_of_the_lower_lip_bounds_the_chin_and_not_the_mouth() {
+    let found = landmarks(&head(0.0, &SHALLOW)).unwrap();
+    assert!((found.pogonion.height + 50.0).abs() < 2.5, "{found:?}");
+    assert!((found.sublabiale.height + 44.0).abs() < 2.5, "{found:?}");
+    let depth = found.shallow_fold.unwrap();
+    assert!((depth - 1.05).abs() < 0.3, "{depth}");
+    // The mouth is at -29 mm, and its lower lip down to -41.
+    let found = landmarks(&head(0.0, &FLAT)).unwrap();
+    assert!((found.sublabiale.height + 41.5).abs() < 2.5, "{found:?}");
+    assert_eq!(found.shallow_fold, Some(0.0));
+    assert_eq!(landmarks(&head(0.0, &BUMPS)).unwrap().shallow_fold, None);
+}
+
+#[test]
+fn a_doubtful_border_of_chin_and_lips_is_told_with_the_landmarks() {
+    let skin = head(0.0, &SHALLOW);
+    let domain = SurfaceDomain::new(&skin, &[], &[]).unwrap();
+    let parted = part_by_cuts(&domain, &Osteotomy::default()).unwrap();
+    let shape = RegionShape::Ball { centre: Vector::new(0.0, -95.0, -35.0), radius: 32.0 };
+    let size = SizeField {
+        coarsest: 16.0,
+        regions: vec![SizeRegion { shape, size: 2.0 }],
+        ..SizeField::uniform(2.0)
+    };
+    let meshing = MeshingSettings { size, ..MeshingSettings::default() };
+    let rules = AnatomyRules { meshing, frame: Frame::Lps, ..AnatomyRules::default() };
+    let made = build(&domain, parted, &rules, &Unobserved).unwrap();
+    let of = made.warnings.iter().find(|warning| warning.code == "fold-shallow");
+    let told = of.unwrap_or_else(|| panic!("{:?} {:?}", made.warnings, made.landmarks));
+    assert!((0.4..1.5).contains(&told.numbers[0].1), "{told:?}");
+    assert!((made.landmarks["sublabiale"].z + 44.0).abs() < 3.0, "{:?}", made.landmarks);
+    for &node in &made.volume.node_sets["skin_chin"] {
+        assert!(made.volume.nodes[node as usize].z < -40.0);
+    }
 }

@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used)]
 
+mod airway_walls;
 mod anatomy;
 mod cephalometry;
 mod conformation;
@@ -9,6 +10,7 @@ mod conformed_fibres;
 mod domain;
 mod format;
 mod golden;
+mod hollow_bone;
 mod image;
 mod landmarks;
 mod material;

@@ -199,6 +199,7 @@ fn name(error: &SurfaceDomainError) -> &'static str {
         SurfaceDomainError::Incomplete { .. } => "incomplete",
         SurfaceDomainError::Uncertain { .. } => "uncertain",
         SurfaceDomainError::Open { .. } => "open",
+        SurfaceDomainError::TwoWalls { .. } => "walls",
         SurfaceDomainError::Doubled { .. } => "doubled",
         SurfaceDomainError::Tangled { .. } => "tangled",
         SurfaceDomainError::BoneOutside { .. } => "bone outside",

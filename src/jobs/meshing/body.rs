@@ -7,7 +7,9 @@ use crate::jobs::failure::JobError;
 use crate::schema::meshing::surfaces::SurfacesDocument;
 use crate::schema::{ErrorCode, Pointer, Problem};
 use mechanics::anatomy::skin_scan::FittedScan;
-use mechanics::anatomy::surfaces::{mended, outside, part_by_cuts, take_as_segments};
+use mechanics::anatomy::surfaces::{
+    hollow, mended, outside, overlapping, part_by_cuts, take_as_segments,
+};
 use mechanics::anatomy::{AnatomyRules, PartedBone};
 use mechanics::domain::{Domain, LabelBody, SurfaceDomain, SurfaceDomainError, SurfaceName};
 use mechanics::image::ImageVolume;
@@ -59,12 +61,14 @@ impl Surfaces {
         let bones: Vec<&TriangleSurface> = self.bones.iter().map(AsRef::as_ref).collect();
         let domain =
             SurfaceDomain::new(&self.skin, &bones, &[]).map_err(|error| self.refusal(&error))?;
+        let domain = if rules.whole_bone.fill_holes { domain.solid() } else { domain };
         let parted = match &self.document.bone {
             Some(_) => part_by_cuts(&domain, &rules.osteotomy),
             None => take_as_segments(&domain, &bones, &rules.osteotomy),
         };
         let bone = parted.map_err(JobError::Anatomy)?;
-        let warnings = mended(&domain).into_iter().chain(outside(&domain)).collect();
+        let warnings = mended(&domain).into_iter().chain(outside(&domain));
+        let warnings = warnings.chain(hollow(&domain)).chain(overlapping(&domain)).collect();
         Ok(PartedBody { domain: Box::new(domain), bone, warnings, skin: None })
     }
 

@@ -63,7 +63,8 @@ pub struct MeshingDocument {
     /// Of a scan.
     #[serde(default)]
     pub thresholds_hu: ThresholdsReference,
-    /// Of a scan. Absent: bone is exactly the voxels above its threshold.
+    /// Of a scan or of surfaces. Absent: bone is exactly the voxels above its threshold, or what lies between the walls of its
+    /// surface.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub whole_bone: Option<WholeBoneDocument>,
@@ -248,6 +249,10 @@ impl MeshingDocument {
         let Some(labels) = &self.labels else { return };
         labels.check(&at.key("labels"), limits, faults);
         self.check_without_scan(at, "a label map has no values that thresholds part", faults);
+        if self.whole_bone.is_some() {
+            let detail = "only bone of a scan or of surfaces is made whole";
+            faults.add(&at.key("whole_bone"), ErrorCode::NoScan, detail);
+        }
         if self.osteotomy.is_some() && !labels.segments().is_empty() {
             let detail = "bone of `labels` that has a name is a segment already: omit the names to have it cut";
             faults.add(&at.key("osteotomy"), ErrorCode::OneOf, detail);
@@ -259,10 +264,6 @@ impl MeshingDocument {
         if self.thresholds_hu != ThresholdsReference::default() {
             faults.add(&at.key("thresholds_hu"), ErrorCode::NoScan, detail);
         }
-        if self.whole_bone.is_some() {
-            let detail = "only bone of a scan is made whole";
-            faults.add(&at.key("whole_bone"), ErrorCode::NoScan, detail);
-        }
         if self.region.is_some() {
             let detail = "only a scan is meshed in part";
             faults.add(&at.key("region"), ErrorCode::NoScan, detail);
@@ -273,6 +274,10 @@ impl MeshingDocument {
         let Some(surfaces) = &self.surfaces else { return };
         surfaces.check(&at.key("surfaces"), limits, faults);
         self.check_without_scan(at, "surfaces have no values that thresholds part", faults);
+        if self.whole_bone.is_some_and(|whole| whole.closing_mm > 0.0) {
+            let detail = "only gaps in the bone of a scan are closed; surfaces have `fill_holes`";
+            faults.add(&at.key("whole_bone").key("closing_mm"), ErrorCode::NoScan, detail);
+        }
         if self.osteotomy.is_some() && !surfaces.bones.is_empty() {
             let detail = "`surfaces.bones` are segments already: give all bone as `surfaces.bone` to have it cut";
             faults.add(&at.key("osteotomy"), ErrorCode::OneOf, detail);

@@ -44,6 +44,10 @@ pub struct MeshingResultDocument {
     pub gaps_closed: Vec<GapDocument>,
     /// Tissue thinner than a cell that the mesh lacks; the largest first.
     pub sheets_lost: Vec<GapDocument>,
+    /// Landmarks of the skin, detected or stated, in mm: `pogonion`, `sublabiale`, `subnasale`, `pronasale`. Empty where none were
+    /// found.
+    #[serde(default)]
+    pub landmarks_mm: BTreeMap<String, Triple>,
     /// Disconnected tissue that was omitted.
     pub dropped_ml: f64,
     /// A case of the mesh, ready to be stored and predicted on.
@@ -113,6 +117,9 @@ impl MeshingResultDocument {
             free_beside_cuts: anatomy.classes.in_band as u64,
             gaps_closed: report.gaps_closed.iter().map(GapDocument::from).collect(),
             sheets_lost: report.sheets_lost.iter().map(GapDocument::from).collect(),
+            landmarks_mm: (anatomy.landmarks.iter())
+                .map(|(name, &place)| (name.clone(), place.into()))
+                .collect(),
             dropped_ml: report.dropped_volume() / MM3_IN_ML,
             case,
             check: None,

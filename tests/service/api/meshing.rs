@@ -273,6 +273,9 @@ async fn surfaces_that_bound_no_tissue_are_refused_with_their_place() {
     let thresholds = json!({"skin": -200});
     refused(&|asked| asked["thresholds_hu"] = thresholds.clone(), "/thresholds_hu", "no-scan")
         .await;
+    let closing = json!({"closing_mm": 2.0});
+    refused(&|asked| asked["whole_bone"] = closing.clone(), "/whole_bone/closing_mm", "no-scan")
+        .await;
     let cut_again = |asked: &mut Value| {
         asked["surfaces"] = json!({"skin": skin, "bones": named});
         asked["osteotomy"] = half();

@@ -88,7 +88,7 @@ fn segments_meet_the_surface_that_they_pass_at_its_triangle() {
 }
 
 #[test]
-fn of_many_meetings_the_one_where_tissue_ends_counts() {
+fn no_tissue_lies_in_a_hollow_of_bone_and_tissue_ends_at_its_outer_wall() {
     // From inside the skin through two thin walls of a hollow bone, at whose far side there is tissue again.
     let skin = cuboid(Vector::new(100.0, 40.0, 40.0));
     let place = |radius: f64| sphere(Vector::new(50.0, 20.0, 20.0), radius, 24);
@@ -100,7 +100,14 @@ fn of_many_meetings_the_one_where_tissue_ends_counts() {
         .extend(inner.triangles.iter().map(|t| t.map(|p| p + outer.points.len() as u32)));
     hollow.points.extend(inner.points);
     let domain = SurfaceDomain::new(&skin, &[&hollow], &[]).unwrap();
-    assert!(domain.value(&Vector::new(50.0, 20.0, 20.0)) > 0.0, "a cavity stays one");
+    for x in [50.0, 56.0, 60.0] {
+        assert!(domain.value(&Vector::new(x, 20.0, 20.0)) <= 0.0, "{x}");
+    }
+    assert_eq!(domain.coverage(&Vector::new(50.0, 20.0, 20.0), 9.0), Coverage::Outside);
+    let [hollow] = domain.hollows().next().unwrap() else { panic!("one hollow") };
+    let ball = 4.0 / 3.0 * std::f64::consts::PI * 512.0;
+    assert!((hollow.volume / ball - 1.0).abs() < 0.02, "{hollow:?}");
+    assert!((hollow.centre - Vector::new(50.0, 20.0, 20.0)).norm() < 0.01, "{hollow:?}");
     let at = |x: f64| Vector::new(x, 20.5, 20.3);
     let crossing = domain.crossing(&at(30.0), &at(60.0));
     assert!(crossing.boundary == Boundary::Bone && (crossing.point.x - 38.0).abs() < 0.3);

@@ -42,8 +42,10 @@ fn assert_sound(tissue: &TissueMesh) -> [f64; 2] {
         }
     }
     assert!(edges.values().all(|&both_ways| both_ways == [1, 1]));
-    for &node in skin.node_ids.iter().flatten() {
-        assert!(!tissue.boundaries[node as usize].is_empty());
+    let mut bounds = vec![false; tissue.volume.nodes.len()];
+    skin.node_ids.iter().flatten().for_each(|&node| bounds[node as usize] = true);
+    for (node, bounds) in bounds.into_iter().enumerate() {
+        assert_eq!(tissue.boundaries[node].is_empty(), !bounds, "{node}");
     }
     let angles = DihedralAngles::of(&tissue.volume).unwrap();
     let angles = [angles.smallest, angles.largest].map(f64::to_degrees);

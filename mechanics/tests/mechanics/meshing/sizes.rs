@@ -6,7 +6,7 @@ use mechanics::meshing::{
     MeshingSettings, RegionShape, SizeField, SizeRegion, ThicknessRule, TissueMesh,
 };
 
-use super::domains::{Body, ball, balls, shell};
+use super::domains::{Body, Distance, ball, balls, shell};
 use super::{assert_sound, meshed, off_sphere, uniform};
 
 /// The mean edge of the cells whose first node a test picks.
@@ -98,6 +98,30 @@ fn tissue_too_thin_for_its_cells_is_reported() {
     assert!(lost > 50, "{:?}", tissue.report);
     for sheet in &tissue.report.sheets_lost {
         assert!(sheet.low.amax() <= 20.0 && sheet.high.amax() <= 20.0);
+    }
+    let exact = 4.0 / 3.0 * std::f64::consts::PI * (20.0_f64.powi(3) - 18.4_f64.powi(3));
+    let missing = exact - tissue.report.volume;
+    let share = tissue.report.volume_lost / missing;
+    println!("of {exact:.0} mm3 {missing:.0} are missing, {:.0} told", tissue.report.volume_lost);
+    assert!((0.8..1.2).contains(&share), "{share}");
+}
+
+/// Tissue of 10 mm around bone of 5 mm, and what that encloses.
+fn enclosed() -> Body {
+    let skin: Distance = Box::new(|x| 40.0 - x.norm());
+    let bone: Distance = Box::new(|x| (x.norm() - 27.5).abs() - 2.5);
+    Body::new(40.0, vec![(Boundary::Skin, skin), (Boundary::Bone, bone)])
+}
+
+#[test]
+fn tissue_that_is_left_out_does_not_count_for_the_number_of_tetrahedra() {
+    for keep_pieces in [false, true] {
+        let settings =
+            MeshingSettings { target: Some(60_000), keep_pieces, ..MeshingSettings::default() };
+        let tissue = meshed(&enclosed(), &settings);
+        let ratio = tissue.report.tetrahedra as f64 / 60_000.0;
+        assert!((0.85..1.15).contains(&ratio), "{keep_pieces}: {ratio}");
+        assert_eq!(tissue.report.dropped.len(), usize::from(!keep_pieces));
     }
 }
 
