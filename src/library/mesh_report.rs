@@ -7,6 +7,7 @@ use crate::schema::{CornerPair, Triple, WarningDocument};
 use mechanics::format::{Mesh, ReadMesh};
 use mechanics::image::{ImageVolume, LabelMap, Voxels, scan_report};
 use mechanics::mesh::check::several_components;
+use mechanics::mesh::conformity::cells_do_not_match;
 use mechanics::mesh::connectivity::Faces;
 use mechanics::mesh::quality::quality;
 use mechanics::mesh::{Frame, IgnoredArray, Vector, VolumeMesh, Warning};
@@ -26,6 +27,7 @@ pub fn mesh_report(read: &ReadMesh) -> MeshReport {
             let faces = Faces::new(volume);
             let boundary = volume.boundary_of(&faces);
             warnings.extend(several_components(volume, &faces));
+            warnings.extend(cells_do_not_match(volume, &boundary));
             let triangles = boundary.iter().map(|face| face.nodes().len() - 2).sum();
             (MeshKind::Volume, bounding_box(&volume.nodes), volume.nodes.len(), triangles)
         }

@@ -4,6 +4,7 @@ pub mod area_sampling;
 pub mod bisection;
 pub mod check;
 pub mod closest_point;
+pub mod conformity;
 pub mod connectivity;
 pub mod crossing;
 pub mod disjoint_sets;

@@ -16,6 +16,7 @@ use super::suspect_constants::{moduli_apart, no_soft_tissue, suspect_constants};
 use super::walls;
 use crate::boundary::contact::BoneSurface;
 use crate::boundary::{connected_parts, tearing};
+use crate::mesh::conformity::cells_do_not_match;
 use crate::mesh::connectivity::Faces;
 use crate::mesh::{Vector, Warning};
 use crate::model::fem::discretisation_error::DistributedLoads;
@@ -120,6 +121,7 @@ impl Scene {
         scene.warnings.extend(far);
         scene.warnings.extend(suspect_skin(&scene, case.skin.is_some()));
         scene.warnings.extend(cut::duplicate_nodes(&scene.mesh, &check.boundary_nodes));
+        scene.warnings.extend(cells_do_not_match(&scene.mesh, &scene.boundary));
         scene.warnings.extend(scene.doubts(case, plan));
         Ok(scene)
     }

@@ -1,12 +1,14 @@
 //! Stiff layers of a single cell between soft tissue: linear displacement cannot bend them.
 //!
-//! A cell whose nodes all belong to softer cells too has no node of its own to bend with. Where it is a hundred
+//! A cell whose nodes all belong to softer cells too has no node of its own to bend with, and one whose other nodes lie on the boundary
+//! of the mesh, as of a skin of one layer, has none inside. Where it is a hundred
 //! times as stiff as its neighbours, plain cells and those of mean dilatation leave the skin off by more than a
 //! tenth of the movement (docs/stability.md); ten times as stiff they do not, nor do quadratic cells. Fibres that are ten
 //! times as stiff along do.
 
 use super::Scene;
 use crate::mesh::Warning;
+use crate::mesh::volume::BoundaryFace;
 
 /// How many times as stiff as a neighbour a cell is from which on a single layer is reported.
 const STIFFER: f64 = 30.0;
@@ -29,19 +31,76 @@ pub(super) fn thin_stiff_layers(scene: &Scene) -> Option<Warning> {
             *at = at.min(material.young_modulus());
         }
     }
-    let (mut cells, mut largest) = (0, 0.0_f64);
+    let mut is_outside = vec![false; scene.mesh.nodes.len()];
+    let outside = scene.boundary.iter().flat_map(BoundaryFace::nodes);
+    outside.for_each(|&node| is_outside[node as usize] = true);
+    let mut layers = Layers::default();
     for ((_, nodes), material) in of_cells() {
-        let softest = nodes.iter().map(|&node| softest[node as usize]).fold(0.0, f64::max);
-        let ratio = material.young_modulus() / softest;
-        let along = material.fibre_modulus().map_or(0.0, |modulus| modulus / softest);
-        if ratio > STIFFER || along > STIFFER_ALONG {
-            (cells, largest) = (cells + 1, largest.max(ratio).max(along));
+        let own = material.young_modulus();
+        let softer = |node: &&u32| softest[**node as usize] < own;
+        let around = nodes.iter().filter(softer).map(|&node| softest[node as usize]);
+        let softest_beside = around.fold(0.0, f64::max);
+        let along = material.fibre_modulus().unwrap_or(0.0);
+        if softest_beside == 0.0 {
+            // Fibres may be stiff in tissue that is no stiffer than the rest.
+            layers.add_inside(1.0, along / own);
+            continue;
+        }
+        let (ratio, along) = (own / softest_beside, along / softest_beside);
+        match nodes.iter().all(|node| softer(&node)) {
+            true => layers.add_inside(ratio, along),
+            false => {
+                let is_layer = nodes.iter().all(|node| softer(&node) || is_outside[*node as usize]);
+                layers.add_outside(ratio, along, is_layer);
+            }
         }
     }
-    let detail = format!(
-        "{cells} cells are more than {STIFFER} times, or along fibres {STIFFER_ALONG} times, as stiff as all tissue \
-         around them and have no node of their own: a layer of one linear cell bends too little"
-    );
-    let warning = Warning::new("thin-stiff-layer", detail).with("cells", f64::from(cells));
-    (cells > 0).then(|| warning.with("largest_ratio", largest))
+    layers.warning()
+}
+
+/// Cells that are much stiffer than the tissue beside them.
+#[derive(Default)]
+struct Layers {
+    /// With no node of their own.
+    inside: u32,
+    /// With nodes of their own on the boundary of the mesh alone, of so many with some of their own.
+    outside: u32,
+    beside_softer: u32,
+    largest: f64,
+}
+
+impl Layers {
+    fn add_inside(&mut self, ratio: f64, along: f64) {
+        if is_stiff(ratio, along) {
+            self.inside += 1;
+            self.largest = self.largest.max(ratio).max(along);
+        }
+    }
+
+    fn add_outside(&mut self, ratio: f64, along: f64, is_layer: bool) {
+        if is_stiff(ratio, along) {
+            self.beside_softer += 1;
+            if is_layer {
+                self.outside += 1;
+                self.largest = self.largest.max(ratio).max(along);
+            }
+        }
+    }
+
+    /// Of a layer of several cells few are outside with all their own nodes, at its rim.
+    fn warning(&self) -> Option<Warning> {
+        let outside = if 2 * self.outside > self.beside_softer { self.outside } else { 0 };
+        let cells = self.inside + outside;
+        let detail = format!(
+            "{cells} cells are more than {STIFFER} times, or along fibres {STIFFER_ALONG} times, as stiff as all tissue \
+             around them and have no node of their own inside the tissue: a layer of one linear cell bends too little, and the \
+             estimated error is too small"
+        );
+        let warning = Warning::new("thin-stiff-layer", detail).with("cells", f64::from(cells));
+        (cells > 0).then(|| warning.with("largest_ratio", self.largest))
+    }
+}
+
+fn is_stiff(ratio: f64, along: f64) -> bool {
+    ratio > STIFFER || along > STIFFER_ALONG
 }

@@ -6,7 +6,7 @@ use crate::schema::WarningDocument;
 
 /// Codes that precede all others, in this order: those of doubtful input or measurements, those of a result that
 /// has larger errors than reported elsewhere, and those of an impossible one.
-const GRAVE: [&str; 46] = [
+const GRAVE: [&str; 47] = [
     "nothing-moves",
     "nothing-performed",
     "units-suspect",
@@ -27,6 +27,7 @@ const GRAVE: [&str; 46] = [
     "surfaces-apart",
     "surfaces-opposed",
     "cells-inverted",
+    "cells-do-not-match",
     "mesh-inverted-elements",
     "tearing",
     "tolerance-not-met",

@@ -235,7 +235,7 @@ export const de: Words = {
     "bone-through-skin": "Knochen tritt durch die Haut", "bones-overlap": "der Plan schiebt Knochen ineinander",
     "bones-touch": "Knochen berühren sich, wo nichts geschnitten ist", "built-in-poisson-ratio": "Federn haben eine eigene Querkontraktionszahl",
     "bulk-in-all-cells": "in allen Zellen steifer gegen Volumenänderung",
-    "cells-inverted": "Zellen sind umgestülpt: zu groß für eine lineare Antwort", "cells-reordered": "Zellen waren andersherum nummeriert",
+    "cells-do-not-match": "Zellen passen nicht Fläche auf Fläche", "cells-inverted": "Zellen sind umgestülpt: zu groß für eine lineare Antwort", "cells-reordered": "Zellen waren andersherum nummeriert",
     "cells-skipped": "Zellen der Datei sind weggelassen", "conditions-ignored": "das Modell lässt Bedingungen des Falls weg",
     "conditions-overlap": "Knoten haben zwei Rollen; die stärkere gilt", "constant-at-end": "das Gefundene liegt an seiner Grenze",
     "constant-not-determined": "das Gefundene ist nicht bestimmt", "conformation-coarse": "die Vorlage folgt dem Patienten weniger genau, damit alle Zellen gültig sind", "constant-suspect": "eine Konstante hat vielleicht eine andere Einheit",

@@ -233,7 +233,7 @@ export const en = {
     "bone-outside-skin": "bone lies outside the skin", "bone-through-skin": "bone comes through the skin",
     "bones-overlap": "the plan pushes bones into each other", "bones-touch": "bones touch where nothing is cut",
     "built-in-poisson-ratio": "springs have a Poisson's ratio of their own", "bulk-in-all-cells": "stiffer against changes of volume in all cells",
-    "cells-inverted": "cells are turned inside out: too large for a linear answer", "cells-reordered": "cells were numbered the other way round",
+    "cells-do-not-match": "cells do not match face to face", "cells-inverted": "cells are turned inside out: too large for a linear answer", "cells-reordered": "cells were numbered the other way round",
     "cells-skipped": "cells of the file were left out", "conditions-ignored": "the model leaves conditions of the case out",
     "conditions-overlap": "nodes have two roles; the stronger holds", "constant-at-end": "what was found is at its bound",
     "constant-not-determined": "what was found is not determined", "conformation-coarse": "the template follows the patient less closely, so that all cells are valid", "constant-suspect": "a constant may be in another unit",

@@ -2,4 +2,5 @@
 
 mod bisection;
 mod check;
+mod conformity;
 mod quality;

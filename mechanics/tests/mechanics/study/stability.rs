@@ -215,14 +215,14 @@ fn a_flat_wall_is_never_left() {
 
 #[test]
 fn a_stiff_layer_of_one_linear_cell_is_reported_and_one_of_two_is_not() {
-    let told = |variant: &Variant, layers: usize, stiffness: f64, along: f64| {
+    let told_from = |variant: &Variant, from: f64, layers: usize, stiffness: f64, along: f64| {
         let mut mesh = block(Vector::new(20.0, 20.0, 12.0), [4, 4, 6], shape_for(variant));
         let height = |cell: usize| {
             mesh.corners(cell).map(|x| x.z).sum::<f64>() / mesh.corners(cell).len() as f64
         };
-        let top = 4.0 + 2.0 * layers as f64;
+        let top = from + 2.0 * layers as f64;
         let labels = (0..mesh.cells.len())
-            .map(|cell| i64::from((4.0..top).contains(&height(cell))))
+            .map(|cell| i64::from((from..top).contains(&height(cell))))
             .collect();
         mesh.cell_labels.insert("layer".to_owned(), labels);
         let mut case = case_of(mesh, material(15.0, 0.43));
@@ -239,12 +239,19 @@ fn a_stiff_layer_of_one_linear_cell_is_reported_and_one_of_two_is_not() {
         let scene = Scene::new(&case, &Plan::default(), &variant.settings).unwrap();
         scene.warnings.iter().any(|warning| warning.code == "thin-stiff-layer")
     };
+    let told = |variant: &Variant, layers: usize, stiffness: f64, along: f64| {
+        told_from(variant, 4.0, layers, stiffness, along)
+    };
     for variant in variants() {
         let is_linear = variant.settings.element != ElementChoice::Quadratic;
         assert_eq!(told(&variant, 1, 100.0, 100.0), is_linear, "{}", variant.label);
         assert_eq!(told(&variant, 1, 1.0, 10.0), is_linear, "{}", variant.label);
         assert!(!told(&variant, 1, 5.0, 5.0), "{}", variant.label);
         assert!(!told(&variant, 2, 100.0, 100.0), "{}", variant.label);
+        // The same at the top of the mesh.
+        assert_eq!(told_from(&variant, 10.0, 1, 100.0, 100.0), is_linear, "{}", variant.label);
+        assert!(!told_from(&variant, 10.0, 1, 5.0, 5.0), "{}", variant.label);
+        assert!(!told_from(&variant, 8.0, 2, 100.0, 100.0), "{}", variant.label);
     }
 }
 
