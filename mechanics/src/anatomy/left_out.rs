@@ -11,7 +11,7 @@ const LEAST: f64 = 1.0;
 /// Less than this share of a mesh is what cells are too coarse for.
 const SHARE: f64 = 0.01;
 /// Less tissue in no cell than this share is what cells are too coarse for; nodes of cells of 6 mm count a ball to 1 %.
-const MOST_LOST: f64 = 0.02;
+const MOST_LOST: f64 = 0.025;
 /// Less of the bone than this share, meshed as tissue, is what cells are too coarse for.
 const MOST_FILLED: f64 = 0.03;
 const MM3_IN_ML: f64 = 1000.0;

@@ -62,7 +62,7 @@ impl BoneShell {
         }
         let is_wall = |n: &usize| mended.hollows.walls.binary_search(n).is_ok();
         let facets = mended.facets.iter().enumerate().filter(|(n, _)| !is_wall(n));
-        let tree = TriangleTree::new(facets.map(|(_, facet)| facet.clone()).collect());
+        let tree = TriangleTree::new(facets.map(|(_, facet)| *facet).collect());
         let cells = WindingCells::new(&tree);
         let (threshold, inside) = (given.threshold, given.inside.clone());
         let solid = Shell { tree, cells, threshold, inside };

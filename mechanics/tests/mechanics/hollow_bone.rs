@@ -127,10 +127,12 @@ fn thin_bone_and_thin_tissue_that_cells_miss_are_told_with_volume_and_place() {
         of.unwrap_or_else(|| panic!("{:?}", made.warnings))
     };
     let bone = number(told("thin-bone-lost"), "volume_ml");
-    assert!((0.7..1.3).contains(&(bone / 3.0)), "{bone}");
+    // Of the plate what lies on edges with both ends in tissue.
+    assert!((0.5..1.1).contains(&(bone / 3.0)), "{bone}");
     let tissue = number(told("thin-tissue-lost"), "volume_ml");
     println!("{tissue} ml of tissue, {bone} ml of bone");
-    assert!((15.0..45.0).contains(&tissue), "{tissue}");
+    // 39 ml of the flap lie outside the ball.
+    assert!((33.0..45.0).contains(&tissue), "{tissue}");
 }
 
 #[test]
