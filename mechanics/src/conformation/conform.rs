@@ -189,7 +189,8 @@ fn started(
     let map = match start {
         Start::Boxes => start::by_boxes(&pair.sheet.surface, surface),
         Start::Auto | Start::Landmarks | Start::Inertia => {
-            start::by_inertia(&pair.sheet.surface, surface, &pair.target)
+            let or_boxes = start == Start::Auto;
+            start::by_inertia(&pair.sheet.surface, surface, &pair.target, or_boxes)
         }
     };
     refuse_scale(map.matrix.determinant().cbrt())?;

@@ -29,7 +29,7 @@ pub use fibres::{
     mapped_surface,
 };
 pub use landmark::Landmark;
-pub use outlier::DoubtfulLandmark;
+pub use outlier::{DoubtfulLandmark, FEWEST_CHECKED};
 pub use schedule::{LATTICES, finest_spacing};
 pub use start::Start;
 pub use warp::{Warp, spline_of};

@@ -16,7 +16,7 @@ use crate::progress::{Inner, Progress};
 const PARTS: usize = 8;
 
 /// Fewer landmarks do not tell which of them is wrong.
-const FEWEST: usize = 6;
+pub const FEWEST_CHECKED: usize = 6;
 
 /// In medians: two faces of the shared data have correct landmarks, at the rim of the skin, of up to 5.7.
 const LEFT_OUT: f64 = 8.0;
@@ -48,7 +48,7 @@ pub(super) fn doubtful(
 ) -> Result<(Vec<DoubtfulLandmark>, Vec<Landmark>), ConformationError> {
     let mut kept = patient.landmarks.to_vec();
     let mut doubtful = Vec::new();
-    while kept.len() >= FEWEST {
+    while kept.len() >= FEWEST_CHECKED {
         let rest = Patient { landmarks: &kept, ..*patient };
         let Some(distances) = distances_left_out(surfaces, &rest, start, progress)? else { break };
         let mut sorted = distances.clone();

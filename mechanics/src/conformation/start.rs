@@ -31,11 +31,13 @@ pub(super) fn by_boxes(template: &TriangleSurface, patient: &TriangleSurface) ->
     Affine { matrix, shift: (to_low + to_high) * 0.5 - matrix * (low + high) * 0.5 }
 }
 
-/// Centres, sizes and principal axes together; of the four ways to join axes the one that leaves least.
+/// Centres, sizes and principal axes together; of the four ways to join axes the one that leaves least, and of these and the boxes
+/// where those may do too: of parts of a head, axes differ more than boxes.
 pub(super) fn by_inertia(
     template: &TriangleSurface,
     patient: &TriangleSurface,
     target: &Target,
+    or_boxes: bool,
 ) -> Affine {
     let [from, to] = [template, patient].map(samples);
     let [(from_middle, from_size), (to_middle, to_size)] = [&from, &to].map(|x| spread(x));
@@ -50,7 +52,8 @@ pub(super) fn by_inertia(
         let moved: Vec<Vector> = from.iter().map(|point| map.apply(point)).collect();
         target.distances(&moved).iter().sum()
     };
-    let best = candidates.into_iter().min_by(|a, b| left(a).total_cmp(&left(b)));
+    let boxes = or_boxes.then(|| by_boxes(template, patient));
+    let best = candidates.into_iter().chain(boxes).min_by(|a, b| left(a).total_cmp(&left(b)));
     best.unwrap_or_else(Affine::identity)
 }
 

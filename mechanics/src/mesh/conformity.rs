@@ -1,13 +1,11 @@
 //! Cells that do not match face to face: hanging nodes, and a face of a hexahedron on two of tetrahedra.
 //!
 //! Such faces belong to one cell each, and count as the boundary of the mesh although there is tissue on both sides. They lie on each
-//! other, look at each other, and have nodes in common; those of a slit have nodes of their own, each at the place of one of the other
-//! side.
+//! other, look at each other, and have nodes in common; the nodes of faces of a slit are each at the place of one of the other side.
 
 use rayon::prelude::*;
 
 use super::closest_point::SurfaceSearch;
-use super::surface::TriangleSurface;
 use super::volume::{BoundaryFace, VolumeMesh};
 use super::warning::Warning;
 
@@ -21,6 +19,7 @@ const OPPOSED: f64 = -0.999;
 pub fn cells_do_not_match(mesh: &VolumeMesh, boundary: &[BoundaryFace]) -> Option<Warning> {
     let surface = mesh.surface_of(boundary);
     let search = SurfaceSearch::new(&surface).ok()?;
+    let faces: Vec<&BoundaryFace> = boundary.iter().flat_map(triangles_of).collect();
     let (low, high) = surface.bounds();
     let near = TOUCHING * (high - low).norm();
     let lies_on_another = |&triangle: &usize| {
@@ -32,7 +31,7 @@ pub fn cells_do_not_match(mesh: &VolumeMesh, boundary: &[BoundaryFace]) -> Optio
         hit.is_some_and(|(other, _)| {
             let opposite = surface.area_vector(other);
             opposite.dot(&normal) < OPPOSED * opposite.norm()
-                && do_not_match(&surface, triangle, other, near)
+                && do_not_match(mesh, [faces[triangle], faces[other]], near)
         })
     };
     let triangles = (0..surface.triangles.len()).into_par_iter().with_min_len(256);
@@ -48,13 +47,16 @@ pub fn cells_do_not_match(mesh: &VolumeMesh, boundary: &[BoundaryFace]) -> Optio
     Some(Warning::new("cells-do-not-match", detail).with("count", count as f64))
 }
 
-/// Whether two triangles that lie on each other share nodes without each node having its own or its twin's place in the other.
-fn do_not_match(surface: &TriangleSurface, one: usize, other: usize, near: f64) -> bool {
-    let [one, other] = [one, other].map(|triangle| surface.triangles[triangle]);
-    let shared = one.iter().filter(|point| other.contains(point)).count();
-    let place = |point: u32| surface.points[point as usize];
-    let has_twin =
-        |point: &&u32| other.iter().any(|own| (place(*own) - place(**point)).norm() <= near);
-    let twins = one.iter().filter(has_twin).count();
-    shared == 3 || (shared > 0 && twins < 3)
+/// A face once for each triangle of it, in the order of `surface_of`.
+fn triangles_of(face: &BoundaryFace) -> impl Iterator<Item = &BoundaryFace> {
+    std::iter::repeat_n(face, face.nodes().len() - 2)
+}
+
+/// Whether two faces that lie on each other share nodes without each node of one having its place among those of the other.
+fn do_not_match(mesh: &VolumeMesh, [one, other]: [&BoundaryFace; 2], near: f64) -> bool {
+    let (one, other) = (one.nodes(), other.nodes());
+    let place = |node: u32| mesh.nodes[node as usize];
+    let has_twin = |node: &u32| other.iter().any(|own| (place(*own) - place(*node)).norm() <= near);
+    let is_twin = one.len() == other.len() && one.iter().all(has_twin);
+    !is_twin && one.iter().any(|node| other.contains(node))
 }

@@ -10,6 +10,9 @@ use crate::mesh::{SurfaceSearch, Vector, Warning};
 /// How far off the wall a node is told to be, in mm: as for small strain.
 const OFF_WALL_MM: f64 = 0.5;
 
+/// The cosine from which on a face lies on a wall.
+const ALONG_WALL: f64 = 0.7;
+
 /// A warning that counts the sliding nodes that are off their wall.
 pub(super) fn left_wall(scene: &Scene, displacement: &[Vector]) -> Option<Warning> {
     let class = |node: &u32| scene.conditions.classes[*node as usize];
@@ -19,9 +22,15 @@ pub(super) fn left_wall(scene: &Scene, displacement: &[Vector]) -> Option<Warnin
         return None;
     }
     let mut faces = scene.mesh.boundary_faces();
+    // A corner of another side of the tissue may have no free node either: it lies across no wall of its nodes.
     faces.retain(|face| {
+        let area = face.area_vector(&scene.mesh.nodes);
+        let lies_on_wall = |node: &u32| {
+            let mut walls = scene.conditions.walls.get(node).into_iter().flatten();
+            walls.any(|wall| wall.normal.dot(&area).abs() > ALONG_WALL * area.norm())
+        };
         let mut of_face = face.nodes().iter();
-        of_face.clone().any(slides) && of_face.all(|node| class(node) != NodeClass::Free)
+        of_face.clone().any(lies_on_wall) && of_face.all(|node| class(node) != NodeClass::Free)
     });
     let wall = scene.mesh.surface_of(&faces);
     let search = SurfaceSearch::new(&wall).ok()?;

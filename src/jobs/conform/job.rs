@@ -21,8 +21,8 @@ use crate::schema::predict::result::ResultDocument;
 use crate::schema::repair::RepairResultDocument;
 use crate::schema::{CaseDocument, ErrorCode, Pointer, Problem};
 use mechanics::conformation::{
-    Conformation, ConformationError, Covering, DoubtfulLandmark, LATTICES, Patient, SheetName,
-    Template, carried, conform_on, finest_spacing,
+    Conformation, ConformationError, Covering, DoubtfulLandmark, FEWEST_CHECKED, LATTICES, Patient,
+    SheetName, Template, carried, conform_on, finest_spacing,
 };
 use mechanics::format::vtk::{vtp, vtu};
 use mechanics::format::{SurfaceOutput, VolumeOutput};
@@ -76,6 +76,7 @@ pub fn conform_job(
     let warnings =
         warnings.chain(found.poor_fit()).chain(found.covered_skin()).chain(found.coarse());
     let warnings = warnings.chain(found.conformation.doubtful.iter().map(in_doubt));
+    let warnings = warnings.chain(prepared.unchecked_landmarks());
     let warnings: Vec<Warning> = warnings.collect();
     let warnings = warning_documents(told.chain(&warnings));
     let mut provenance = origin.provenance(&clock);
@@ -113,6 +114,17 @@ struct Coarser {
 }
 
 impl PreparedConformation {
+    /// The warning of landmarks that are too few to be checked by each other.
+    fn unchecked_landmarks(&self) -> Option<Warning> {
+        let count = self.landmarks.len();
+        let detail = format!(
+            "{count} landmarks are too few to tell a wrong one: the template follows each of them, right or wrong; with {FEWEST_CHECKED} or more \
+             one that lies elsewhere than the others say is told"
+        );
+        let warning = Warning::new("landmarks-unchecked", detail).with("landmarks", count as f64);
+        (1..FEWEST_CHECKED).contains(&count).then_some(warning)
+    }
+
     /// On the finest lattices on which all cells are valid after their repair; on the finest ones where there are none.
     fn conformed_whole(
         &self,

@@ -73,7 +73,7 @@ pub struct TemplateLandmarkDocument {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum ConformStartName {
-    /// Three or more landmarks, else principal axes.
+    /// Three or more landmarks, else principal axes or boxes, whichever leaves less.
     #[default]
     Auto,
     Landmarks,

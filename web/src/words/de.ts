@@ -258,7 +258,7 @@ export const de: Words = {
     "image-place-doubtful": "eine Datei sagt zweierlei über die Lage ihres Bilds",
     "jaw-overlaps": "ein geschlossener Kiefer liegt in anderem Knochen", "jaws-touch": "die Kiefer hängen in der Aufnahme zusammen",
     "landmark-doubtful": "eine Landmarke liegt woanders, als die übrigen sagen", "landmark-far": "eine Landmarke liegt weit weg", "landmarks-crowded": "Landmarken liegen in einem Millimeter",
-    "landmarks-insufficient": "zu wenige Landmarken für einen Spline", "landmarks-swapped": "links und rechts sind vertauscht",
+    "landmarks-insufficient": "zu wenige Landmarken für einen Spline", "landmarks-unchecked": "zu wenige Landmarken, um eine falsche zu erkennen", "landmarks-swapped": "links und rechts sind vertauscht",
     "large-rotation": "das Gewebe dreht sich mehr, als eine lineare Antwort verträgt",
     "large-strain": "das Gewebe dehnt sich mehr, als eine lineare Antwort verträgt", "law-at-rest": "das Gesetz des Gewebes gilt wie in Ruhe",
     "learned-otherwise": "gelernt wurde unter anderen Bedingungen",

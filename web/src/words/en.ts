@@ -255,7 +255,7 @@ export const en = {
     "held-off-bone": "held nodes lie on no bone", "image-place-doubtful": "a file says twice where its image stands",
     "jaw-overlaps": "a closed jaw lies in other bone", "jaws-touch": "the jaws hang together in the scan", "landmark-doubtful": "a landmark lies elsewhere than the others say", "landmark-far": "a landmark lies far away",
     "landmarks-crowded": "landmarks lie within a millimetre", "landmarks-insufficient": "too few landmarks for a spline",
-    "landmarks-swapped": "left and right are swapped", "large-rotation": "the tissue turns more than a linear answer bears",
+    "landmarks-unchecked": "too few landmarks to tell a wrong one", "landmarks-swapped": "left and right are swapped", "large-rotation": "the tissue turns more than a linear answer bears",
     "large-strain": "the tissue stretches more than a linear answer bears", "law-at-rest": "the law of the tissue is taken as at rest",
     "learned-otherwise": "the model was learned from other conditions",
     "learning-does-not-help": "what was learned is worse than mechanics alone", "linear-truth": "the truth of the study is linear",

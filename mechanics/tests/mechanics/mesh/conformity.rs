@@ -69,6 +69,8 @@ fn a_slit_with_nodes_of_its_own_and_parts_that_share_no_node_are_meant() {
     let (hex, tet) = ((CellShape::Hex8, [3; 3]), (CellShape::Tet4, [3; 3]));
     for shape in [hex, tet] {
         assert_eq!(told(&beside(shape, shape, |x| x.z < 10.0)), None, "a slit of {shape:?}");
+        let corner = |x: &Vector| x.z < 10.0 || x.y < 10.0;
+        assert_eq!(told(&beside(shape, shape, corner)), None, "a slit of {shape:?} in a corner");
     }
     assert_eq!(told(&beside(hex, (CellShape::Hex8, [4; 3]), |_| false)), None);
     assert_eq!(told(&beside(hex, tet, |_| false)), None);

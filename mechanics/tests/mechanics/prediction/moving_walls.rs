@@ -159,6 +159,24 @@ fn tissue_between_a_bone_and_its_wall_goes_with_both_as_one() {
     }
 }
 
+/// A corner of the top, all of whose nodes are held or slide, once counted as wall: a node of tetrahedra was told to leave it.
+#[test]
+fn nodes_that_slide_along_flat_walls_stay_on_them() {
+    for (shape, settings) in models() {
+        let mesh = block(Vector::new(10.0, 10.0, 10.0), [2, 3, 2], shape);
+        let mut case = case_of(mesh, material(15.0, 0.46));
+        case.fixed = vec![set("x_min")];
+        case.segments = vec![segment("jaw", "x_max")];
+        case.sliding = vec![wall("y_min", None), wall("y_max", None)];
+        let prediction = solve(&case, &moved(shifted([0.0, 0.0, 4.0])), &settings);
+        assert!(
+            !prediction.warnings.iter().any(|w| w.code == "sliding-off-wall"),
+            "{:?} of {shape:?}",
+            settings.method
+        );
+    }
+}
+
 #[test]
 fn springs_and_finite_strain_know_that_a_wall_turns_with_its_bone() {
     let mesh = block(Vector::new(10.0, 10.0, 10.0), [2, 3, 2], CellShape::Tet4);
