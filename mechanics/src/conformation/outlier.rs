@@ -5,11 +5,11 @@
 
 use rayon::prelude::*;
 
-use super::conform::{Patient, Surfaces};
 use super::error::ConformationError;
 use super::landmark::Landmark;
 use super::schedule::coarse_levels;
 use super::start::Start;
+use super::surfaces::{Patient, Surfaces};
 use crate::progress::{Inner, Progress};
 
 /// Fits of a cross-validation: each leaves out every eighth landmark.

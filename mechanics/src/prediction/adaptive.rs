@@ -15,7 +15,7 @@ use super::muscle_field::MuscleField;
 use super::nonlinearity;
 use super::numerical_error::{self, NotEstimated, NumericalError};
 use super::refined_scene::NotRefined;
-use super::refinement_goal::{Limit, LimitError, Place, RefinementGoal};
+use super::refinement_goal::{Limit, LimitError, RefinementGoal, SkinPart};
 use super::scene::Scene;
 use super::{Prediction, described};
 use crate::mesh::bisection::{Bisection, HALVES_EVERY_EDGE, NotTetrahedra};
@@ -212,18 +212,20 @@ impl<'a> Step<'a> {
         let missing = &self.error.missing;
         let error = |limit: &Limit| limit.error([first, self.scene], missing);
         let all = first.skin.lengths(missing);
-        let mut lengths = match &limits[0].place {
-            Place::Moving(points) => points.iter().map(|&point| all[point as usize]).collect(),
-            Place::Region(..) | Place::Landmark(..) => all,
+        let mut lengths = match &limits[0].part {
+            SkinPart::Moving(points) => points.iter().map(|&point| all[point as usize]).collect(),
+            SkinPart::Region(..) | SkinPart::Landmark(..) => all,
         };
         lengths.sort_by(f64::total_cmp);
         let p95 = (lengths.len() * 95).div_ceil(100).max(1) - 1;
         let (mut regions_mm, mut landmarks_mm) = (BTreeMap::new(), BTreeMap::new());
         for limit in limits {
-            match &limit.place {
-                Place::Moving(_) => None,
-                Place::Region(name, _) => regions_mm.insert((*name).to_owned(), error(limit)),
-                Place::Landmark(name, _) => landmarks_mm.insert((*name).to_owned(), error(limit)),
+            match &limit.part {
+                SkinPart::Moving(_) => None,
+                SkinPart::Region(name, _) => regions_mm.insert((*name).to_owned(), error(limit)),
+                SkinPart::Landmark(name, _) => {
+                    landmarks_mm.insert((*name).to_owned(), error(limit))
+                }
             };
         }
         Level {
@@ -259,7 +261,7 @@ pub fn predict_adaptively(
         let step = Step::solve(finest.as_ref().unwrap_or(scene), progress)?;
         if levels.is_empty() {
             let moving = scene.skin.moving_points(&step.solved.equilibrium.displacement);
-            limits[0].place = Place::Moving(moving);
+            limits[0].part = SkinPart::Moving(moving);
         }
         let error = |limit: &Limit| limit.error([scene, step.scene], &step.error.missing);
         let open: Vec<&Limit> = limits.iter().filter(|own| error(own) > own.accepted_mm).collect();

@@ -121,7 +121,6 @@ impl Scene {
         scene.warnings.extend(far);
         scene.warnings.extend(suspect_skin(&scene, case.skin.is_some()));
         scene.warnings.extend(cut::duplicate_nodes(&scene.mesh, &check.boundary_nodes));
-        scene.warnings.extend(cells_do_not_match(&scene.mesh, &scene.boundary));
         scene.warnings.extend(scene.doubts(case, plan));
         Ok(scene)
     }
@@ -130,6 +129,7 @@ impl Scene {
     fn doubts(&self, case: &Case, plan: &Plan) -> Vec<Warning> {
         let mut warnings: Vec<Warning> = Vec::new();
         let name = |class| self.class_name(class);
+        warnings.extend(cells_do_not_match(&self.mesh, &self.boundary));
         warnings.extend(tearing::tearing(&self.mesh, &self.conditions, name));
         warnings.extend(walls::warn_of_rotated_walls(self));
         warnings.extend(states_rest(plan, self));

@@ -36,7 +36,7 @@ pub enum LimitError {
 }
 
 /// Where an error is limited.
-pub(super) enum Place<'a> {
+pub(super) enum SkinPart<'a> {
     /// Points of the skin of the case that move.
     Moving(Vec<u32>),
     /// A named part of the skin, its points.
@@ -46,19 +46,19 @@ pub(super) enum Place<'a> {
 }
 
 pub(super) struct Limit<'a> {
-    pub place: Place<'a>,
+    pub part: SkinPart<'a>,
     pub accepted_mm: f64,
 }
 
 impl RefinementGoal {
     /// The one over all skin that moves comes first.
     pub(super) fn limits<'a>(&'a self, scene: &Scene) -> Result<Vec<Limit<'a>>, LimitError> {
-        let place = Place::Moving(scene.skin.points());
-        let mut limits = vec![Limit { place, accepted_mm: self.skin_mm }];
+        let part = SkinPart::Moving(scene.skin.points());
+        let mut limits = vec![Limit { part, accepted_mm: self.skin_mm }];
         for (name, &accepted_mm) in &self.regions_mm {
             let points = scene.skin.regions.get(name);
             let points = points.ok_or_else(|| LimitError::UnknownRegion(name.clone()))?;
-            limits.push(Limit { place: Place::Region(name, points.clone()), accepted_mm });
+            limits.push(Limit { part: SkinPart::Region(name, points.clone()), accepted_mm });
         }
         for (name, &accepted_mm) in &self.landmarks_mm {
             let distance = scene.distance_to_skin(name);
@@ -67,7 +67,8 @@ impl RefinementGoal {
             if distance > LANDMARK_FAR {
                 return Err(LimitError::FarLandmark { name: name.clone(), distance });
             }
-            limits.push(Limit { place: Place::Landmark(name, scene.landmarks[name]), accepted_mm });
+            limits
+                .push(Limit { part: SkinPart::Landmark(name, scene.landmarks[name]), accepted_mm });
         }
         Ok(limits)
     }
@@ -76,11 +77,11 @@ impl RefinementGoal {
 impl Limit<'_> {
     /// The estimated error in mm, from what nodes of a mesh lack; the first scene is that of the case.
     pub fn error(&self, [first, finest]: [&Scene; 2], missing: &[Vector]) -> f64 {
-        match &self.place {
-            Place::Moving(points) | Place::Region(_, points) => {
+        match &self.part {
+            SkinPart::Moving(points) | SkinPart::Region(_, points) => {
                 first.skin.mean_length(points, missing)
             }
-            Place::Landmark(_, at) => {
+            SkinPart::Landmark(_, at) => {
                 let corners = corners(&finest.skin, at).into_iter().flatten();
                 corners.map(|(node, weight)| missing[node as usize] * weight).sum::<Vector>().norm()
             }
@@ -95,10 +96,10 @@ impl Limit<'_> {
         missing: &[Vector],
     ) -> Vec<(u32, Vector)> {
         let (nodes, areas) = (scene.skin.nodes(), scene.skin.surface.point_areas());
-        let points = match &self.place {
-            Place::Moving(_) => scene.skin.moving_points(displacement),
-            Place::Region(name, _) => scene.skin.regions.get(*name).cloned().unwrap_or_default(),
-            Place::Landmark(_, at) => return self.at_landmark(scene, at, missing),
+        let points = match &self.part {
+            SkinPart::Moving(_) => scene.skin.moving_points(displacement),
+            SkinPart::Region(name, _) => scene.skin.regions.get(*name).cloned().unwrap_or_default(),
+            SkinPart::Landmark(_, at) => return self.at_landmark(scene, at, missing),
         };
         let area: f64 = points.iter().map(|&point| areas[point as usize]).sum();
         let weight = |&point: &u32| {
