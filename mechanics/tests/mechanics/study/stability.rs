@@ -277,7 +277,12 @@ fn parts_that_hang_on_two_nodes_or_fewer_are_refused_with_their_place() {
         // The mesh is coarse, and the answer says so.
         assert!(matches!(joined.verdict, Verdict::Good | Verdict::Cautious), "{joined:?}");
         let told = joined.answer.iter().flat_map(|answer| &answer.warnings);
-        assert!(told.into_iter().all(|warning| warning.code == "numerical-error-large"));
+        // The tetrahedron stands on half a face of other cells.
+        let is_half = shape_for(&variants()[variant]) != CellShape::Tet4;
+        let codes: Vec<&str> =
+            told.map(|own| own.code).filter(|code| *code != "numerical-error-large").collect();
+        let expected: &[&str] = if is_half { &["cells-do-not-match"] } else { &[] };
+        assert_eq!(codes, expected, "{joined:?}");
         for (shared, free) in [(2.0, "1 of the 6"), (1.0, "3 of the 6"), (0.0, "6 of the 6")] {
             let refusal = at(&found, variant, shared).refusal.clone().unwrap();
             assert_eq!(
