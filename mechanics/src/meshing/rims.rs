@@ -4,6 +4,7 @@ use rayon::prelude::*;
 
 use super::boundary_set::BoundarySet;
 use super::draft::{Draft, FACES};
+use crate::mesh::check::referenced;
 
 /// A face of one tetrahedron alone.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -49,9 +50,7 @@ pub(super) fn boundary_faces(draft: &Draft) -> Vec<RimFace> {
 
 /// Nodes that bound no face of the boundary lie on none, as where a gap thinner than a cell was filled around one.
 pub(super) fn clear_inner(draft: &mut Draft, faces: &[RimFace]) {
-    let mut bounds = vec![false; draft.nodes.len()];
-    let nodes = faces.iter().flat_map(|face| face.nodes);
-    nodes.for_each(|node| bounds[node as usize] = true);
+    let bounds = referenced(draft.nodes.len(), faces.iter().flat_map(|face| &face.nodes));
     let inner = draft.boundaries.iter_mut().zip(bounds).filter(|(_, bounds)| !bounds);
     inner.for_each(|(boundary, _)| *boundary = BoundarySet::NONE);
 }

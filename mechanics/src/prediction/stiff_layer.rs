@@ -8,6 +8,7 @@
 
 use super::Scene;
 use crate::mesh::Warning;
+use crate::mesh::check::referenced;
 use crate::mesh::volume::BoundaryFace;
 
 /// How many times as stiff as a neighbour a cell is from which on a single layer is reported.
@@ -31,9 +32,8 @@ pub(super) fn thin_stiff_layers(scene: &Scene) -> Option<Warning> {
             *at = at.min(material.young_modulus());
         }
     }
-    let mut is_outside = vec![false; scene.mesh.nodes.len()];
     let outside = scene.boundary.iter().flat_map(BoundaryFace::nodes);
-    outside.for_each(|&node| is_outside[node as usize] = true);
+    let is_outside = referenced(scene.mesh.nodes.len(), outside);
     let mut layers = Layers::default();
     for ((_, nodes), material) in of_cells() {
         let own = material.young_modulus();
