@@ -71,10 +71,10 @@ export async function studies(app: App): Promise<Leave> {
   const open = (job: Job) => void report(app, job, shown).catch((error: unknown) => shown.replaceChildren(refusal(error, words)));
   // Lists say the verdict of a study, its report what it was of.
   const about = (job: Job) => {
-    const into = make("p", { className: "fine" }, tail(job.id));
+    const into = make("p", { className: "fine about" }, tail(job.id));
     if (job.status === "successful") {
       service.get<Documents["ReportDocument"]>(`/v1/jobs/${job.id}/report`)
-        .then(({ rows, scenes }) => { into.textContent = [scenes.map(({ name }) => name).join(", "), each(rows.map(({ label }) => label)).join(", "), tail(job.id)].join(" · "); }, () => {});
+        .then(({ rows, scenes }) => { into.title = into.textContent = [scenes.map(({ name }) => name).join(", "), each(rows.map(({ label }) => label)).join(", "), tail(job.id)].join(" · "); }, () => {});
     }
     return into;
   };
