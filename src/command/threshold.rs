@@ -12,6 +12,7 @@ use crate::schema::case::document::LengthUnit;
 use mechanics::image::equal_volume::{BoneRegion, ThresholdVolume, equal_volume};
 use mechanics::image::{Grid, ImageVolume, Mask};
 use mechanics::mesh::{Frame, Vector};
+use mechanics::registration::SphereOrBox;
 
 #[derive(Debug, Args)]
 pub struct Arguments {
@@ -68,12 +69,9 @@ impl Arguments {
         };
         let image = image.turned(stored.frame.unwrap_or_default(), Frame::Lps);
         let [a, b] = [&corners[..3], &corners[3..]].map(Vector::from_column_slice);
-        let (low, high) = (a.inf(&b), a.sup(&b));
+        let region = SphereOrBox::Box { lower: a.inf(&b), upper: a.sup(&b) };
         let grid = Grid::of(&image);
-        let is_inside = |voxel: usize| {
-            let at = image.centre(grid.index(voxel));
-            at.sup(&low).inf(&high) == at
-        };
+        let is_inside = |voxel: usize| region.holds(&image.centre(grid.index(voxel)));
         let inside: Vec<bool> = (0..grid.len()).map(is_inside).collect();
         if !inside.contains(&true) {
             let (first, last) = image.bounds();

@@ -46,6 +46,11 @@ impl ReferencePoint {
         let gradients = self.gradients.map(|gradient| inverse_transpose * gradient);
         Some(PhysicalPoint { gradients, volume: self.weight * determinant })
     }
+
+    /// Where the point is in a cell with these corners.
+    pub fn position(&self, corners: &[Vector]) -> Vector {
+        corners.iter().zip(&self.values).map(|(corner, value)| corner * *value).sum()
+    }
 }
 
 /// The Gauss points of two-point quadrature on [-1, 1] lie at plus and minus this.

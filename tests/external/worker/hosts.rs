@@ -2,7 +2,6 @@
 
 use std::io::BufRead;
 use std::process::{Command, Output, Stdio};
-use std::time::{Duration, Instant};
 
 use facies::config::DatabaseLocation;
 use facies::store::Store;
@@ -14,7 +13,7 @@ use crate::deployments::{Cluster, Deployment};
 use crate::helpers::{Block, SMALL, Server, ask, serve_shared, spec};
 use crate::invariants::{MEDIUM, accepted, tagged};
 use crate::partition::Way;
-use crate::processes::{signal, stopped_slot};
+use crate::processes::{signal, stopped_slot, until};
 use crate::support::external::Missing;
 use crate::support::trials::trials;
 use crate::workers::Worker;
@@ -92,11 +91,10 @@ async fn a_worker_tells_what_it_counts_and_that_it_lives(on: Deployment) {
     api.job(&spec(&case, 1.0)).await.expect(StatusCode::OK);
     // It counts once the result is there for all.
     let counted = "facies_attempts_total{kind=\"predict\",status=\"successful\"} 1";
-    let until = Instant::now() + Duration::from_secs(30);
-    while !text(&ask(api.client.get(metrics)).await.bytes).contains(counted) {
-        assert!(Instant::now() < until, "the attempt was not counted");
-        tokio::time::sleep(Duration::from_millis(20)).await;
-    }
+    until("that the attempt is counted", async || {
+        text(&ask(api.client.get(metrics)).await.bytes).contains(counted).then_some(())
+    })
+    .await;
     let healthz = metrics.replace("/metrics", "/healthz");
     assert_eq!(ask(api.client.get(&healthz)).await.status, StatusCode::OK);
 }

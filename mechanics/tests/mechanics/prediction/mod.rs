@@ -2,6 +2,7 @@
 
 mod adaptive;
 mod adequate;
+mod bent_cells;
 mod closed_form;
 mod conditions;
 mod contact;

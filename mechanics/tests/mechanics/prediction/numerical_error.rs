@@ -73,7 +73,7 @@ impl Question {
         assert!((0.5..=2.0).contains(&mean), "{name}: {mean:.2}");
         assert!((0.5..=2.0).contains(&p95), "{name}: {p95:.2} at p95");
         // Nothing is gained by a correction of nearly incompressible wedges.
-        assert!(left < 1.1, "{name}: a correction leaves {left:.2} of the error");
+        assert!(left < 1.2, "{name}: a correction leaves {left:.2} of the error");
     }
 }
 
@@ -301,7 +301,7 @@ fn of_a_tiny_movement_finite_strain_is_estimated_as_linear_elements_are() {
     pulled.fixed = vec![set("x_min")];
     pulled.segments = vec![CaseSegment { name: "patch".to_owned(), nodes: set("x_max") }];
     let (plain, stabilised) = (ElementChoice::Plain, ElementChoice::Stabilised);
-    // Without pressures the loose solution is one to 0.01 above a Poisson ratio of 0.495, in place of 0.1: few digits of the two differ.
+    // Without pressures the loose solution is one to 0.003 above a Poisson ratio of 0.495, in place of 0.03: few digits of the two differ.
     let near =
         |case: Case| Case { materials: [("*".to_owned(), material(15.0, 0.497))].into(), ..case };
     for (case, element, most) in [

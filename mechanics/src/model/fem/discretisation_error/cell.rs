@@ -56,6 +56,15 @@ impl<'a> Cells<'a> {
         Cells { tissue, displacement, pressures, numbers, mean_stresses }
     }
 
+    /// The values of the corners of a cell; zero beyond its last.
+    fn of_corners(&self, cell: usize, of_nodes: &[Vector]) -> [Vector; MAX_NODES] {
+        let mut own = [Vector::zeros(); MAX_NODES];
+        for (own, &node) in own.iter_mut().zip(self.tissue.mesh.cells.nodes(cell)) {
+            *own = of_nodes[node as usize];
+        }
+        own
+    }
+
     fn cell(&self, cell: usize) -> Result<Cell, InvertedCell> {
         let (mesh, tensor) = (self.tissue.mesh, self.tissue.tensor(cell));
         let shape = mesh.cells.shape(cell);
@@ -86,16 +95,11 @@ impl EnrichedCells for Cells<'_> {
     }
 
     fn equations(&self, cell: usize, of_edges: &mut OfEdges) -> Result<(), InvertedCell> {
-        let mut moved = [Vector::zeros(); MAX_NODES];
-        let nodes = self.tissue.mesh.cells.nodes(cell);
-        for (own, &node) in moved.iter_mut().zip(nodes) {
-            *own = self.displacement[node as usize];
-        }
-        let moved = &moved[..nodes.len()];
+        let moved = self.of_corners(cell, self.displacement);
         match self.cell(cell)? {
-            Cell::Simplex(simplex) => simplex.equations(moved, of_edges),
+            Cell::Simplex(simplex) => simplex.equations(&moved, of_edges),
             Cell::Points(points) => {
-                *of_edges = points.equations(moved, &self.mean_stresses[cell]);
+                *of_edges = points.equations(&moved, &self.mean_stresses[cell]);
             }
         }
         Ok(())
@@ -110,7 +114,16 @@ impl EnrichedCells for Cells<'_> {
             Cell::Simplex(simplex) => {
                 (simplex.forces(of_edges), simplex.volumes(of_edges).unwrap_or_default())
             }
-            Cell::Points(points) => (points.forces(of_edges), [0.0; 4]),
+            Cell::Points(points) => {
+                (points.forces(&self.of_corners(cell, self.displacement), of_edges), [0.0; 4])
+            }
+        })
+    }
+
+    fn stiffening(&self, cell: usize, of_nodes: &[Vector]) -> Result<f64, InvertedCell> {
+        Ok(match self.cell(cell)? {
+            Cell::Simplex(_) => 0.0,
+            Cell::Points(points) => points.stiffening(&self.of_corners(cell, of_nodes)),
         })
     }
 }

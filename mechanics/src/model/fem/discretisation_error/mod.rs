@@ -21,6 +21,7 @@ mod edge_functions;
 mod edges;
 mod held_edges;
 mod indicators;
+mod inner_modes;
 mod loads;
 mod mean_stress;
 mod points;
@@ -43,17 +44,22 @@ use cell::{CellAnswer, Cells};
 pub(super) use edge_equations::EdgeEquation;
 pub(super) use edge_functions::{Corners, MAX_EDGES, at_point};
 pub use indicators::{Goal, marked};
+pub(super) use inner_modes::{MAX_MODES, ModeEquations, mode_gradients, moment_weights};
 pub use loads::DistributedLoads;
 pub(super) use mean_stress::{Weighted, has_wedges, smooth_in_wedges};
+pub(super) use points::gradient_of;
 pub(super) use two_level::{AtCorners, EnrichedCells, OfEdges, TwoLevel};
 
 /// Relative residual of the solve: the first digit of an estimate is all that it has.
 const LOOSE: f64 = 0.03;
 
-/// The same where the first iterations show little of the answer: where Young's modulus differs by more than this factor, or
-/// volume changes resist much more than changes of shape.
+/// The same where the first iterations show little of the answer: where Young's modulus differs by more than this factor.
 const TIGHTER: f64 = 0.01;
 const CONTRAST: f64 = 3.0;
+
+/// The same where volume changes resist much more than changes of shape, from this Poisson ratio on: what inner modes do to volume
+/// has most of the residual and little of the answer.
+const TIGHTEST: f64 = 0.003;
 const LOCKING: f64 = 0.495;
 
 /// Factor of e: without it e falls short by about this (docs/estimates.md).
@@ -119,9 +125,10 @@ impl Estimate<'_> {
         let cells = self.cells(self.answered(solved));
         let two_level = TwoLevel { constraints, ..self.two_level(&cells) };
         let (residual, squared_energy_norm) = two_level.at_corners()?;
+        let forces = residual.forces.clone();
         let tolerance = tolerance(self.tissue.materials, has_pressures);
         let Correction { displacement, iterations, .. } = solve(residual, tolerance)?;
-        let factor = factor(has_pressures);
+        let factor = factor(has_pressures) * two_level.share(&displacement, &forces)?;
         let missing = displacement.into_iter().map(|e| e * factor).collect();
         Ok(DiscretisationError { missing, squared_energy_norm, iterations })
     }
@@ -157,7 +164,11 @@ pub(super) fn tolerance(materials: &[LinearElastic], has_pressures: bool) -> f64
     let (least, most) = moduli.fold((f64::INFINITY, 0.0_f64), |(a, b), e| (a.min(e), b.max(e)));
     let locks =
         !has_pressures && materials.iter().any(|material| material.poisson_ratio() > LOCKING);
-    if most > CONTRAST * least || locks { TIGHTER } else { LOOSE }
+    match (locks, most > CONTRAST * least) {
+        (true, _) => TIGHTEST,
+        (false, true) => TIGHTER,
+        (false, false) => LOOSE,
+    }
 }
 
 /// Factor of e.

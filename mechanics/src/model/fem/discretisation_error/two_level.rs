@@ -1,6 +1,8 @@
 //! Two-level step with functions of edges: the coefficient of every edge by itself, and its effect on the equations of
 //! the corners.
 
+use rayon::prelude::*;
+
 use super::edge_equations::{EdgeEquation, EdgeEquations};
 use super::edge_functions::MAX_EDGES;
 use super::edges::Edges;
@@ -9,8 +11,8 @@ use super::loads::DistributedLoads;
 use super::sheet::{Sheet, SheetState};
 use crate::boundary::Constraint;
 use crate::element::MAX_NODES;
-use crate::mesh::Vector;
 use crate::mesh::volume::BoundaryFace;
+use crate::mesh::{CellShape, Vector};
 use crate::model::dofs::DofMap;
 use crate::model::fem::assembly::Tissue;
 use crate::model::fem::linear_system::Residual;
@@ -39,7 +41,13 @@ pub(in crate::model::fem) trait EnrichedCells: Sync {
         cell: usize,
         of_edges: &[Vector; MAX_EDGES],
     ) -> Result<AtCorners, InvertedCell>;
+
+    /// v . (K_i - K) v of a cell in mN mm (`inner_modes`), for v of all nodes.
+    fn stiffening(&self, cell: usize, of_nodes: &[Vector]) -> Result<f64, InvertedCell>;
 }
+
+/// A step is not made longer or shorter by more than this.
+const SHARES: [f64; 2] = [0.25, 2.0];
 
 /// An answer, and its cells with functions on their edges.
 pub(in crate::model::fem) struct TwoLevel<'a, C> {
@@ -94,6 +102,20 @@ impl<C: EnrichedCells> TwoLevel<'_, C> {
         let skin = self.tissue.membrane?;
         let moved = SheetState { displacement, is_finite };
         Some(Sheet::new((skin, self.tissue.mesh), moved, edges, is_edge))
+    }
+
+    /// The share of the step e of the nodes, K e = forces, that leaves least energy where cells have inner modes.
+    pub fn share(&self, step: &[Vector], forces: &[Vector]) -> Result<f64, InvertedCell> {
+        let cells = &self.tissue.mesh.cells;
+        if cells.iter().all(|(shape, _)| shape == CellShape::Tet4) {
+            return Ok(1.0);
+        }
+        let own = (0..cells.len()).into_par_iter().map(|cell| self.cells.stiffening(cell, step));
+        let stiffening: f64 = own.collect::<Result<Vec<f64>, _>>()?.iter().sum();
+        let work: f64 = step.iter().zip(forces).map(|(e, f)| e.dot(f)).sum();
+        let is_minimum = work > 0.0 && work + stiffening > 0.0;
+        let [least, most] = SHARES;
+        Ok(if is_minimum { (work / (work + stiffening)).clamp(least, most) } else { 1.0 })
     }
 
     /// Forces of the edge functions in the equations of the corners, and their squared energy norm in mN mm.

@@ -6,7 +6,7 @@
 use nalgebra::{Matrix3, SymmetricEigen};
 
 /// The least stiffness of an edge, as a share of mu int |grad phi|^2, which is the least one of linear tissue.
-const LEAST: f64 = 0.5;
+pub(super) const LEAST: f64 = 0.5;
 
 /// The block of an edge with nothing softer than a share of `shear` = mu int |grad phi|^2.
 pub(super) fn stiff_enough(block: Matrix3<f64>, shear: f64) -> Matrix3<f64> {

@@ -32,8 +32,8 @@ pub(super) struct Enriched<'a> {
 }
 
 /// Pressures, and where they belong.
-pub(super) struct NodalPressures<'a> {
-    pub pressures: Option<&'a Pressures>,
+pub(super) struct NodalPressures<'p, 'a> {
+    pub pressures: Option<&'p Pressures>,
     pub values: &'a [f64],
 }
 
@@ -43,7 +43,7 @@ impl<'a> Enriched<'a> {
         laws: &[Law],
         tissue: &Tissue,
         deformed: &'a Deformed<'a>,
-        pressed: &NodalPressures<'a>,
+        pressed: &NodalPressures<'_, 'a>,
     ) -> Self {
         let mesh = linear.mesh;
         let mut simplex_of_cell = vec![u32::MAX; mesh.cells.len()];
@@ -74,7 +74,8 @@ impl<'a> Enriched<'a> {
         let brick = self.deformed.bricks.at_cell(cell);
         let mu = self.shear_moduli[usize::from(brick.law)];
         let smooth = self.of_wedges.get(cell).copied().flatten();
-        EnrichedBrick { shape: self.mesh.cells.shape(cell), brick, mu, smooth }
+        let (shape, corners) = (self.mesh.cells.shape(cell), self.mesh.corners(cell).collect());
+        EnrichedBrick { shape, brick, corners, mu, smooth }
     }
 }
 
@@ -122,6 +123,15 @@ impl EnrichedCells for Enriched<'_> {
             CellShape::Hex8 | CellShape::Wedge6 => {
                 (self.brick(cell).forces(of_edges), Default::default())
             }
+        })
+    }
+
+    fn stiffening(&self, cell: usize, of_nodes: &[Vector]) -> Result<f64, InvertedCell> {
+        let nodes = self.mesh.cells.nodes(cell);
+        let own = || nodes.iter().map(|&node| of_nodes[node as usize]).collect::<Vec<_>>();
+        Ok(match self.mesh.cells.shape(cell) {
+            CellShape::Tet4 => 0.0,
+            CellShape::Hex8 | CellShape::Wedge6 => self.brick(cell).stiffening(&own()),
         })
     }
 }

@@ -1,20 +1,25 @@
 //! A hexahedron or wedge at rest at finite strain with functions on its edges, integrated at its points.
+//!
+//! Its inner modes come first, as in `discretisation_error::points`, at the tangent moduli of its state.
 
 use nalgebra::Matrix3;
 
 use super::bricks::{BrickAt, PointAtRest};
-use super::edge_block::stiff_enough;
+use super::edge_block::{LEAST, stiff_enough};
 use crate::element::{MAX_NODES, ReferencePoint};
 use crate::material::hyperelastic::point::{Corner, Point};
 use crate::mesh::{CellShape, Vector};
 use crate::model::fem::discretisation_error::{
-    Corners, EdgeEquation, MAX_EDGES, OfEdges, at_point,
+    Corners, EdgeEquation, MAX_EDGES, MAX_MODES, ModeEquations, OfEdges, at_point, gradient_of,
+    mode_gradients, moment_weights,
 };
 use crate::model::reference_cell;
 
 pub(super) struct EnrichedBrick<'a> {
     pub shape: CellShape,
     pub brick: BrickAt<'a>,
+    /// The corners at rest, in mm.
+    pub corners: Vec<Vector>,
     /// The shear modulus in kPa.
     pub mu: f64,
     /// The pressure in kPa that stands for that of its cell in r, where there is such.
@@ -36,18 +41,103 @@ impl EnrichedBrick<'_> {
         at_point(self.shape, &corners).gradients
     }
 
+    /// The equations of the inner modes at the tangent moduli of the state.
+    fn inner(&self) -> Inner {
+        let reference = &reference_cell(self.shape).points;
+        let volumes: Vec<f64> = self.brick.at_rest.iter().map(|at_rest| at_rest.volume).collect();
+        let positions: Vec<Vector> = reference.iter().map(|p| p.position(&self.corners)).collect();
+        let edges: Vec<_> =
+            self.points().map(|(at_rest, _, point)| self.edges_at(at_rest, point)).collect();
+        let gradients = mode_gradients(self.shape, &edges, &volumes);
+        let mut inner = Inner {
+            equations: ModeEquations::new(self.shape),
+            weights: moment_weights(&positions, &volumes),
+            of_volume: [[Vector::zeros(); 3]; MAX_MODES],
+            means: [Vector::zeros(); MAX_MODES],
+            least: [0.0; MAX_MODES],
+            bulk: self.brick.of_mean * self.brick.volume(),
+            of_mean: self.brick.of_mean,
+            gradients,
+        };
+        for (place, (at_rest, point, _)) in self.points().enumerate() {
+            let (modes, y) = (inner.gradients[place], inner.weights[place]);
+            let own = modes.map(|g| point.corner(&g));
+            for (a, b) in inner.equations.pairs() {
+                let block = point.block(&own[a], &own[b]) * at_rest.volume;
+                inner.equations.add_block((a, b), &block);
+            }
+            for mode in inner.equations.modes() {
+                let of_log_volume = own[mode].of_log_volume(point.volume());
+                (0..3).for_each(|k| inner.of_volume[mode][k] += of_log_volume * y[k]);
+                inner.means[mode] += of_log_volume * at_rest.volume;
+                inner.least[mode] += LEAST * self.mu * modes[mode].norm_squared() * at_rest.volume;
+            }
+        }
+        for (a, b) in inner.equations.pairs() {
+            let pairs = inner.of_volume[a].iter().zip(&inner.of_volume[b]);
+            let block: Matrix3<f64> = pairs.map(|(v, w)| v * w.transpose()).sum();
+            let of_mean = inner.means[a] * inner.means[b].transpose() * inner.of_mean;
+            inner.equations.add_block((a, b), &(block * inner.bulk + of_mean));
+        }
+        inner
+    }
+
+    /// What the cell by itself does beside its corners in the state.
+    fn inside(&self) -> Inside {
+        let mut inner = self.inner();
+        let mut moments = [0.0; 3];
+        for (place, (at_rest, point, _)) in self.points().enumerate() {
+            let stress = point.stress() * at_rest.volume;
+            for mode in inner.equations.modes() {
+                inner.equations.add_force(mode, &(-(stress * inner.gradients[place][mode])));
+            }
+            let y = inner.weights[place];
+            (0..3).for_each(|k| moments[k] += point.log_volume() * y[k]);
+        }
+        let coefficients = inner.solved(moments, 0.0);
+        let changes: [f64; 3] = std::array::from_fn(|k| {
+            let pairs = coefficients.iter().zip(&inner.of_volume);
+            inner.bulk * (moments[k] + pairs.map(|(a, v)| a.dot(&v[k])).sum::<f64>())
+        });
+        let along = inner.gradients.iter().map(|modes| gradient_of(&coefficients, modes));
+        Inside { along: along.collect(), changes, weights: inner.weights }
+    }
+
+    /// v . (K_i - K) v of displaced corners at the tangent moduli, in mN mm: what moments resist, less what modes give way.
+    pub fn stiffening(&self, displacement: &[Vector]) -> f64 {
+        let mut inner = self.inner();
+        let (mut moments, mut mean) = ([0.0; 3], 0.0);
+        for (place, (at_rest, point, _)) in self.points().enumerate() {
+            let rows = rows(point, &gradient_of(displacement, &at_rest.gradients));
+            for mode in inner.equations.modes() {
+                let own = point.corner(&inner.gradients[place][mode]);
+                let force = force_on(point, &own, &rows) * at_rest.volume;
+                inner.equations.add_force(mode, &-force);
+            }
+            let change: f64 = (0..3).map(|k| rows[k].of_log_volume(point.volume())[k]).sum();
+            let y = inner.weights[place];
+            (0..3).for_each(|k| moments[k] += change * y[k]);
+            mean += change * at_rest.volume;
+        }
+        let coefficients = inner.solved(moments, mean);
+        let resisted: f64 = moments.iter().map(|moment| inner.bulk * moment * moment).sum();
+        resisted - inner.equations.work(&coefficients)
+    }
+
     /// Writes r and D of each edge. What the mean of a wedge resists counts with the shear modulus, as in
     /// `discretisation_error::points`.
     pub fn equations(&self, equations: &mut OfEdges) {
         *equations = [EdgeEquation::ZERO; MAX_EDGES];
         let (mut means, mut shears) = ([Vector::zeros(); MAX_EDGES], [0.0; MAX_EDGES]);
         let more = self.smooth.map_or(0.0, |smooth| smooth - self.brick.pressure());
-        for (at_rest, point, reference) in self.points() {
+        let inside = self.inside();
+        for ((at_rest, point, reference), along) in self.points().zip(&inside.along) {
             let (gradients, stress) = (self.edges_at(at_rest, reference), point.stress());
+            let rows = rows(point, along);
             for (edge, equation) in equations[..self.edge_count()].iter_mut().enumerate() {
                 let (g, volume) = (&gradients[edge], at_rest.volume);
                 let own = point.corner(g);
-                equation.residual -= stress * g * volume;
+                equation.residual -= (stress * g + force_on(point, &own, &rows)) * volume;
                 equation.stiffness += point.block(&own, &own) * volume;
                 let of_log_volume = own.of_log_volume(point.volume()) * volume;
                 equation.residual -= of_log_volume * more;
@@ -65,26 +155,23 @@ impl EnrichedBrick<'_> {
         }
     }
 
-    /// The forces on the corners of coefficients of the edges.
+    /// The forces on the corners of coefficients of the edges, and of the modes and moments of the state.
     pub fn forces(&self, of_edges: &[Vector; MAX_EDGES]) -> [Vector; MAX_NODES] {
         let mut forces = [Vector::zeros(); MAX_NODES];
         let (mut means, mut change) = ([Vector::zeros(); MAX_NODES], 0.0);
-        for (at_rest, point, reference) in self.points() {
+        let Inside { along, changes, weights } = self.inside();
+        for (((at_rest, point, reference), along), y) in self.points().zip(&along).zip(&weights) {
             let (gradients, volume) = (self.edges_at(at_rest, reference), at_rest.volume);
-            // H = sum b (x) grad phi, row by row: e_k (x) (H^T e_k).
-            let pairs = of_edges.iter().zip(&gradients);
-            let along: Matrix3<f64> = pairs.map(|(b, g)| b * g.transpose()).sum();
-            let rows: [Corner; 3] =
-                std::array::from_fn(|k| point.corner(&along.row(k).transpose()));
+            let rows = rows(point, &(gradient_of(of_edges, &gradients) + along));
             for (k, row) in rows.iter().enumerate() {
                 change += row.of_log_volume(point.volume())[k] * volume;
             }
+            let linear: f64 = changes.iter().zip(y).map(|(change, y)| change * y).sum();
             for (a, g) in at_rest.gradients.iter().enumerate() {
                 let corner = point.corner(g);
-                means[a] += corner.of_log_volume(point.volume()) * volume;
-                for (k, row) in rows.iter().enumerate() {
-                    forces[a] += point.block(&corner, row).column(k) * volume;
-                }
+                let of_log_volume = corner.of_log_volume(point.volume());
+                means[a] += of_log_volume * volume;
+                forces[a] += force_on(point, &corner, &rows) * volume + of_log_volume * linear;
             }
         }
         let pressure = self.brick.of_mean * change;
@@ -95,4 +182,53 @@ impl EnrichedBrick<'_> {
     fn edge_count(&self) -> usize {
         self.shape.edges().len()
     }
+}
+
+/// The equations of the inner modes of a cell.
+struct Inner {
+    equations: ModeEquations,
+    gradients: Vec<[Vector; MAX_MODES]>,
+    /// y_k dV of each point.
+    weights: Vec<[f64; 3]>,
+    /// d(ln J) of each mode, in the three moments and in the integral over the cell.
+    of_volume: [[Vector; 3]; MAX_MODES],
+    means: [Vector; MAX_MODES],
+    /// The least stiffness of each mode.
+    least: [f64; MAX_MODES],
+    /// What resists the moments in kPa, and the integral.
+    bulk: f64,
+    of_mean: f64,
+}
+
+impl Inner {
+    /// The coefficients of the modes where the change of volume has moments and an integral too.
+    fn solved(&mut self, moments: [f64; 3], mean: f64) -> [Vector; MAX_MODES] {
+        for mode in self.equations.modes() {
+            let pairs = self.of_volume[mode].iter().zip(moments);
+            let of_moments: Vector = pairs.map(|(v, moment)| v * (self.bulk * moment)).sum();
+            let force = of_moments + self.means[mode] * (self.of_mean * mean);
+            self.equations.add_force(mode, &-force);
+        }
+        self.equations.solve(&self.least)
+    }
+}
+
+/// What the inner modes of a cell do.
+struct Inside {
+    /// Their gradient at each point.
+    along: Vec<Matrix3<f64>>,
+    /// The pressures in kPa of the three moments of volume, those that corners make among them.
+    changes: [f64; 3],
+    /// y_k dV of each point.
+    weights: Vec<[f64; 3]>,
+}
+
+/// H row by row: e_k (x) (H^T e_k).
+fn rows(point: &Point, along: &Matrix3<f64>) -> [Corner; 3] {
+    std::array::from_fn(|k| point.corner(&along.row(k).transpose()))
+}
+
+/// d2W/dF2 : H along a shape function, for each unit of volume.
+fn force_on(point: &Point, corner: &Corner, rows: &[Corner; 3]) -> Vector {
+    (0..3).map(|k| point.block(corner, &rows[k]).column(k).into_owned()).sum()
 }

@@ -101,10 +101,10 @@ impl FinerProblem<'_> {
         if !found.is_met {
             return Ok(Err(NoMeshError::NotSolved));
         }
-        let factor = factor(has_pressures);
-        let missing =
-            dof_map.ordering.place.iter().map(|&row| found.positions[row as usize] * factor);
-        let missing = missing.collect();
+        let place = dof_map.ordering.place.iter();
+        let step: Vec<Vector> = place.map(|&row| found.positions[row as usize]).collect();
+        let factor = factor(has_pressures) * two_level.share(&step, &case.forces)?;
+        let missing = step.into_iter().map(|e| e * factor).collect();
         let iterations = found.iterations;
         Ok(Ok(DiscretisationError { missing, squared_energy_norm, iterations }))
     }

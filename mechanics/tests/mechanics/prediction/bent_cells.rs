@@ -1,0 +1,104 @@
+//! The estimate of the discretisation error where hexahedra and wedges bend: by growth, under a stiff skin, in flat layers, under
+//! a load.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use mechanics::mesh::sample::block;
+use mechanics::mesh::{CellShape, Vector};
+use mechanics::plan::{PlannedSegment, RigidMovement};
+use mechanics::prediction::{
+    Case, CaseSegment, ElementChoice, Load, Method, Plan, RegionNames, Settings,
+};
+
+use super::growth::growing;
+use super::numerical_error::Question;
+use crate::scenes::{case_of, material, set};
+
+/// Tissue of two layers, the upper one above a height.
+fn layered(size: Vector, cells: [usize; 3], shape: CellShape, above: f64, times: f64) -> Case {
+    let mut mesh = block(size, cells, shape);
+    let is_upper = |cell: usize| {
+        let corners: Vec<Vector> = mesh.corners(cell).collect();
+        corners.iter().sum::<Vector>().z / corners.len() as f64 > above
+    };
+    let layer = (0..mesh.cells.len()).map(|cell| i64::from(is_upper(cell))).collect();
+    mesh.cell_labels.insert("layer".to_owned(), layer);
+    let names = BTreeMap::from([(0, "lower".to_owned()), (1, "upper".to_owned())]);
+    if !mesh.cell_labels["layer"].contains(&1) {
+        return Case { fixed: vec![set("x_min")], ..case_of(mesh, material(15.0, 0.46)) };
+    }
+    Case {
+        regions: Some(RegionNames { array: "layer".to_owned(), names }),
+        materials: [("lower", 1.0), ("upper", times)]
+            .map(|(name, times)| (name.to_owned(), material(15.0 * times, 0.46)))
+            .into(),
+        fixed: vec![set("x_min")],
+        ..case_of(mesh, material(15.0, 0.46))
+    }
+}
+
+fn question(case: Case, plan: Plan, method: Method) -> Question {
+    let truth = ElementChoice::MeanDilatation;
+    let settings = Settings { element: truth, method, ..Settings::default() };
+    Question { case, plan, settings, halved: 2, truth }
+}
+
+fn asserted(name: &str, question: &Question, [least, most]: [f64; 2]) {
+    let found = question.effectivity();
+    println!("{name}: {:.2} {:.2}", found.mean, found.p95);
+    assert!((least..=most).contains(&found.mean), "{name}: {:.2}", found.mean);
+}
+
+#[test]
+fn growth_that_bends_a_strip_is_not_underestimated() {
+    for (shape, limits) in [(CellShape::Hex8, [0.7, 3.0]), (CellShape::Wedge6, [0.5, 3.0])] {
+        for method in [Method::FemLinear, Method::FemNonlinear] {
+            let case = layered(Vector::new(60.0, 6.0, 6.0), [8, 1, 2], shape, 3.0, 1.0);
+            let plan = Plan { growth: growing("upper", 0.03), ..Plan::default() };
+            asserted(&format!("{shape:?} {method:?}"), &question(case, plan, method), limits);
+        }
+    }
+}
+
+#[test]
+fn a_load_that_bends_a_beam_is_estimated_within_a_factor_of_two() {
+    for (shape, cells) in [
+        (CellShape::Hex8, [6, 2, 2]),
+        (CellShape::Hex8, [12, 4, 4]),
+        (CellShape::Wedge6, [6, 2, 2]),
+    ] {
+        let case = layered(Vector::new(60.0, 10.0, 10.0), cells, shape, 100.0, 1.0);
+        let traction = Vector::new(0.0, 0.0, -0.05);
+        let loads = vec![Load::Traction { faces: set("x_max"), traction }];
+        let plan = Plan { loads, ..Plan::default() };
+        let name = format!("{shape:?} {cells:?}");
+        asserted(&name, &question(case, plan, Method::FemLinear), [0.5, 2.0]);
+    }
+}
+
+/// Half of what lies on a slab moves, the other half stays; the mesh bends in between.
+fn half_moved(mut case: Case, by: Vector) -> (Case, Plan) {
+    let mesh = Arc::make_mut(&mut case.volume);
+    let bottom = mesh.node_sets["z_min"].clone();
+    let middle = mesh.nodes.iter().map(|node| node.x).fold(0.0, f64::max) / 2.0;
+    let moves = |node: &u32| mesh.nodes[*node as usize].x < middle - 1e-9;
+    let (moved, stays): (Vec<u32>, Vec<u32>) = bottom.into_iter().partition(moves);
+    mesh.node_sets.insert("moved".to_owned(), moved);
+    mesh.node_sets.insert("stays".to_owned(), stays);
+    case.fixed = vec![set("stays")];
+    case.segments = vec![CaseSegment { name: "bone".to_owned(), nodes: set("moved") }];
+    let movement = RigidMovement::about_pivot(Vector::zeros(), Vector::zeros(), by);
+    let segments = vec![PlannedSegment { name: "bone".to_owned(), movement }];
+    (case, Plan { segments, ..Plan::default() })
+}
+
+#[test]
+fn flat_layers_over_bone_that_moves_are_estimated_within_a_factor_of_two() {
+    for layers in [1, 3, 6] {
+        let case =
+            layered(Vector::new(60.0, 20.0, 9.0), [6, 2, layers], CellShape::Hex8, 100.0, 1.0);
+        let (case, plan) = half_moved(case, Vector::new(3.0, 0.0, 1.0));
+        asserted(&format!("{layers} layers"), &question(case, plan, Method::FemLinear), [0.5, 2.1]);
+    }
+}
