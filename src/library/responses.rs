@@ -68,7 +68,7 @@ struct Stored {
 impl LoadedResponse {
     /// One pass over the columns of each order.
     pub fn apply(&self, plan: &PlanAmounts) -> Applied {
-        let PlanAmounts { movements, inner } = plan;
+        let PlanAmounts { movements, inner, doubts: _ } = plan;
         let mut displacement = self.response.apply_all(&Amounts { movements, inner });
         let segments = &self.response.segments;
         let form = self.second_order.as_ref();

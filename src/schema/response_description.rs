@@ -18,7 +18,7 @@ use crate::schema::wire::limits::Limits;
 use crate::schema::wire::problem::Problem;
 use mechanics::boundary::ConnectedPart;
 use mechanics::mesh::ignored::listed;
-use mechanics::mesh::{Frame, Vector};
+use mechanics::mesh::{Frame, Vector, Warning};
 use mechanics::plan::RigidMovement;
 use mechanics::plan::doubt::{MovedSegment, beyond_face, nothing_moves, suspect_units};
 use mechanics::prediction::{RigidlyCarried, normal_turned, rigidly_carried};
@@ -98,6 +98,8 @@ pub struct PlanAmounts {
     pub movements: Vec<RigidMovement>,
     /// Of each column of growth and muscles.
     pub inner: Vec<f64>,
+    /// On the numbers as they were stated.
+    pub doubts: Vec<Warning>,
 }
 
 /// The origin of a response.
@@ -221,7 +223,7 @@ impl ResponseDescription {
         let movements: Vec<RigidMovement> =
             self.segments.iter().map(|segment| of(segment).unwrap_or_default()).collect();
         self.check_whole(&movements, &at)?;
-        Ok(PlanAmounts { movements, inner })
+        Ok(PlanAmounts { movements, inner, doubts: plan.doubts() })
     }
 
     /// Refuses what a prediction of the same plan refuses: segments that leave the face, and a face that moves rigidly.
@@ -257,7 +259,8 @@ impl ResponseDescription {
         let carriers = self.segments.iter().zip(movements).filter(|(of, _)| of.carries_wall);
         let turned = carriers.filter_map(|(of, movement)| normal_turned(&of.name, movement, order));
         let warnings = still.then(nothing_moves).into_iter();
-        let warnings = warnings.chain(suspect_units(&self.moved(movements))).chain(turned);
+        let warnings = warnings.chain(suspect_units(&self.moved(movements)));
+        let warnings = warnings.chain(amounts.doubts.iter().cloned()).chain(turned);
         let warnings = warnings.chain(self.rigidly_carried(movements).told);
         let of_plan = warnings.map(|warning| WarningDocument::from(&warning));
         of_plan.chain(self.warnings.iter().cloned()).collect()

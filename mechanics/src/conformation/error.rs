@@ -41,6 +41,10 @@ pub enum ConformationError {
     )]
     Exchanged { one: String, other: String, apart: f64, exchanged: f64 },
     #[error(
+        "the landmark {name:?} is left {left:.1} mm from its place, and {near:.1} mm from that of {place:?}, which is not exchanged with it.{others} Check whether they were picked on the right place, and on the surface of this patient"
+    )]
+    Misplaced { name: String, left: f64, place: String, near: f64, others: String },
+    #[error(
         "landmarks lie where others are said to be, {names}: they are left {rms:.1} mm (rms) from their places, and {after:.1} mm if each is put where it belongs"
     )]
     Permuted { names: String, rms: f64, after: f64 },

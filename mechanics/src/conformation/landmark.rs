@@ -20,6 +20,13 @@ const PLANAR: f64 = 0.01;
 /// Two landmarks are exchanged when that leaves less than this share of what they are apart.
 const EXCHANGED: f64 = 0.5;
 
+/// An exchange puts each of the two nearer to where it belongs, by this share at least of what it was left.
+const EACH_EXCHANGED: f64 = 0.75;
+
+/// Landmarks left by at least this share of what a misplaced one is may be misplaced with it; so many of them are named.
+const WITH_IT: f64 = 0.5;
+const MOST_NAMED: usize = 8;
+
 /// So many triples of landmarks are tried for one that most agree with.
 const MOST_TRIPLES: usize = 2048;
 
@@ -203,14 +210,67 @@ fn refuse_exchanges(landmarks: &[Landmark], map: &Affine) -> Result<(), Conforma
             // Landmarks nearer to each other than faces differ could be either.
             let far = (one.patient - other.patient).norm();
             if exchanged < EXCHANGED * apart && apart > far {
-                let (one, other) = (other.name.clone(), one.name.clone());
                 let half = std::f64::consts::FRAC_1_SQRT_2;
                 let (apart, exchanged) = (apart * half, exchanged * half);
+                refuse_misplaced(landmarks, [one, other], map, WITH_IT * apart)?;
+                let (one, other) = (other.name.clone(), one.name.clone());
                 return Err(ConformationError::Exchanged { one, other, apart, exchanged });
             }
         }
     }
     Ok(())
+}
+
+/// Refuses one of two landmarks that is nearer to the other's place than to its own, where the other belongs: an exchange puts
+/// both right. Where most landmarks agree with a similarity to so many mm, that tells, which misplaced ones do not pull.
+fn refuse_misplaced(
+    landmarks: &[Landmark],
+    [one, other]: [&Landmark; 2],
+    map: &Affine,
+    near: f64,
+) -> Result<(), ConformationError> {
+    let agreed = agreed(landmarks, near);
+    let map = agreed.as_ref().unwrap_or(map);
+    let is_put_right = |own: &Landmark, place: &Landmark| {
+        let [at_own, at_place] = [own, place].map(|at| left_of(own, &at.patient, map));
+        at_place < EACH_EXCHANGED * at_own
+    };
+    if is_put_right(one, other) && is_put_right(other, one) {
+        return Ok(());
+    }
+    let left = |own: &Landmark| left_of(own, &own.patient, map);
+    let pair = if left(one) > left(other) { [one, other] } else { [other, one] };
+    Err(misplaced(landmarks, pair, map))
+}
+
+fn misplaced(
+    landmarks: &[Landmark],
+    [own, place]: [&Landmark; 2],
+    map: &Affine,
+) -> ConformationError {
+    let left = left_of(own, &own.patient, map);
+    let beside = landmarks.iter().filter(|other| other.name != own.name);
+    let mut with_it: Vec<(f64, &str)> = beside
+        .map(|other| (left_of(other, &other.patient, map), other.name.as_str()))
+        .filter(|(other, _)| *other >= WITH_IT * left)
+        .collect();
+    with_it.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let named = with_it.iter().take(MOST_NAMED);
+    let named: Vec<String> =
+        named.map(|(left, name)| format!("{name:?} by {left:.1} mm")).collect();
+    let others = match &named[..] {
+        [] => String::new(),
+        named => {
+            format!(" Left by half of that or more, and perhaps wrong too: {}.", named.join(", "))
+        }
+    };
+    ConformationError::Misplaced {
+        name: own.name.clone(),
+        left,
+        place: place.name.clone(),
+        near: left_of(place, &own.patient, map),
+        others,
+    }
 }
 
 fn left_of(landmark: &Landmark, patient: &Vector, map: &Affine) -> f64 {

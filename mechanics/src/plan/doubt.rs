@@ -5,10 +5,12 @@ use crate::mesh::{Vector, Warning};
 
 /// Below this many mm no movement of bone is planned: in metres it would be up to 50 mm.
 const METRES_MM: f64 = 0.05;
+/// Below this many mm a segment beside others that move was not meant to: in metres it would be up to 0.1 mm.
+const STILL_MM: f64 = 1e-4;
 /// Below this angle no turn of bone is planned, in degrees: in radians it would be up to 11.5 degrees.
 const RADIANS_DEG: f64 = 0.2;
 /// Up to this many degrees a matrix is no turn but the rounding of one without.
-const ROUNDING_DEG: f64 = 1e-3;
+pub const ROUNDING_DEG: f64 = 1e-3;
 
 /// The code of the warning of numbers that another unit explains.
 pub const PLAN_UNITS_SUSPECT: &str = "plan-units-suspect";
@@ -39,6 +41,10 @@ impl MovedSegment<'_> {
         self.movement.displacement(&((low + high) * 0.5)).norm()
     }
 
+    fn turn_deg(&self) -> f64 {
+        self.movement.angle().to_degrees()
+    }
+
     /// How far the corners of its box go at most, in mm.
     fn farthest(&self) -> f64 {
         farthest_apart(self.movement, &RigidMovement::default(), &self.corners)
@@ -63,27 +69,41 @@ pub fn nothing_moves() -> Warning {
     Warning::new(NOTHING_MOVES, "the plan moves nothing: no tissue is displaced")
 }
 
-/// A warning where all movements are so small that another unit explains them better.
-pub fn suspect_units(segments: &[MovedSegment]) -> Option<Warning> {
-    let turn = segments.iter().map(|s| s.movement.angle().to_degrees()).fold(0.0, f64::max);
+/// Warnings where movements are so small that another unit explains them better: turns of all segments, shifts of each by
+/// itself. A segment that turns may be shifted by its pivot; what was stated for it is judged by [`suspect_shift`].
+pub fn suspect_units(segments: &[MovedSegment]) -> Vec<Warning> {
+    let turn = segments.iter().map(MovedSegment::turn_deg).fold(0.0, f64::max);
+    let mut warnings = Vec::new();
     if turn > ROUNDING_DEG && turn < RADIANS_DEG {
         let meant = turn.to_degrees();
         let detail = format!(
             "no segment turns by more than {turn:.3e} degrees: are these radians, {meant:.3} degrees?"
         );
         let warning = Warning::new(PLAN_UNITS_SUSPECT, detail).with("rotation_deg", turn);
-        return Some(warning.with("if_radians_deg", meant));
+        warnings.push(warning.with("if_radians_deg", meant));
     }
     let farthest = segments.iter().map(MovedSegment::farthest).fold(0.0, f64::max);
     if turn <= ROUNDING_DEG && farthest > 0.0 && farthest < METRES_MM {
-        let meant = farthest * 1000.0;
-        let detail = format!(
-            "no segment moves by more than {farthest:.3e} mm: are these metres, {meant:.3} mm?"
-        );
-        let warning = Warning::new(PLAN_UNITS_SUSPECT, detail).with("translation_mm", farthest);
-        return Some(warning.with("if_metres_mm", meant));
+        let said = format!("no segment moves by more than {farthest:.3e} mm");
+        warnings.push(in_metres(&said, farthest));
+        return warnings;
     }
-    None
+    let shifted = segments.iter().filter(|segment| segment.turn_deg() <= ROUNDING_DEG);
+    warnings.extend(shifted.filter_map(|segment| suspect_shift(segment.name, segment.farthest())));
+    warnings
+}
+
+/// The warning of a segment that is shifted by so many mm, if metres explain them better.
+pub fn suspect_shift(name: &str, shift: f64) -> Option<Warning> {
+    let said = format!("segment `{name}` is shifted by no more than {shift:.3e} mm");
+    (STILL_MM..METRES_MM).contains(&shift).then(|| in_metres(&said, shift))
+}
+
+fn in_metres(said: &str, shift: f64) -> Warning {
+    let meant = shift * 1000.0;
+    let detail = format!("{said}: are these metres, {meant:.3} mm?");
+    let warning = Warning::new(PLAN_UNITS_SUSPECT, detail).with("translation_mm", shift);
+    warning.with("if_metres_mm", meant)
 }
 
 /// The first segment whose middle goes farther than the mesh is across.
@@ -112,10 +132,10 @@ mod tests {
 
     #[test]
     fn metres_and_radians_are_reported_with_what_they_would_mean() {
-        let metres = suspect_units(&moved(&shifted(0.005))).unwrap();
+        let metres = suspect_units(&moved(&shifted(0.005))).remove(0);
         assert_eq!(metres.numbers[1].0, "if_metres_mm");
         assert!((metres.numbers[1].1 - 5.0).abs() < 1e-12, "{metres:?}");
-        let radians = suspect_units(&moved(&turned(0.1))).unwrap();
+        let radians = suspect_units(&moved(&turned(0.1))).remove(0);
         assert_eq!(radians.numbers[1].0, "if_radians_deg");
         // 0.1 rad.
         assert!((radians.numbers[1].1 - 5.729577951).abs() < 1e-6, "{radians:?}");
@@ -131,10 +151,25 @@ mod tests {
             shifted(0.0),
             turned(1e-5).then(&shifted(5.0)),
         ] {
-            assert_eq!(suspect_units(&moved(&movement)), None);
+            assert_eq!(suspect_units(&moved(&movement)), []);
         }
-        // A small shift beside a turn is a correction.
-        assert_eq!(suspect_units(&moved(&turned(3.0).then(&shifted(0.01)))), None);
+    }
+
+    #[test]
+    fn a_segment_in_metres_is_reported_beside_segments_in_millimetres() {
+        let told = |movement: &RigidMovement| {
+            let (far, turn) = (shifted(5.0), turned(3.0));
+            let [jaw] = moved(movement);
+            let beside = [("maxilla", &far), ("chin", &turn)];
+            let beside = beside.map(|(name, movement)| MovedSegment { name, movement, ..jaw });
+            suspect_units(&[jaw, beside[0], beside[1]])
+        };
+        let [metres] = &told(&shifted(0.005))[..] else { panic!("one warning") };
+        assert!(metres.detail.contains("segment `jaw`"), "{metres:?}");
+        assert!((metres.numbers[1].1 - 5.0).abs() < 1e-12, "{metres:?}");
+        for usual in [shifted(0.5), shifted(0.0), shifted(1e-5), shifted(-3.0)] {
+            assert_eq!(told(&usual), []);
+        }
     }
 
     #[test]

@@ -30,6 +30,8 @@ pub struct Performed {
     pub movement: RigidTransform,
     /// How well the segment before the operation lies on the bone after it.
     pub fit: SurfaceAlignment,
+    /// The rotation in radians between the start of its search and where it was found.
+    pub turned_from_start: f64,
     /// Of the segment before the operation, in mm.
     pub centre: Vector,
 }
@@ -56,7 +58,12 @@ pub fn performed(
     };
     let fit = fit(&BoneBefore { start, ..segment.clone() }, after, progress)?;
     let movement = fit.transform.inverse().then(base);
-    Ok(Performed { movement, fit, centre: centre(segment) })
+    let started = match start {
+        Start::Known(transform) => transform,
+        Start::AsItLies | Start::Boxes | Start::Inertia => *base,
+    };
+    let turned_from_start = fit.transform.inverse().then(&started).angle();
+    Ok(Performed { movement, fit, turned_from_start, centre: centre(segment) })
 }
 
 /// Points on bone that tell how far it lies from another.
@@ -75,6 +82,26 @@ pub fn median_distance(
         points.par_iter().map(|point| search.closest(&from.apply(point)).distance).collect();
     distances.sort_unstable_by(f64::total_cmp);
     Ok(distances[distances.len() / 2])
+}
+
+/// In mm: bone no farther than that from a surface is bone of that surface.
+const SAME_BONE: f64 = 0.05;
+
+/// The share of bone that is also other bone, on its surface and in its mask, 0 to 1.
+pub fn share_in_common(bone: &BoneBefore, other: &BoneBefore) -> Result<f64, AlignmentError> {
+    let points = points_in_mask(bone.surface, bone.mask.as_ref(), POINTS)?;
+    let (low, high) = other.surface.bounds();
+    let margin = Vector::repeat(SAME_BONE);
+    let reach = SphereOrBox::Box { lower: low - margin, upper: high + margin };
+    let may_be =
+        |point: &Vector| reach.holds(point) && other.mask.is_none_or(|mask| mask.holds(point));
+    let near: Vec<&Vector> = points.iter().filter(|point| may_be(point)).collect();
+    if near.is_empty() {
+        return Ok(0.0);
+    }
+    let search = SurfaceSearch::new(other.surface)?;
+    let is_same = |point: &&&Vector| search.closest(point).distance <= SAME_BONE;
+    Ok(near.par_iter().filter(is_same).count() as f64 / points.len() as f64)
 }
 
 fn fit(

@@ -13,9 +13,9 @@ use crate::progress::Progress;
 /// Up to this many rows a factorisation takes about as long as iterations do, or less.
 const CHOLESKY_ROWS: usize = 2_500;
 
-/// Up to this many multiplications, about half a second, a factorisation may stand in for iterations
-/// that stall. It cannot be interrupted.
-const CHOLESKY_WORK: f64 = 6e9;
+/// Up to this many multiplications, some ten seconds, a factorisation may stand in for iterations that stall and
+/// would end without an answer. It cannot be interrupted.
+const CHOLESKY_WORK: f64 = 1e11;
 
 /// Above this many rows even the ordering of a factorisation costs more than it can save.
 const ORDERING_ROWS: usize = 150_000;
@@ -79,13 +79,13 @@ impl Solver {
         let why = format!("{rows} rows are cheaper to iterate than to factorise");
         let hierarchy = self.hierarchy(system, progress)?;
         match solve_by(system, hierarchy, right_hand_sides, tolerance, progress) {
-            Err(stalled @ SolverError::NotConverged { .. }) if rows <= ORDERING_ROWS => {
-                let ordering = ordering::minimum_degree(system);
-                let fits = ordering.factor_mb + iterations_mb <= tolerance.memory_mb;
-                if !fits || ordering.multiplications > CHOLESKY_WORK {
-                    return Err(stalled);
+            Err(stalled @ SolverError::NotConverged { .. }) => {
+                match affordable(system, tolerance.memory_mb - iterations_mb) {
+                    Some(order) => {
+                        factorise(&order, &format!("conjugate gradients stalled: {stalled}"))
+                    }
+                    None => Err(stalled),
                 }
-                factorise(&ordering, &format!("conjugate gradients stalled: {stalled}"))
             }
             other => other.map(|solutions| because(solutions, &why)),
         }
@@ -125,6 +125,20 @@ impl Solver {
         Ok(self.hierarchy.get_or_init(|| hierarchy))
     }
 
+    /// The factor, where one was made.
+    pub(super) fn made_factor(&self) -> Option<&Factor> {
+        self.factor.get()
+    }
+
+    /// The factor for iterations that stalled without it; `None` where it takes too much work, or more memory than this.
+    pub(super) fn affordable_factor(
+        &self,
+        system: &System,
+        memory_mb: f64,
+    ) -> Result<Option<&Factor>, SolverError> {
+        affordable(system, memory_mb).map(|order| self.factor(system, &order)).transpose()
+    }
+
     fn factor(&self, system: &System, ordering: &Ordering) -> Result<&Factor, SolverError> {
         if let Some(factor) = self.factor.get() {
             return Ok(factor);
@@ -132,6 +146,18 @@ impl Solver {
         let factor = Factor::new(system, ordering)?;
         Ok(self.factor.get_or_init(|| factor))
     }
+}
+
+/// The elimination order of a factorisation that stands in for iterations; `None` where it takes too much work, or more
+/// memory than this.
+fn affordable(system: &System, memory_mb: f64) -> Option<Ordering> {
+    if system.ordering.free > ORDERING_ROWS {
+        return None;
+    }
+    let ordering = ordering::minimum_degree(system);
+    let is_affordable =
+        ordering.factor_mb <= memory_mb && ordering.multiplications <= CHOLESKY_WORK;
+    is_affordable.then_some(ordering)
 }
 
 fn because(mut solutions: Vec<Solution>, why: &str) -> Vec<Solution> {

@@ -65,6 +65,15 @@ impl Factor {
         let solve = |sides: &[Unknowns]| Ok(vec![refined.solve(&sides[0], wanted, progress)?]);
         scaled(alone, solve).map(|mut solutions| solutions.remove(0))
     }
+
+    /// Adds K^-1 `residual` to `x`, without refinement.
+    pub(super) fn correct<const N: usize>(
+        &self,
+        residual: &[Lanes<f64, 3, N>],
+        x: &mut [Lanes<f64, 3, N>],
+    ) {
+        self.free.correct(&LltRef::new(&self.symbolic, &self.values), residual, x);
+    }
 }
 
 /// A factor and the system whose residual refines what it solves.
@@ -179,20 +188,24 @@ impl FreeUnknowns {
     }
 
     /// x += K^-1 residual.
-    fn correct(
+    fn correct<const N: usize>(
         &self,
         factor: &LltRef<'_, usize, f64>,
-        residual: &[Lanes<f64, 3, 1>],
-        x: &mut [Lanes<f64, 3, 1>],
+        residual: &[Lanes<f64, 3, N>],
+        x: &mut [Lanes<f64, 3, N>],
     ) {
-        let mut ordered: Vec<f64> =
-            self.unknown.iter().map(|&(row, component)| residual[row][component][0]).collect();
-        let mut memory = MemBuffer::new(factor.solve_in_place_scratch::<f64>(1, Par::Seq));
-        let rows = ordered.len();
-        let column = MatMut::from_column_major_slice_mut(&mut ordered, rows, 1);
-        factor.solve_in_place_with_conj(Conj::No, column, Par::Seq, MemStack::new(&mut memory));
-        for (&(row, component), correction) in self.unknown.iter().zip(&ordered) {
-            x[row][component][0] += correction;
+        let rows = self.unknown.len();
+        let mut ordered: Vec<f64> = (0..N)
+            .flat_map(|n| self.unknown.iter().map(move |&(row, c)| residual[row][c][n]))
+            .collect();
+        let mut memory = MemBuffer::new(factor.solve_in_place_scratch::<f64>(N, Par::Seq));
+        let columns = MatMut::from_column_major_slice_mut(&mut ordered, rows, N);
+        factor.solve_in_place_with_conj(Conj::No, columns, Par::Seq, MemStack::new(&mut memory));
+        for n in 0..N {
+            let corrections = &ordered[n * rows..(n + 1) * rows];
+            for (&(row, component), correction) in self.unknown.iter().zip(corrections) {
+                x[row][component][n] += correction;
+            }
         }
     }
 }

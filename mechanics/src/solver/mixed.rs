@@ -1,7 +1,8 @@
 //! Displacement and pressure together, by conjugate residuals under a block triangular preconditioner.
 //!
 //!   K u + B^T p = f,  B u - C p = h        A = [[K, B^T], [B, -C]]
-//!   preconditioner: u = V r_u, p = S^-1 (B u - r_p), with V one multigrid cycle of K and S = D / 3
+//!   preconditioner: u = V r_u, p = S^-1 (B u - r_p), with V one multigrid cycle of K and S = D / 3; where that
+//!   stalls V = K^-1 by a factor
 //!
 //! D is the lumped pressure mass (1/mu + 1/lambda) M. A block triangular preconditioner halves the
 //! iterations of a block diagonal one (Murphy, Golub, Wathen 2000), and B u is shared with the product.
@@ -15,14 +16,23 @@
 //! put on the nodes around it. It does not lose its meaning as nu goes to 1/2.
 
 use super::conjugate_gradient::StoppingCriterion;
+use super::inverse_stiffness::Made;
 use super::lanes::MOST_LANES;
-pub use super::mixed_iteration::MOST_DIRECTIONS;
-use super::mixed_iteration::Run;
+use super::mixed_iteration::{MOST_DIRECTIONS, Run};
 use super::mixed_scaling::scaled;
-use super::mixed_system::{MixedRightHandSide, MixedSolution, MixedSystem};
+use super::mixed_system::{Coupling, MixedRightHandSide, MixedSolution, MixedSystem};
 use super::vector::column;
-use super::{SolverError, Tolerance, Unknowns};
+use super::{SolverError, System, Tolerance, Unknowns};
 use crate::progress::Progress;
+
+/// Vectors of all unknowns that the iteration keeps at most.
+const VECTORS: usize = 2 * MOST_DIRECTIONS + 6;
+
+/// What matrices, hierarchy and vectors take, in MB.
+pub fn megabytes(stiffness: &System, coupling: &Coupling) -> f64 {
+    let unknowns = 3 * stiffness.ordering.free + coupling.mass.len();
+    stiffness.megabytes() + coupling.megabytes() + 8e-6 * (VECTORS * unknowns) as f64
+}
 
 /// Solves for each right-hand side until its true residual is met, or says where it stalled.
 pub fn solve(
@@ -31,9 +41,12 @@ pub fn solve(
     tolerance: &Tolerance,
     progress: &dyn Progress,
 ) -> Result<Vec<MixedSolution>, SolverError> {
-    let wanted = tolerance.relative_residual;
-    scaled(system, right_hand_sides, wanted, |right_hand_sides| {
-        solve_scaled(system, right_hand_sides, wanted, progress)
+    scaled(system, right_hand_sides, tolerance.relative_residual, |right_hand_sides| {
+        let mut solutions = Vec::with_capacity(right_hand_sides.len());
+        for chunk in right_hand_sides.chunks(MOST_LANES) {
+            solutions.extend(solve_chunk(system, chunk, tolerance, progress)?);
+        }
+        Ok(solutions)
     })
 }
 
@@ -45,50 +58,75 @@ pub fn solve_best_effort(
     progress: &dyn Progress,
 ) -> Result<Vec<MixedSolution>, SolverError> {
     scaled(system, right_hand_sides, wanted, |right_hand_sides| {
-        let multigrid = system.solver.hierarchy(system.stiffness, progress)?;
+        let made = made(system, progress)?;
         let mut solutions = Vec::with_capacity(right_hand_sides.len());
         for chunk in right_hand_sides.chunks(MOST_LANES) {
             solutions.extend(match chunk.len() {
-                1 => Run::<1>::new(system, multigrid, chunk).solve_best_effort(wanted, progress),
-                2..=4 => {
-                    Run::<4>::new(system, multigrid, chunk).solve_best_effort(wanted, progress)
+                1 => Run::<1>::new(system, made, chunk).solve_best_effort(wanted, progress),
+                2..=4 => Run::<4>::new(system, made, chunk).solve_best_effort(wanted, progress),
+                _ => {
+                    Run::<MOST_LANES>::new(system, made, chunk).solve_best_effort(wanted, progress)
                 }
-                _ => Run::<MOST_LANES>::new(system, multigrid, chunk)
-                    .solve_best_effort(wanted, progress),
             }?);
         }
         Ok(solutions)
     })
 }
 
-fn solve_scaled(
+/// The factor of K where one was needed before, its hierarchy otherwise.
+fn made<'a>(system: &MixedSystem<'a>, progress: &dyn Progress) -> Result<Made<'a>, SolverError> {
+    match system.solver.made_factor() {
+        Some(factor) => Ok(Made::Factor(factor)),
+        None => system.solver.hierarchy(system.stiffness, progress).map(Made::Cycle),
+    }
+}
+
+/// Solves for at most eight right-hand sides: together, where that stalls each alone, which may then keep more directions, and
+/// where that stalls under multigrid with a factor of K, if it is affordable.
+fn solve_chunk(
     system: &MixedSystem,
-    right_hand_sides: &[MixedRightHandSide],
-    wanted: f64,
+    chunk: &[MixedRightHandSide],
+    tolerance: &Tolerance,
     progress: &dyn Progress,
 ) -> Result<Vec<MixedSolution>, SolverError> {
-    let multigrid = system.solver.hierarchy(system.stiffness, progress)?;
-    let alone = |right: &MixedRightHandSide| {
-        Run::<1>::new(system, multigrid, std::slice::from_ref(right)).solve(wanted, progress)
+    let wanted = tolerance.relative_residual;
+    let preconditioner = made(system, progress)?;
+    let together = match chunk.len() {
+        1 => return solve_alone(system, &chunk[0], tolerance, progress).map(|found| vec![found]),
+        2..=4 => Run::<4>::new(system, preconditioner, chunk).solve(wanted, progress),
+        _ => Run::<MOST_LANES>::new(system, preconditioner, chunk).solve(wanted, progress),
     };
-    let mut solutions = Vec::with_capacity(right_hand_sides.len());
-    for chunk in right_hand_sides.chunks(MOST_LANES) {
-        let together = match chunk.len() {
-            1 => alone(&chunk[0]),
-            2..=4 => Run::<4>::new(system, multigrid, chunk).solve(wanted, progress),
-            _ => Run::<MOST_LANES>::new(system, multigrid, chunk).solve(wanted, progress),
-        };
-        match together {
-            // Alone each may keep more directions.
-            Err(SolverError::NotConverged { .. }) if chunk.len() > 1 => {
-                for right in chunk {
-                    solutions.extend(alone(right)?);
-                }
-            }
-            other => solutions.extend(other?),
+    match together {
+        Err(SolverError::NotConverged { .. }) => {
+            chunk.iter().map(|right| solve_alone(system, right, tolerance, progress)).collect()
         }
+        other => other,
     }
-    Ok(solutions)
+}
+
+fn solve_alone(
+    system: &MixedSystem,
+    right: &MixedRightHandSide,
+    tolerance: &Tolerance,
+    progress: &dyn Progress,
+) -> Result<MixedSolution, SolverError> {
+    let under = |made: Made| {
+        let run = Run::<1>::new(system, made, std::slice::from_ref(right));
+        run.solve(tolerance.relative_residual, progress)
+    };
+    let made = made(system, progress)?;
+    let mut found = match (under(made), made) {
+        (Err(stalled @ SolverError::NotConverged { .. }), Made::Cycle(_)) => {
+            let left_mb = tolerance.memory_mb - megabytes(system.stiffness, system.coupling);
+            let factor = system.solver.affordable_factor(system.stiffness, left_mb)?;
+            let mut found = under(Made::Factor(factor.ok_or(stalled.clone())?))?;
+            let why = &mut found[0].solution.report.why;
+            *why = format!("{why}; conjugate residuals under multigrid stalled: {stalled}");
+            found
+        }
+        (other, _) => other?,
+    };
+    Ok(found.remove(0))
 }
 
 /// A direction towards the solution of a system near to that of the hierarchy.
@@ -109,7 +147,8 @@ pub fn direction(
     progress: &dyn Progress,
 ) -> Result<MixedDirection, SolverError> {
     let multigrid = system.solver.hierarchy(system.stiffness, progress)?;
-    let mut run = Run::<1>::new(system, multigrid, std::slice::from_ref(right_hand_side));
+    let made = Made::Cycle(multigrid);
+    let mut run = Run::<1>::new(system, made, std::slice::from_ref(right_hand_side));
     run.most_iterations = criterion.most_iterations;
     run.keep = MOST_DIRECTIONS;
     let is_met = match run.iterate(criterion.relative_residual, progress) {

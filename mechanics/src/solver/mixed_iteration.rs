@@ -1,9 +1,9 @@
 //! Conjugate residuals for displacement and pressure together, one iteration after the other; the equations, the preconditioner
 //! and the residual are those of `mixed`.
 
+use super::inverse_stiffness::{InverseStiffness, Made};
 use super::lanes::Lanes;
 use super::mixed_system::{MixedRightHandSide, MixedSolution, MixedSystem};
-use super::multigrid::{Multigrid, Workspace};
 use super::vector::{column, dot, largest, norm, pack_lanes, ratio, scale, subtract_all, update};
 use super::{Solution, SolveReport, SolverError, Unknowns, tell};
 use crate::progress::Progress;
@@ -42,9 +42,8 @@ struct Direction<const N: usize> {
 /// Vectors have three unknowns for each free row, and then the pressures.
 pub(super) struct Run<'a, const N: usize> {
     system: &'a MixedSystem<'a>,
-    multigrid: &'a Multigrid,
+    inverse: InverseStiffness<'a, N>,
     columns: usize,
-    workspace: Workspace<N>,
     /// W.
     weights: Vec<f64>,
     /// (f, W h).
@@ -65,7 +64,7 @@ pub(super) struct Run<'a, const N: usize> {
 impl<'a, const N: usize> Run<'a, N> {
     pub fn new(
         system: &'a MixedSystem<'a>,
-        multigrid: &'a Multigrid,
+        made: Made<'a>,
         columns: &[MixedRightHandSide],
     ) -> Self {
         let coupling = system.coupling;
@@ -81,9 +80,8 @@ impl<'a, const N: usize> Run<'a, N> {
         let unknowns = right_hand_side.len();
         Run {
             system,
-            multigrid,
+            inverse: InverseStiffness::new(made),
             columns: columns.len(),
-            workspace: multigrid.workspace(),
             weights,
             scale: norm(&right_hand_side),
             r: right_hand_side.clone(),
@@ -180,12 +178,9 @@ impl<'a, const N: usize> Run<'a, N> {
             }
         }
         let (forces, left_volumes) = from.split_at(displacements);
-        let correction = self.multigrid.apply(forces.as_chunks().0, &mut self.workspace);
         let mut change = vec![[0.0; N]; from.len()];
         let (u, p) = change.split_at_mut(displacements);
-        for (u, z) in u.iter_mut().zip(correction.values.as_flattened()) {
-            *u = std::array::from_fn(|n| correction.scale[n] * f64::from(z[n]));
-        }
+        self.inverse.apply(forces.as_chunks().0, u.as_chunks_mut().0);
         let mut volumes = vec![[0.0; N]; p.len()];
         self.system.coupling.divergence.contract(u.as_chunks().0, &mut volumes);
         for (i, p) in p.iter_mut().enumerate() {
@@ -299,7 +294,7 @@ impl<'a, const N: usize> Run<'a, N> {
             unknowns: column(u, n),
             report: SolveReport {
                 method: if self.scale[n] == 0.0 { "none" } else { "conjugate_residual" },
-                preconditioner: "multigrid and pressure mass",
+                preconditioner: self.inverse.preconditioner(),
                 why: format!("{} pressures make the system indefinite", p.len()),
                 unknowns: self.system.free_unknowns(),
                 iterations: self.own_iterations[n],

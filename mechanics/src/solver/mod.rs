@@ -8,6 +8,7 @@ pub mod constrained;
 pub mod element_connectivity;
 pub mod half_matrix;
 mod independent;
+mod inverse_stiffness;
 pub mod lanes;
 pub mod mixed;
 mod mixed_iteration;

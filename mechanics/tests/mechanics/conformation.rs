@@ -204,6 +204,36 @@ fn two_exchanged_landmarks_are_named() {
     assert_eq!([one, other], [landmarks[0].name.clone(), landmarks[last].name.clone()]);
 }
 
+#[test]
+fn landmarks_shifted_together_are_named_and_no_exchange_is_told() {
+    let twin = Twin::new();
+    // A mouth 8 mm to the side, without the middle of its upper lip, beside which a ridge then lies.
+    let turn = Rotation3::new(Vector::new(0.1, -0.2, 0.15));
+    let lip = [("ridge left", 5.0), ("ridge right", -5.0), ("lip", 0.0)].map(|(name, x)| {
+        let template = Vector::new(x, -90.0, -22.0);
+        Landmark { name: name.to_owned(), template, patient: template }
+    });
+    let mut landmarks: Vec<Landmark> = face_points().into_iter().chain(lip).collect();
+    landmarks.iter_mut().for_each(|own| own.patient = turn * own.template * 1.05);
+    let is_shifted = |name: &str| {
+        ["point 4", "point 9", "point 10", "ridge left", "ridge right"].contains(&name)
+    };
+    for own in landmarks.iter_mut().filter(|own| is_shifted(&own.name)) {
+        own.patient += turn * Vector::x() * 8.0;
+    }
+    let patient = Patient { skin: None, bone: None, landmarks: &landmarks };
+    let told = conform(&twin.sheets(), &patient, Start::Auto, &Unobserved).unwrap_err();
+    let ConformationError::Misplaced { name, left, place, near, others } = &told else {
+        panic!("{told}")
+    };
+    assert_eq!([name.as_str(), place.as_str()], ["ridge right", "lip"], "{told}");
+    assert!(*left > 2.0 * near, "{told}");
+    for other in ["point 9", "point 10", "ridge left"] {
+        assert!(others.contains(&format!("{other:?} by ")), "{told}");
+    }
+    assert!(!told.to_string().contains("if they are exchanged"), "{told}");
+}
+
 /// Twelve points about a face, of which a twin has others by 4 mm.
 fn face_points() -> Vec<Landmark> {
     let places: [[f64; 3]; 12] = [

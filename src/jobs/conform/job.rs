@@ -377,6 +377,7 @@ fn refused(error: &ConformationError, clock: &Observed) -> JobError {
         | ConformationError::SidesUndecided { .. }
         | ConformationError::FarFromTemplate { .. }
         | ConformationError::Exchanged { .. }
+        | ConformationError::Misplaced { .. }
         | ConformationError::Permuted { .. }
         | ConformationError::Unlike { .. } => at.key("landmarks"),
     };

@@ -76,7 +76,9 @@ pub fn optimise_job(
     let outside = outside.map(|detail| Warning::new(AppliedSummary::OUTSIDE_SECOND, detail));
     planned.warnings.extend(outside);
     // No number of the plan was stated.
-    planned.scene.warnings.retain(|own| own.code != PLAN_UNITS_SUSPECT);
+    for told in [&mut planned.warnings, &mut planned.scene.warnings] {
+        told.retain(|own| own.code != PLAN_UNITS_SUSPECT);
+    }
     if !input.spec.verify {
         return found.publish(&prediction, planned, &clock, place);
     }

@@ -160,7 +160,7 @@ impl PredictInput {
     fn convert(&self, meshes: &CaseMeshes, limits: &Limits) -> Result<Converted, JobError> {
         let mut faults = Faults::default();
         let spec_materials = self.spec.materials.as_ref();
-        let ConvertedCase { case, warnings, repair } =
+        let ConvertedCase { case, mut warnings, repair } =
             self.case.to_case(meshes, spec_materials, limits, &mut faults);
         let segments = self.case.segments.iter().map(|segment| segment.name.trim()).collect();
         let at = Pointer::root().key("case");
@@ -171,6 +171,7 @@ impl PredictInput {
         let centre = Some(centre(&case.volume));
         let context = PlanContext { frame: case.frame, centre, limits };
         let plan = self.plan.to_plan(&Pointer::root().key("plan"), &context, &mut faults);
+        warnings.extend(self.plan.doubts());
         let settings = self.spec.to_settings(limits, &mut faults);
         for name in self.spec.accept_regions_mm.keys() {
             if !case.skin_regions.contains_key(name) {

@@ -4,7 +4,7 @@ use crate::schema::reproduce::document::{ReproduceDocument, ReproducedSegmentDoc
 use mechanics::mesh::{TriangleSurface, Warning};
 use mechanics::plan::RigidMovement;
 use mechanics::registration::mirror::check_mirror;
-use mechanics::registration::performed::{BoneBefore, Performed, median_distance};
+use mechanics::registration::performed::{BoneBefore, Performed, median_distance, share_in_common};
 use mechanics::registration::{RigidTransform, SurfaceAlignment};
 
 /// The code of scans that are in the wrong order.
@@ -15,6 +15,14 @@ const MISFIT: f64 = 0.25;
 
 /// The same of a segment: a mask that also holds bone that did not move with it leaves 6 to 22 % beyond 1 mm, at movements of 3 mm.
 const SEGMENT_MISFIT: f64 = 0.05;
+
+/// Segments of operations rotate by less, and a search that starts beyond about 40 degrees finds another place.
+const TURNED_DEG: f64 = 45.0;
+
+/// The share of a segment that may also be another's: what a corner of a mask holds of bone beside it. Surfaces of segments that
+/// were cut apart have their cut faces in common, up to half of a thin one.
+const IN_COMMON: f64 = 0.05;
+const IN_COMMON_WITH_CUTS: f64 = 0.5;
 
 /// The share beyond which bone was moved.
 const MOVED: f64 = 0.02;
@@ -85,6 +93,49 @@ pub(super) fn misfit(segment: &ReproducedSegmentDocument, found: &Performed) -> 
         let warning = Warning::new("segment-misfit", detail);
         warning.with("share_above_1_mm", share).with("rms_mm", found.fit.rms)
     })
+}
+
+/// A segment that fits after a rotation that no operation makes: elongated bone, or a part of it, fits upside down too.
+pub(super) fn turned_over(
+    segment: &ReproducedSegmentDocument,
+    found: &Performed,
+) -> Option<Warning> {
+    let turned = found.turned_from_start.to_degrees();
+    (turned > TURNED_DEG).then(|| {
+        let detail = format!(
+            "segment `{}` fits the bone after the operation turned by {turned:.0} degrees from where its search started, which segments \
+             are not: its movement is unreliable; state landmarks to start from",
+            segment.name.trim()
+        );
+        let warning = Warning::new("segment-misfit", detail).with("turned_deg", turned);
+        warning.with("share_above_1_mm", found.fit.share_far)
+    })
+}
+
+/// Segments of which both hold the same bone: it can have moved with one of them only.
+pub(super) fn bone_in_common(bones: &[(&ReproducedSegmentDocument, BoneBefore)]) -> Vec<Warning> {
+    let mut warnings = Vec::new();
+    for (index, (one, bone)) in bones.iter().enumerate() {
+        for (other, beside) in &bones[..index] {
+            let shares = [share_in_common(bone, beside), share_in_common(beside, bone)];
+            let [Ok(of_one), Ok(of_other)] = shares else { continue };
+            let are_cut = one.before.is_some() && other.before.is_some();
+            let limit = if are_cut { IN_COMMON_WITH_CUTS } else { IN_COMMON };
+            if of_one.max(of_other) <= limit {
+                continue;
+            }
+            let (first, second) = (other.name.trim(), one.name.trim());
+            let detail = format!(
+                "segments `{first}` and `{second}` hold the same bone, {:.0} % of `{first}` and {:.0} % of `{second}`: it can have moved \
+                 with one of them only; give each a `mask` without bone of the other",
+                100.0 * of_other,
+                100.0 * of_one
+            );
+            let warning = Warning::new("segment-misfit", detail);
+            warnings.push(warning.with("share_in_common", of_one.max(of_other)));
+        }
+    }
+    warnings
 }
 
 /// A segment with a separate surface, of the scan before the operation, is on the other scan only: as scanned

@@ -1,10 +1,11 @@
 //! The job of a reproduction.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 use super::doubts::{
-    BEFORE_OPERATION, base_warnings, lies_on_the_other_scan, misfit, reversed_plan, same_scan,
-    unmasked,
+    BEFORE_OPERATION, base_warnings, bone_in_common, lies_on_the_other_scan, misfit, reversed_plan,
+    same_scan, turned_over, unmasked,
 };
 use super::input::ReproduceInput;
 use crate::jobs::clock::Observed;
@@ -17,7 +18,7 @@ use crate::jobs::result::provenance::{Origin, encode_result};
 use crate::jobs::result::warnings::warning_documents;
 use crate::jobs::source::StoredMesh;
 use crate::schema::case::document::FrameName;
-use crate::schema::compare::document::StartName;
+use crate::schema::compare::document::{MeshReference, StartName};
 use crate::schema::plan::document::{PlanContext, PlanSegmentDocument};
 use crate::schema::predict::document::OutputName;
 use crate::schema::predict::result::ResultDocument;
@@ -158,34 +159,29 @@ impl Scans<'_> {
         let base = align_base(&bone, &after, self.clock).map_err(|error| self.failed(&error))?;
         let mut warnings = base_warnings(&bone, &after, &base);
         warnings.extend(unmasked(spec, &base));
-        let (mut segments, mut all) = (Vec::new(), Vec::new());
-        for (index, segment) in spec.segments.iter().enumerate() {
-            let at = at.key("segments").index(index);
-            let own = match &segment.before {
-                Some(own) => self.surface(&own.mesh, &at.key("before"))?,
-                None => before.clone(),
-            };
-            let later = match &segment.after {
-                Some(own) => self.surface(&own.mesh, &at.key("after"))?,
-                None => after.clone(),
-            };
+        let scans = [&before, &after];
+        let surfaces = self.segment_surfaces(scans)?;
+        let (mut segments, mut all, mut bones) = (Vec::new(), Vec::new(), Vec::new());
+        for (segment, [own, later]) in spec.segments.iter().zip(&surfaces) {
             let bone = BoneBefore {
-                surface: &own,
+                surface: own,
                 mask: segment.mask.as_ref().and_then(place_of),
                 start: self::start(segment.start, &segment.landmarks)?,
             };
-            let found = performed(&bone, &later, &base.transform, self.clock)
+            let found = performed(&bone, later, &base.transform, self.clock)
                 .map_err(|error| self.failed(&error))?;
-            warnings.extend(misfit(segment, &found));
+            warnings.extend(misfit(segment, &found).or_else(|| turned_over(segment, &found)));
             let plan = self.planned_of(segment).map(|planned| &planned.movement);
             let swapped = match segment.before {
-                Some(_) => lies_on_the_other_scan(segment, &bone, [&before, &after], &base),
+                Some(_) => lies_on_the_other_scan(segment, &bone, scans, &base),
                 None => plan.and_then(|plan| reversed_plan(segment, &found, plan)),
             };
             warnings.extend(swapped);
             segments.push(self.document(segment, &found));
             all.push(found);
+            bones.push((segment, bone));
         }
+        warnings.extend(bone_in_common(&bones));
         let is_swapped = warnings.iter().any(|told| told.code == BEFORE_OPERATION);
         warnings.extend(same_scan(&before, &after, &all).filter(|_| !is_swapped));
         let plan = PlanDocument {
@@ -196,6 +192,26 @@ impl Scans<'_> {
         let matrix4x4 = Matrix4x4(base.transform.matrix4());
         let base = BaseFitDocument { matrix4x4, fit: FitDocument::from(&base) };
         Ok((ReproductionDocument { plan, base, segments }, warnings))
+    }
+
+    /// The bone of each segment before the operation and after it, of the scans where it has none of its own.
+    fn segment_surfaces<'s>(
+        &self,
+        [before, after]: [&'s TriangleSurface; 2],
+    ) -> Result<Vec<[Cow<'s, TriangleSurface>; 2]>, JobError> {
+        let own = |mesh: &Option<MeshReference>, scan: &'s TriangleSurface, at: &Pointer| {
+            Ok::<_, JobError>(match mesh {
+                Some(own) => Cow::Owned(self.surface(&own.mesh, at)?),
+                None => Cow::Borrowed(scan),
+            })
+        };
+        let at = Pointer::root().key("spec").key("segments");
+        let surfaces = self.input.spec.segments.iter().enumerate().map(|(index, segment)| {
+            let at = at.index(index);
+            let before = own(&segment.before, before, &at.key("before"))?;
+            Ok([before, own(&segment.after, after, &at.key("after"))?])
+        });
+        surfaces.collect()
     }
 
     fn surface(&self, id: &str, at: &Pointer) -> Result<TriangleSurface, JobError> {

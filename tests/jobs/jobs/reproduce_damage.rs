@@ -1,6 +1,7 @@
 //! What is wrong with the scans of an operation that was performed, and which warning tells it.
 
 use mechanics::mesh::{TriangleSurface, Vector};
+use mechanics::plan::RigidMovement;
 use serde_json::{Value, json};
 
 use super::planning::{moved, performed, result_of, surface};
@@ -134,4 +135,46 @@ fn a_segment_that_is_of_another_bone_is_told_to_fit_nowhere() {
     let other = changed(&sources, "jaw", |at| Vector::new(at.y * 2.0 - 20.0, at.x, 1.5 * at.z));
     let found = codes(&other, &spec);
     assert_eq!(found, [DOUBTS[3]]);
+}
+
+#[test]
+fn segments_that_hold_the_same_bone_are_reported_with_their_share() {
+    let (_, sources, mut spec) = performed();
+    let sources = registered(&sources);
+    spec.as_object_mut().unwrap().remove("planned");
+    let part = |name: &str, x: [f64; 2]| json!({"name": name, "mask": {"box_mm": [x[0], -50, -60, x[1], 100, -9]}});
+    spec["segments"] = json!([part("right", [-50.0, 25.0]), part("left", [25.0, 150.0])]);
+    assert_eq!(codes(&sources, &spec), [""; 0], "each has bone of its own");
+    spec["segments"] = json!([part("jaw", [-50.0, 150.0]), part("left", [25.0, 150.0])]);
+    let found = told(&sources, &spec);
+    let [(code, warning)] = &found[..] else { panic!("{found:?}") };
+    assert_eq!(code, DOUBTS[3]);
+    assert!((warning["share_in_common"].as_f64().unwrap() - 1.0).abs() < 1e-9, "{warning}");
+    // The jaw has about half of its bone in common.
+    let detail = warning["detail"].as_str().unwrap();
+    assert!(detail.contains("100 % of `left`") && detail.contains("% of `jaw`"), "{detail}");
+    // A surface of its own beside a mask of the same bone.
+    spec["segments"] =
+        json!([{"name": "jaw", "before": {"mesh": "jaw"}}, part("left", [25.0, 150.0])]);
+    assert_eq!(codes(&sources, &spec), [DOUBTS[3]]);
+}
+
+#[test]
+fn a_segment_that_fits_only_upside_down_is_reported() {
+    let (_, sources, mut spec) = performed();
+    let mut sources = registered(&sources);
+    let jaw = sources.0["jaw"].surface_in_mm().unwrap();
+    let over = RigidMovement::about_pivot(
+        Vector::new(0.0, 2.9, 0.0),
+        Vector::new(25.0, 10.0, -20.0),
+        Vector::zeros(),
+    );
+    sources.0.insert("over".to_owned(), surface(moved(&jaw, &over)));
+    spec.as_object_mut().unwrap().remove("planned");
+    spec["segments"] = json!([{"name": "jaw", "before": {"mesh": "jaw"}, "after": {"mesh": "over"}, "start": "inertia"}]);
+    let found = told(&sources, &spec);
+    let [(code, warning)] = &found[..] else { panic!("{found:?}") };
+    assert_eq!(code, DOUBTS[3]);
+    let turned = warning["turned_deg"].as_f64().unwrap();
+    assert!((turned - 2.9_f64.to_degrees()).abs() < 0.1, "{warning}");
 }

@@ -487,3 +487,14 @@ fn a_mesh_uploaded_in_another_unit_than_the_case_states_is_refused() {
     let error = predict(&case, TURN, "{}", out.path()).unwrap_err();
     assert!(error.to_string().contains("uploaded in mm"), "{error}");
 }
+
+#[test]
+fn a_plan_with_a_translation_in_metres_beside_a_rotation_says_so() {
+    let out = tempfile::tempdir().unwrap();
+    let told = |plan: &str| {
+        let warnings = predict(CASE, plan, "{}", out.path()).unwrap().result.warnings;
+        warnings.into_iter().filter(|own| own.code == "plan-units-suspect").count()
+    };
+    assert_eq!(told(TURN), 0);
+    assert_eq!(told(&TURN.replace("[1,2,3]", "[0.001,0.002,0.003]")), 1);
+}

@@ -1,5 +1,6 @@
 //! Plans as documents: movements that are no movements, too large, twice, or in another frame.
 
+use facies::schema::PlanDocument;
 use mechanics::mesh::{Frame, Vector};
 use mechanics::prediction::{Load, Prescribed};
 
@@ -143,4 +144,38 @@ fn at_most_fifty_mistakes_are_listed_and_all_are_counted() {
     assert_eq!(problem.errors.len(), 50);
     // Sixty names too short, fifty-nine of them repeated.
     assert!(problem.detail.starts_with("119 mistakes"), "{}", problem.detail);
+}
+
+#[test]
+fn a_translation_in_metres_beside_a_rotation_is_told_and_usual_ones_are_not() {
+    let doubts = |movement: &str| {
+        let text = format!(r#"{{"segments":[{{"name":"jaw",{movement}}}]}}"#);
+        let document: PlanDocument = serde_json::from_str(&text).unwrap();
+        document.doubts()
+    };
+    let turned = r#""rotation_deg":[0,4,0],"pivot_mm":[10,20,30]"#;
+    for told in [
+        format!(r#""translation_mm":[0,0.005,0],{turned}"#),
+        format!(r#""sequence":[{{{turned}}},{{"translation_mm":[0,0.005,0]}}]"#),
+    ] {
+        let found = doubts(&told);
+        let [warning] = &found[..] else { panic!("{told}: {found:?}") };
+        assert_eq!(warning.code, "plan-units-suspect");
+        assert_eq!(warning.numbers[0], ("translation_mm", 0.005));
+        assert!((warning.numbers[1].1 - 5.0).abs() < 1e-9, "{warning:?}");
+        assert!(warning.detail.contains("segment `jaw`"), "{warning:?}");
+    }
+    for usual in [
+        format!(r#""translation_mm":[0,0,0],{turned}"#),
+        format!(r#""translation_mm":[0,0.5,0],{turned}"#),
+        format!(r#""translation_mm":[0,0.05,0],{turned}"#),
+        format!(r#""translation_mm":[0,1e-9,0],{turned}"#),
+        turned.to_owned(),
+        r#""translation_mm":[0,5,0]"#.to_owned(),
+        // Computed: what is left of a registration.
+        r#""matrix4x4":[1,0,0,0.01,0,0,-1,0,0,1,0,0,0,0,0,1]"#.to_owned(),
+        format!(r#""sequence":[{{{turned}}},{{"translation_mm":[0,5,0]}}]"#),
+    ] {
+        assert_eq!(doubts(&usual), [], "{usual}");
+    }
 }

@@ -34,26 +34,17 @@ use crate::solver::mixed_system::Coupling;
 use crate::solver::sparse_rows::{Couplings, SparseRows};
 use crate::solver::{HalfMatrix, SolverError, System};
 
-/// Vectors of all unknowns that the iteration keeps at most.
-const VECTORS: usize = 2 * mixed::MOST_DIRECTIONS + 6;
-
 /// Refuses matrices that take more than they may with what the iteration adds.
 pub(super) fn check_memory(
     stiffness: &System,
     coupling: &Coupling,
     allowed_mb: f64,
 ) -> Result<(), SolverError> {
-    let needed_mb = megabytes(stiffness, coupling);
+    let needed_mb = mixed::megabytes(stiffness, coupling);
     match needed_mb <= allowed_mb {
         true => Ok(()),
         false => Err(SolverError::OverBudget { needed_mb, allowed_mb }),
     }
-}
-
-/// What matrices, hierarchy and vectors take, in MB.
-pub(super) fn megabytes(stiffness: &System, coupling: &Coupling) -> f64 {
-    let unknowns = 3 * stiffness.ordering.free + coupling.mass.len();
-    stiffness.megabytes() + coupling.megabytes() + 8e-6 * (VECTORS * unknowns) as f64
 }
 
 /// K: tetrahedra with what no pressure carries, 2 mu eps : eps where they are isotropic.

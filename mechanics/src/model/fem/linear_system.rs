@@ -4,9 +4,7 @@
 use rayon::prelude::*;
 
 use super::displacement::{Problem, check_finite, solve_displacement};
-use super::displacement_pressure::{
-    PressureCells, check_memory, couple, megabytes, shear_stiffness,
-};
+use super::displacement_pressure::{PressureCells, check_memory, couple, shear_stiffness};
 use crate::boundary::Constraint;
 use crate::mesh::Vector;
 use crate::model::dofs::{Constrained, DofMap, PrescribedValues, product_at_constraints};
@@ -300,7 +298,7 @@ impl<'a> LinearSystem<'a> {
     /// Memory of matrices, hierarchy and vectors, in MB.
     pub fn megabytes(&self) -> f64 {
         match &self.pressures {
-            Some(Pressures { coupling, .. }) => megabytes(&self.stiffness, coupling),
+            Some(Pressures { coupling, .. }) => mixed::megabytes(&self.stiffness, coupling),
             None => self.stiffness.megabytes(),
         }
     }

@@ -1,7 +1,7 @@
 //! Control points of bone: K_ff C_f = -K_fb C_b, as Ulusoy et al. 2010 move theirs.
 //!
 //! A control point that is the nearest one to nodes that are held altogether is bone, and moves by the mean of what they
-//! are held at; the others follow. Nodes that slide are still held by springs along their normal. What bone does to the
+//! are held at; a node as near to several belongs to all of them in equal parts, since rounding would choose one. The others follow. Nodes that slide are still held by springs along their normal. What bone does to the
 //! tissue is told at the nodes, those of a control point alike: r_b = K_bf C_f + K_bb C_b - f_b.
 
 use std::collections::BTreeMap;
@@ -12,11 +12,15 @@ use crate::mesh::Vector;
 use crate::solver::half_matrix::HalfMatrix;
 use crate::solver::{Block, Unknowns};
 
+/// Control points are as near to a node as the nearest where their squared distances differ by less than this share of that of
+/// the farthest of its span: coordinates of files in single precision differ by a third of it.
+const AS_NEAR: f64 = 1e-6;
+
 /// The control points that are bone, by their rows.
 pub(super) struct BonePoints {
     points: BTreeMap<usize, BonePoint>,
-    /// For each hold within tissue the row of its control point; none where it slides.
-    of_hold: Vec<Option<usize>>,
+    /// For each hold within tissue the rows of its control points; none where it slides.
+    of_hold: Vec<Vec<usize>>,
     /// Before what is bone was taken out.
     matrix: HalfMatrix<f64, 3>,
     force: Unknowns,
@@ -25,7 +29,8 @@ pub(super) struct BonePoints {
 #[derive(Clone, Copy, Default)]
 struct BonePoint {
     displacement: Vector,
-    nodes: usize,
+    /// Nodes, of those of several points their part.
+    nodes: f64,
 }
 
 impl BonePoints {
@@ -38,17 +43,20 @@ impl BonePoints {
     ) -> BonePoints {
         let rows = constraints
             .iter()
-            .filter_map(|constraint| Some((constraint, nearest_row(assembly, constraint)?)));
-        let (constraints, of_hold): (Vec<&Constraint>, Vec<Option<usize>>) = rows.unzip();
+            .filter_map(|constraint| Some((constraint, nearest_rows(assembly, constraint)?)));
+        let (constraints, of_hold): (Vec<&Constraint>, Vec<Vec<usize>>) = rows.unzip();
         let mut points: BTreeMap<usize, BonePoint> = BTreeMap::new();
-        for (constraint, row) in constraints.iter().zip(&of_hold) {
-            let Some(row) = row else { continue };
-            let point = points.entry(*row).or_default();
+        for (constraint, rows) in constraints.iter().zip(&of_hold) {
             let along = constraint.axes() * constraint.values();
-            point.displacement += assembly.lattice.frame.axes.transpose() * along;
-            point.nodes += 1;
+            let along = assembly.lattice.frame.axes.transpose() * along;
+            let part = 1.0 / rows.len().max(1) as f64;
+            for &row in rows {
+                let point = points.entry(row).or_default();
+                point.displacement += along * part;
+                point.nodes += part;
+            }
         }
-        points.values_mut().for_each(|point| point.displacement /= point.nodes as f64);
+        points.values_mut().for_each(|point| point.displacement /= point.nodes);
         let bone = BonePoints { points, of_hold, matrix: matrix.clone(), force: force.clone() };
         bone.prescribe(matrix, force);
         bone
@@ -98,20 +106,28 @@ impl BonePoints {
                 }
             }
         }
-        let share = |row: usize| sums[&row] / self.points[&row].nodes as f64;
-        self.of_hold.iter().map(|row| row.map(share)).collect()
+        let share = |rows: &Vec<usize>| {
+            let of_node = |row: &usize| sums[row] / (self.points[row].nodes * rows.len() as f64);
+            (!rows.is_empty()).then(|| rows.iter().map(of_node).sum())
+        };
+        self.of_hold.iter().map(share).collect()
     }
 }
 
-/// The row of the control point that is nearest to a held node, none where the node slides; `None` beside all tissue.
-fn nearest_row(assembly: &Assembly, constraint: &Constraint) -> Option<Option<usize>> {
+/// The rows of the control points that are nearest to a held node, none where the node slides; `None` beside all tissue.
+fn nearest_rows(assembly: &Assembly, constraint: &Constraint) -> Option<Vec<usize>> {
     let lattice = assembly.lattice;
     let local = lattice.frame.local(&assembly.tissue.mesh.nodes[constraint.node as usize]);
     let place = lattice.place(&local)?;
-    let distance = |control: &u32| (lattice.points[*control as usize] - local).norm_squared();
-    let members = lattice.connectivity.row(place.span).iter().copied();
-    let nearest = members.min_by(|a, b| distance(a).total_cmp(&distance(b)))?;
-    Some((constraint.count() == 3).then(|| assembly.dof_map.row(nearest)))
+    if constraint.count() < 3 {
+        return Some(Vec::new());
+    }
+    let distance = |control: u32| (lattice.points[control as usize] - local).norm_squared();
+    let members = || lattice.connectivity.row(place.span).iter().copied();
+    let least = members().map(distance).fold(f64::INFINITY, f64::min);
+    let most = members().map(distance).fold(0.0, f64::max);
+    let nearest = members().filter(|&control| distance(control) - least <= AS_NEAR * most);
+    Some(nearest.map(|control| assembly.dof_map.row(control)).collect())
 }
 
 fn times(block: &Block, x: &Vector) -> Vector {

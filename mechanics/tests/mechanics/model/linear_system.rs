@@ -3,9 +3,12 @@
 use mechanics::mesh::sample::block;
 use mechanics::mesh::{CellShape, Vector};
 use mechanics::model::fem::linear_system::{LinearSystem, Residual};
-use mechanics::model::problem::LoadCase;
-use mechanics::prediction::{ElementChoice, Plan, Scene, Settings, Sliding, SlidingNormal};
+use mechanics::model::problem::{LoadCase, ModelError};
+use mechanics::prediction::{
+    Case, ElementChoice, Plan, RegionNames, Scene, Settings, Sliding, SlidingNormal,
+};
 use mechanics::progress::Unobserved;
+use mechanics::solver::SolverError;
 
 use crate::scenes::{case_of, constraint, exact, material, set};
 
@@ -114,4 +117,64 @@ fn volumes_do_to_forces_what_forces_do_to_volumes() {
     let of_forces = changes[1].displacement.iter().zip(&residuals[0].forces);
     let of_forces: f64 = of_forces.map(|(u, f)| u.dot(f)).sum();
     assert!((of_volumes / of_forces - 1.0).abs() < 1e-8, "{of_volumes} {of_forces}");
+}
+
+/// Soft tissue of 80 x 60 x 20 mm under a layer of 1 mm that is 1000 times as stiff, in cells of 10 x 10 mm, pulled by its floor.
+fn flat_cells_of_a_stiff_layer(memory_mb: f64) -> Scene {
+    let mut mesh = block(Vector::new(80.0, 60.0, 20.0), [8, 6, 5], CellShape::Tet4);
+    let height = |z: f64| if z > 18.0 { 20.0 } else { z * 19.0 / 16.0 };
+    mesh.nodes.iter_mut().for_each(|node| node.z = height(node.z));
+    let is_layer =
+        |cell: usize| mesh.cells.nodes(cell).iter().all(|&node| mesh.nodes[node as usize].z > 18.0);
+    let layer = (0..mesh.cells.len()).map(|cell| i64::from(is_layer(cell))).collect();
+    mesh.cell_labels.insert("layer".to_owned(), layer);
+    let floor = mesh.node_sets["z_min"].clone();
+    let is_moved = |node: &u32| mesh.nodes[*node as usize].x > 45.0;
+    let (moved, still) = floor.into_iter().partition(is_moved);
+    mesh.node_sets.extend([("still".to_owned(), still), ("moved".to_owned(), moved)]);
+    let names = [(0, "soft".to_owned()), (1, "stiff".to_owned())];
+    let materials = [("soft", 2.0), ("stiff", 2000.0)];
+    let case = Case {
+        regions: Some(RegionNames { array: "layer".to_owned(), names: names.into() }),
+        materials: materials.map(|(name, young)| (name.to_owned(), material(young, 0.49))).into(),
+        fixed: vec![set("still")],
+        ..case_of(mesh, material(2.0, 0.49))
+    };
+    let prescribed = vec![constraint("moved", [Some(4.0), Some(0.0), Some(2.0)])];
+    let plan = Plan { prescribed, ..Plan::default() };
+    let element = ElementChoice::Stabilised;
+    Scene::new(&case, &plan, &Settings { element, memory_mb, ..Settings::default() }).unwrap()
+}
+
+#[test]
+fn flat_cells_of_a_layer_1000_times_as_stiff_are_solved_under_a_factor() {
+    let scene = flat_cells_of_a_stiff_layer(4000.0);
+    let system = assemble(&scene);
+    let twice = LoadCase {
+        held: scene.load_case().held.iter().map(|held| held * 2.0).collect(),
+        ..scene.load_case()
+    };
+    let solved = system.solve(&[scene.load_case(), twice], &Unobserved).unwrap();
+    let [once, twice] = [&solved[0].equilibrium, &solved[1].equilibrium];
+    for found in [once, twice] {
+        let report = &found.solver;
+        assert!(report.relative_residual <= report.wanted_residual, "{report:?}");
+        assert_eq!(report.preconditioner, "cholesky and pressure mass");
+        assert!(report.iterations < 60, "{}", report.iterations);
+    }
+    assert!(once.solver.why.contains("multigrid stalled: residual"), "{}", once.solver.why);
+    let doubled: Vec<Vector> = once.displacement.iter().map(|u| u * 2.0).collect();
+    let apart = largest_difference(&twice.displacement, &doubled);
+    assert!(apart < 1e-5 * largest(&doubled), "{apart:e}");
+    let [first, second] = [0, 1].map(|_| scene.solve(&Unobserved).unwrap().displacement);
+    assert_eq!(first, second);
+}
+
+#[test]
+fn a_factor_over_the_memory_leaves_the_iterations_as_diverged() {
+    let needed_mb = assemble(&flat_cells_of_a_stiff_layer(4000.0)).megabytes();
+    let scene = flat_cells_of_a_stiff_layer(needed_mb + 0.05);
+    let ended = assemble(&scene).solve(&[scene.load_case()], &Unobserved).map(|_| ());
+    let is_stalled = matches!(ended, Err(ModelError::Solver(SolverError::NotConverged { .. })));
+    assert!(is_stalled, "{ended:?}");
 }

@@ -1,7 +1,7 @@
 //! Volume splines with degrees and control points of their own along each axis, and with control points of bone.
 
 use mechanics::mesh::half_head::half_head;
-use mechanics::mesh::{CellShape, Vector, sample};
+use mechanics::mesh::{CellShape, Cells, Vector, VolumeMesh, sample};
 use mechanics::model::spline::lattice::Lattice;
 use mechanics::model::spline::tissue_points::tissue_points;
 use mechanics::model::spline::{Bone, ControlPoints, Stiffness, VolumeSpline};
@@ -138,4 +138,59 @@ fn degree_one_through_the_depth_of_a_curved_head_is_solved_and_keeps_rigid_movem
     let answer = solve(&case, &plan, &with(spline));
     let off = answer.displacement.iter().map(|u| (u - shift).norm()).fold(0.0, f64::max);
     assert!(off < 1e-5, "{off}");
+}
+
+/// Nodes of a regular mesh lie in the middle between control points, and rounding must not choose one.
+#[test]
+fn held_nodes_between_control_points_move_them_alike_wherever_the_scene_is_and_however_it_is_numbered()
+ {
+    let spline = VolumeSpline {
+        degrees: [1, 1, 1],
+        control: ControlPoints::Counted([7, 6, 3]),
+        bone: Bone::ControlPoints,
+        ..VolumeSpline::default()
+    };
+    let mesh = || {
+        let mut mesh = sample::block(Vector::new(48.0, 40.0, 20.0), [12, 10, 4], CellShape::Hex8);
+        let bottom = mesh.node_sets["z_min"].clone();
+        let is_jaw = |node: &u32| mesh.nodes[*node as usize].x < 21.0;
+        let (jaw, rest) = bottom.into_iter().partition(is_jaw);
+        mesh.node_sets.insert("jaw".to_owned(), jaw);
+        mesh.node_sets.insert("rest".to_owned(), rest);
+        mesh
+    };
+    let plan = prescribed(&[("jaw", Vector::new(3.0, 0.0, 2.0)), ("rest", Vector::zeros())]);
+    let answer = |mesh: VolumeMesh| {
+        let case = case_of(mesh, material(15.0, 0.4));
+        solve(&case, &plan, &with(spline.clone())).displacement
+    };
+    let here = answer(mesh());
+    let mut elsewhere = mesh();
+    elsewhere.nodes.iter_mut().for_each(|x| *x += Vector::new(123.4567, -56.7891, 89.1234));
+    let last = mesh().nodes.len() as u32 - 1;
+    let mut reversed = mesh();
+    reversed.nodes.reverse();
+    let mut cells = Cells::default();
+    for (shape, nodes) in mesh().cells.iter() {
+        let nodes: Vec<u32> = nodes.iter().map(|node| last - node).collect();
+        cells.push(shape, &nodes);
+    }
+    reversed.cells = cells;
+    for nodes in reversed.node_sets.values_mut() {
+        nodes.iter_mut().for_each(|node| *node = last - *node);
+        nodes.sort_unstable();
+    }
+    let mut renumbered = answer(reversed);
+    renumbered.reverse();
+    for (name, there) in [("elsewhere", answer(elsewhere)), ("renumbered", renumbered)] {
+        let apart = here.iter().zip(&there).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
+        assert!(apart < 1e-6, "{name}: {apart} mm");
+    }
+    // The scene is the same from both sides of its middle along y.
+    let at = |y: f64| {
+        let near = |x: &Vector| (x - Vector::new(24.0, y, 20.0)).norm() < 1e-6;
+        here[mesh().nodes.iter().position(near).unwrap()]
+    };
+    let apart = (at(12.0).z - at(28.0).z).abs();
+    assert!(apart < 1e-6 && at(20.0).z > 0.1, "{apart} {}", at(20.0));
 }
