@@ -25,6 +25,8 @@ pub(super) struct Draft {
     /// Points that stay because the surface is not manifold there.
     pub is_fixed: Vec<bool>,
     pub left: usize,
+    /// Of each triangle of the surface its number here; `None` of one with a point twice.
+    pub number_of_given: Vec<Option<u32>>,
 }
 
 impl Draft {
@@ -33,6 +35,9 @@ impl Draft {
         let count = surface.points.len();
         let is_whole = |[a, b, c]: &[u32; 3]| a != b && b != c && c != a;
         let triangles: Vec<[u32; 3]> = surface.triangles.iter().copied().filter(is_whole).collect();
+        let mut numbers = 0..;
+        let number = |corners: &[u32; 3]| if is_whole(corners) { numbers.next() } else { None };
+        let number_of_given = surface.triangles.iter().map(number).collect();
         let mut around = vec![Vec::new(); count];
         for (number, corners) in (0..).zip(&triangles) {
             corners.iter().for_each(|&corner| around[corner as usize].push(number));
@@ -53,7 +58,7 @@ impl Draft {
         }
         let (stands, left) = (vec![true; triangles.len()], triangles.len());
         let points = surface.points.clone();
-        Draft { points, triangles, stands, around, on_border, is_fixed, left }
+        Draft { points, triangles, stands, around, on_border, is_fixed, left, number_of_given }
     }
 
     pub fn corners(&self, triangle: u32) -> [Vector; 3] {

@@ -7,16 +7,18 @@
 //! Source: Garland and Heckbert (1997), `quadric`; edge lengths from tissue thickness and a bound on the deviation: Zachow,
 //! Hierold, Gladilin, Hege, Erdmann, planning models of 75 000 to 150 000 triangles within 0.1 to 0.5 mm, section 2.1 (2006).
 
+mod bound;
 mod draft;
 mod quadric;
 
 use std::cmp::Ordering;
-use std::collections::BinaryHeap;
+use std::collections::{BTreeSet, BinaryHeap};
 
 use parry3d_f64::math::Vector as ParryVector;
 use parry3d_f64::query::PointQuery;
 use parry3d_f64::shape::Triangle;
 
+use self::bound::{BETWEEN, beyond};
 use self::draft::Draft;
 use self::quadric::Quadric;
 use crate::mesh::{SearchError, SurfaceSearch, TriangleSurface, Vector};
@@ -31,12 +33,17 @@ const LEAST_HEIGHT: f64 = 0.1;
 /// Points on a triangle are no farther apart than this many deviations, within `ROWS`.
 const APART: f64 = 4.0;
 const ROWS: std::ops::RangeInclusive<usize> = 2..=6;
+/// Simplifications until nothing lies beyond the bound, each with the points that the ones before it found beyond it.
+const MOST_ROUNDS: usize = 16;
+/// From one to the next the bound of what is looked at shrinks by this around what was beyond it, in the end everywhere.
+const TIGHTER: f64 = 0.8;
+const LOCAL_ROUNDS: usize = 10;
 /// Collapses between two looks at whether to stop.
 const AT_A_TIME: usize = 1 << 10;
 
 /// Limits of a simplification. Lengths in mm.
 pub struct SimplificationSettings<'a> {
-    /// Neither surface is farther from the other than this, at the points that are looked at.
+    /// Neither surface is farther from the other than this, anywhere.
     pub deviation: f64,
     /// It ends when no more triangles are left; absent: when no edge can go.
     pub triangles: Option<usize>,
@@ -51,6 +58,10 @@ pub enum SimplificationError {
     Deviation { deviation: f64 },
     #[error("the surface cannot be searched: {0}")]
     Surface(#[from] SearchError),
+    #[error(
+        "the surface is {reached:.4} mm from its simplification, and at most {deviation} mm are allowed: it is too damaged to be simplified within that"
+    )]
+    Bound { deviation: f64, reached: f64 },
     #[error("cancelled with {left} triangles left")]
     Cancelled { left: usize },
 }
@@ -94,19 +105,21 @@ impl Ord for Candidate {
 
 struct Work<'a> {
     settings: &'a SimplificationSettings<'a>,
-    given: &'a TriangleSurface,
-    search: SurfaceSearch,
+    given: &'a Given<'a>,
     draft: Draft,
     quadrics: Vec<Quadric>,
     /// The longest edge allowed at each point.
     longest: Vec<f64>,
     versions: Vec<u32>,
-    /// The points of the given surface that each triangle stands for.
+    /// The points looked at of the given surface that each triangle stands for.
     held: Vec<Vec<u32>>,
     heap: BinaryHeap<Candidate>,
 }
 
 /// A surface with fewer triangles. The same surface and settings give the same one.
+///
+/// Steps look at points. What lies beyond the bound between them is found when no edge can go, and looked at from then on, until
+/// nothing does.
 pub fn simplify(
     surface: &TriangleSurface,
     settings: &SimplificationSettings,
@@ -116,7 +129,81 @@ pub fn simplify(
     if !(deviation > 0.0 && deviation <= 100.0) {
         return Err(SimplificationError::Deviation { deviation });
     }
-    let mut work = Work::new(surface, settings)?;
+    let search = SurfaceSearch::new(surface)?;
+    let within = deviation * (1.0 - BETWEEN);
+    let mut points = given_points(surface);
+    let mut bounds = vec![within; surface.triangles.len()];
+    let mut reached = 0.0;
+    for round in 0..MOST_ROUNDS {
+        let given = Given { surface, search: &search, points: &points, bounds: &bounds };
+        let simple = collapsed(&given, settings, progress)?;
+        let simple_search = SurfaceSearch::new(&simple)?;
+        let there = beyond(&simple, surface, &search, within);
+        let back = beyond(surface, &simple, &simple_search, within);
+        if there.is_empty() && back.is_empty() {
+            return Ok(simple);
+        }
+        let both = there.iter().chain(&back);
+        reached = both.map(|apart| apart.distance).fold(0.0, f64::max);
+        points.extend(there.iter().map(|apart| GivenPoint { on: apart.to, at: apart.nearest }));
+        points.extend(back.iter().map(|apart| GivenPoint { on: apart.from, at: apart.place }));
+        let own = there.iter().map(|apart| apart.from).chain(back.iter().map(|apart| apart.to));
+        let wrong: BTreeSet<u32> = own.collect();
+        let mut tighter = vec![round >= LOCAL_ROUNDS; bounds.len()];
+        for corners in wrong.into_iter().map(|triangle| simple.corners(triangle as usize)) {
+            let under = spread_over(&corners, *ROWS.end());
+            under.for_each(|point| tighter[search.closest(&point).triangle] = true);
+        }
+        let pairs = bounds.iter_mut().zip(tighter);
+        pairs.filter(|(_, tighter)| *tighter).for_each(|(bound, _)| *bound *= TIGHTER);
+    }
+    Err(SimplificationError::Bound { deviation, reached })
+}
+
+/// A point of the given surface that has to stay near, and a triangle that it is on.
+struct GivenPoint {
+    on: u32,
+    at: Vector,
+}
+
+/// The surface as given, and what is looked at of it.
+struct Given<'a> {
+    surface: &'a TriangleSurface,
+    search: &'a SurfaceSearch,
+    points: &'a [GivenPoint],
+    /// How far what is looked at may be from each triangle.
+    bounds: &'a [f64],
+}
+
+/// Points all over a triangle, so many rows of them along each side.
+fn spread_over([a, b, c]: &[Vector; 3], rows: usize) -> impl Iterator<Item = Vector> {
+    let places = (0..=rows).flat_map(move |i| (0..=rows - i).map(move |j| [i, j]));
+    places.map(move |steps| {
+        let [u, v] = steps.map(|step| step as f64 / rows as f64);
+        a + (b - a) * u + (c - a) * v
+    })
+}
+
+/// Each corner, on one of its triangles.
+fn given_points(surface: &TriangleSurface) -> Vec<GivenPoint> {
+    let mut is_known = vec![false; surface.points.len()];
+    let mut points = Vec::with_capacity(surface.points.len());
+    for (on, corners) in (0..).zip(&surface.triangles) {
+        for &corner in corners {
+            if !std::mem::replace(&mut is_known[corner as usize], true) {
+                points.push(GivenPoint { on, at: surface.points[corner as usize] });
+            }
+        }
+    }
+    points
+}
+
+fn collapsed(
+    given: &Given,
+    settings: &SimplificationSettings,
+    progress: &dyn Progress,
+) -> Result<TriangleSurface, SimplificationError> {
+    let mut work = Work::new(given, settings);
     let enough = settings.triangles.unwrap_or(0);
     let mut steps = 0;
     while work.draft.left > enough {
@@ -131,38 +218,24 @@ pub fn simplify(
 }
 
 impl<'a> Work<'a> {
-    fn new(
-        surface: &'a TriangleSurface,
-        settings: &'a SimplificationSettings<'a>,
-    ) -> Result<Self, SimplificationError> {
-        let search = SurfaceSearch::new(surface)?;
-        let draft = Draft::new(surface);
+    fn new(given: &'a Given<'a>, settings: &'a SimplificationSettings<'a>) -> Self {
+        let draft = Draft::new(given.surface);
         let count = draft.points.len();
         let mut held = vec![Vec::new(); draft.triangles.len()];
-        for (point, around) in (0..).zip(&draft.around) {
-            if let Some(&first) = around.first() {
-                held[first as usize].push(point);
+        for (number, point) in (0..).zip(given.points) {
+            if let Some(own) = draft.number_of_given[point.on as usize] {
+                held[own as usize].push(number);
             }
         }
         let longest = draft.points.iter().map(settings.longest).collect();
         let quadrics = quadrics(&draft);
         let (versions, heap) = (vec![0; count], BinaryHeap::new());
-        let mut work = Work {
-            settings,
-            given: surface,
-            search,
-            draft,
-            quadrics,
-            longest,
-            versions,
-            held,
-            heap,
-        };
+        let mut work = Work { settings, given, draft, quadrics, longest, versions, held, heap };
         for point in 0..count as u32 {
             let later = work.draft.neighbours(point).into_iter().filter(|&other| other > point);
             later.for_each(|other| work.offer([point, other]));
         }
-        Ok(work)
+        work
     }
 
     /// Puts an edge among those that may collapse.
@@ -239,16 +312,14 @@ impl<'a> Work<'a> {
 
     /// Points all over the new triangles lie near the given surface.
     fn is_near(&self, moved: &[(u32, [Vector; 3])]) -> bool {
+        let Given { search, bounds, .. } = self.given;
         let deviation = self.settings.deviation;
-        moved.iter().all(|(_, [a, b, c])| {
-            let wanted = longest_edge(&[*a, *b, *c]) / (APART * deviation);
+        moved.iter().all(|(_, corners)| {
+            let wanted = longest_edge(corners) / (APART * deviation);
             let rows = (wanted.ceil() as usize).clamp(*ROWS.start(), *ROWS.end());
-            (0..=rows).all(|i| {
-                (0..=rows - i).all(|j| {
-                    let [u, v] = [i, j].map(|step| step as f64 / rows as f64);
-                    let point = a + (b - a) * u + (c - a) * v;
-                    self.search.closest_within(&point, deviation).is_some()
-                })
+            spread_over(corners, rows).all(|point| {
+                let closest = search.closest_within(&point, deviation);
+                closest.is_some_and(|closest| closest.distance <= bounds[closest.triangle])
             })
         })
     }
@@ -265,12 +336,13 @@ impl<'a> Work<'a> {
             .map(|(number, [a, b, c])| (*number, Triangle::new(local(a), local(b), local(c))))
             .collect();
         let home = |&point: &u32| {
-            let place = local(&self.given.points[point as usize]);
+            let own = &self.given.points[point as usize];
+            let place = local(&own.at);
             let far = |triangle: &Triangle| triangle.distance_to_local_point(place, true);
             let each = triangles.iter().map(|(number, triangle)| (far(triangle), *number));
             let (distance, number) =
                 each.min_by(|one, other| one.0.total_cmp(&other.0).then(one.1.cmp(&other.1)))?;
-            (distance <= self.settings.deviation).then_some(number)
+            (distance <= self.given.bounds[own.on as usize]).then_some(number)
         };
         points.iter().map(home).collect()
     }

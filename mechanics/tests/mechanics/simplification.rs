@@ -20,7 +20,7 @@ fn within(surface: &TriangleSurface, deviation: f64) -> TriangleSurface {
 /// The largest distance from points all over one surface to the other.
 fn farthest(from: &TriangleSurface, to: &TriangleSurface) -> f64 {
     let search = SurfaceSearch::new(to).unwrap();
-    let samples = area_sampling::every_triangle(from, 2.0);
+    let samples = area_sampling::every_triangle(from, 30.0);
     let points = samples.iter().map(|sample| &sample.point).chain(&from.points);
     points.map(|point| search.closest(point).distance).fold(0.0, f64::max)
 }
@@ -37,8 +37,7 @@ fn a_head_keeps_within_the_bound_both_ways_with_a_tenth_of_its_triangles() {
         let left = simple.triangles.len() as f64 / given.triangles.len() as f64;
         assert!(left < share, "{left} of {} within {deviation} mm", given.triangles.len());
         let [out, back] = [farthest(&simple, &given), farthest(&given, &simple)];
-        // Between the points that are looked at it may be a little more.
-        assert!(out < 1.15 * deviation && back < 1.15 * deviation, "{out} {back} {deviation}");
+        assert!(out <= deviation && back <= deviation, "{out} {back} {deviation}");
         assert_eq!(counts(&simple), EdgeCounts::default());
         // Euler's number of a sphere.
         let (points, triangles) = (simple.points.len() as i64, simple.triangles.len() as i64);
