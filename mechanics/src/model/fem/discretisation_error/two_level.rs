@@ -46,8 +46,10 @@ pub(in crate::model::fem) trait EnrichedCells: Sync {
     fn stiffening(&self, cell: usize, of_nodes: &[Vector]) -> Result<f64, InvertedCell>;
 }
 
-/// A step is not made longer or shorter by more than this.
-const SHARES: [f64; 2] = [0.25, 2.0];
+/// A step is not made longer or shorter by more than this. At finite strain it is not made longer: the tangent of pressed cells gives way
+/// to modes more than finer cells do.
+const LEAST_SHARE: f64 = 0.25;
+const MOST_SHARE: f64 = 2.0;
 
 /// An answer, and its cells with functions on their edges.
 pub(in crate::model::fem) struct TwoLevel<'a, C> {
@@ -114,8 +116,9 @@ impl<C: EnrichedCells> TwoLevel<'_, C> {
         let stiffening: f64 = own.collect::<Result<Vec<f64>, _>>()?.iter().sum();
         let work: f64 = step.iter().zip(forces).map(|(e, f)| e.dot(f)).sum();
         let is_minimum = work > 0.0 && work + stiffening > 0.0;
-        let [least, most] = SHARES;
-        Ok(if is_minimum { (work / (work + stiffening)).clamp(least, most) } else { 1.0 })
+        let most = if self.cells.is_finite() { 1.0 } else { MOST_SHARE };
+        let share = if is_minimum { work / (work + stiffening) } else { 1.0 };
+        Ok(share.clamp(LEAST_SHARE, most))
     }
 
     /// Forces of the edge functions in the equations of the corners, and their squared energy norm in mN mm.
