@@ -105,7 +105,7 @@ impl Ord for Candidate {
 
 struct Work<'a> {
     settings: &'a SimplificationSettings<'a>,
-    given: &'a Given<'a>,
+    given: &'a GivenSurface<'a>,
     draft: Draft,
     quadrics: Vec<Quadric>,
     /// The longest edge allowed at each point.
@@ -135,7 +135,7 @@ pub fn simplify(
     let mut bounds = vec![within; surface.triangles.len()];
     let mut reached = 0.0;
     for round in 0..MOST_ROUNDS {
-        let given = Given { surface, search: &search, points: &points, bounds: &bounds };
+        let given = GivenSurface { surface, search: &search, points: &points, bounds: &bounds };
         let simple = collapsed(&given, settings, progress)?;
         let simple_search = SurfaceSearch::new(&simple)?;
         let there = beyond(&simple, surface, &search, within);
@@ -167,7 +167,7 @@ struct GivenPoint {
 }
 
 /// The surface as given, and what is looked at of it.
-struct Given<'a> {
+struct GivenSurface<'a> {
     surface: &'a TriangleSurface,
     search: &'a SurfaceSearch,
     points: &'a [GivenPoint],
@@ -199,7 +199,7 @@ fn given_points(surface: &TriangleSurface) -> Vec<GivenPoint> {
 }
 
 fn collapsed(
-    given: &Given,
+    given: &GivenSurface,
     settings: &SimplificationSettings,
     progress: &dyn Progress,
 ) -> Result<TriangleSurface, SimplificationError> {
@@ -218,7 +218,7 @@ fn collapsed(
 }
 
 impl<'a> Work<'a> {
-    fn new(given: &'a Given<'a>, settings: &'a SimplificationSettings<'a>) -> Self {
+    fn new(given: &'a GivenSurface<'a>, settings: &'a SimplificationSettings<'a>) -> Self {
         let draft = Draft::new(given.surface);
         let count = draft.points.len();
         let mut held = vec![Vec::new(); draft.triangles.len()];
@@ -312,7 +312,7 @@ impl<'a> Work<'a> {
 
     /// Points all over the new triangles lie near the given surface.
     fn is_near(&self, moved: &[(u32, [Vector; 3])]) -> bool {
-        let Given { search, bounds, .. } = self.given;
+        let GivenSurface { search, bounds, .. } = self.given;
         let deviation = self.settings.deviation;
         moved.iter().all(|(_, corners)| {
             let wanted = longest_edge(corners) / (APART * deviation);

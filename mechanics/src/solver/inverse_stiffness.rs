@@ -10,7 +10,7 @@ use super::multigrid::{Multigrid, Workspace};
 
 /// What was made of K, for any number of right-hand sides.
 #[derive(Clone, Copy)]
-pub(super) enum Made<'a> {
+pub(super) enum ReadyInverse<'a> {
     Cycle(&'a Multigrid),
     Factor(&'a Factor),
 }
@@ -22,10 +22,12 @@ pub(super) enum InverseStiffness<'a, const N: usize> {
 }
 
 impl<'a, const N: usize> InverseStiffness<'a, N> {
-    pub fn new(made: Made<'a>) -> Self {
+    pub fn new(made: ReadyInverse<'a>) -> Self {
         match made {
-            Made::Cycle(multigrid) => InverseStiffness::Cycle(multigrid, multigrid.workspace()),
-            Made::Factor(factor) => InverseStiffness::Factor(factor),
+            ReadyInverse::Cycle(multigrid) => {
+                InverseStiffness::Cycle(multigrid, multigrid.workspace())
+            }
+            ReadyInverse::Factor(factor) => InverseStiffness::Factor(factor),
         }
     }
 

@@ -16,7 +16,7 @@
 //! put on the nodes around it. It does not lose its meaning as nu goes to 1/2.
 
 use super::conjugate_gradient::StoppingCriterion;
-use super::inverse_stiffness::Made;
+use super::inverse_stiffness::ReadyInverse;
 use super::lanes::MOST_LANES;
 use super::mixed_iteration::{MOST_DIRECTIONS, Run};
 use super::mixed_scaling::scaled;
@@ -74,10 +74,13 @@ pub fn solve_best_effort(
 }
 
 /// The factor of K where one was needed before, its hierarchy otherwise.
-fn made<'a>(system: &MixedSystem<'a>, progress: &dyn Progress) -> Result<Made<'a>, SolverError> {
+fn made<'a>(
+    system: &MixedSystem<'a>,
+    progress: &dyn Progress,
+) -> Result<ReadyInverse<'a>, SolverError> {
     match system.solver.made_factor() {
-        Some(factor) => Ok(Made::Factor(factor)),
-        None => system.solver.hierarchy(system.stiffness, progress).map(Made::Cycle),
+        Some(factor) => Ok(ReadyInverse::Factor(factor)),
+        None => system.solver.hierarchy(system.stiffness, progress).map(ReadyInverse::Cycle),
     }
 }
 
@@ -110,16 +113,16 @@ fn solve_alone(
     tolerance: &Tolerance,
     progress: &dyn Progress,
 ) -> Result<MixedSolution, SolverError> {
-    let under = |made: Made| {
+    let under = |made: ReadyInverse| {
         let run = Run::<1>::new(system, made, std::slice::from_ref(right));
         run.solve(tolerance.relative_residual, progress)
     };
     let made = made(system, progress)?;
     let mut found = match (under(made), made) {
-        (Err(stalled @ SolverError::NotConverged { .. }), Made::Cycle(_)) => {
+        (Err(stalled @ SolverError::NotConverged { .. }), ReadyInverse::Cycle(_)) => {
             let left_mb = tolerance.memory_mb - megabytes(system.stiffness, system.coupling);
             let factor = system.solver.affordable_factor(system.stiffness, left_mb)?;
-            let mut found = under(Made::Factor(factor.ok_or(stalled.clone())?))?;
+            let mut found = under(ReadyInverse::Factor(factor.ok_or(stalled.clone())?))?;
             let why = &mut found[0].solution.report.why;
             *why = format!("{why}; conjugate residuals under multigrid stalled: {stalled}");
             found
@@ -147,7 +150,7 @@ pub fn direction(
     progress: &dyn Progress,
 ) -> Result<MixedDirection, SolverError> {
     let multigrid = system.solver.hierarchy(system.stiffness, progress)?;
-    let made = Made::Cycle(multigrid);
+    let made = ReadyInverse::Cycle(multigrid);
     let mut run = Run::<1>::new(system, made, std::slice::from_ref(right_hand_side));
     run.most_iterations = criterion.most_iterations;
     run.keep = MOST_DIRECTIONS;

@@ -1,7 +1,7 @@
 //! Conjugate residuals for displacement and pressure together, one iteration after the other; the equations, the preconditioner
 //! and the residual are those of `mixed`.
 
-use super::inverse_stiffness::{InverseStiffness, Made};
+use super::inverse_stiffness::{InverseStiffness, ReadyInverse};
 use super::lanes::Lanes;
 use super::mixed_system::{MixedRightHandSide, MixedSolution, MixedSystem};
 use super::vector::{column, dot, largest, norm, pack_lanes, ratio, scale, subtract_all, update};
@@ -64,7 +64,7 @@ pub(super) struct Run<'a, const N: usize> {
 impl<'a, const N: usize> Run<'a, N> {
     pub fn new(
         system: &'a MixedSystem<'a>,
-        made: Made<'a>,
+        made: ReadyInverse<'a>,
         columns: &[MixedRightHandSide],
     ) -> Self {
         let coupling = system.coupling;
