@@ -306,7 +306,8 @@ fn of_a_tiny_movement_finite_strain_is_estimated_as_linear_elements_are() {
         |case: Case| Case { materials: [("*".to_owned(), material(15.0, 0.497))].into(), ..case };
     for (case, element, most) in [
         (near(slab().case), plain, 0.1),
-        (near(slab_hex().case), plain, 0.1),
+        // The step of locked hexahedra is made longer by a quarter; at finite strain no step is.
+        (near(slab_hex().case), plain, 0.3),
         (near(pulled.clone()), plain, 0.1),
         (slab().case, stabilised, 0.1),
         (near(slab_hex().case), ElementChoice::MeanDilatation, 0.2),
