@@ -18,7 +18,7 @@ use crate::schema::{CaseDocument, WarningDocument};
 use crate::store::{CaseResponses, Store, StoreError};
 use mechanics::format::{self, Mesh, ReadLimits, WriteError};
 use mechanics::mesh::{TriangleSurface, Vector};
-use mechanics::prediction::{NORMAL_TURNED, Skin, skin_overlap};
+use mechanics::prediction::{Skin, skin_overlap};
 use mechanics::response::{Amounts, COLUMNS_PER_SEGMENT, Linearity, QuadraticForm, Response};
 
 /// Jobs with a cached verdict; beyond that all are checked again.
@@ -74,7 +74,7 @@ impl LoadedResponse {
         let form = self.second_order.as_ref();
         let beyond = form.map(|form| form.apply(segments, movements, &mut displacement));
         let of_case = self.description.warnings_of(plan);
-        let is_turned = of_case.iter().any(|warning| warning.code == NORMAL_TURNED);
+        let is_turned = self.description.is_wall_turned(movements);
         let linear = LinearPart {
             nonlinearity: self.linearity.of(movements),
             is_unknown: is_turned || inner.iter().any(|amount| *amount != 0.0),

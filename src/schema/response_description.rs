@@ -21,7 +21,7 @@ use mechanics::mesh::ignored::listed;
 use mechanics::mesh::{Frame, Vector, Warning};
 use mechanics::plan::RigidMovement;
 use mechanics::plan::doubt::{MovedSegment, beyond_face, nothing_moves, suspect_units};
-use mechanics::prediction::{RigidlyCarried, normal_turned, rigidly_carried};
+use mechanics::prediction::{RigidlyCarried, is_normal_turned, normal_turned, rigidly_carried};
 use mechanics::response::linearity::LINEAR_RANGE_MM;
 use mechanics::response::{Columns, InnerLoad, Linearity, ResponseSegment, SampledSecond};
 
@@ -256,14 +256,29 @@ impl ResponseDescription {
         let still = movements.iter().all(|movement| *movement == RigidMovement::default())
             && amounts.inner.iter().all(|amount| *amount == 0.0);
         let order = if self.second_order.is_some() { 2 } else { 1 };
-        let carriers = self.segments.iter().zip(movements).filter(|(of, _)| of.carries_wall);
-        let turned = carriers.filter_map(|(of, movement)| normal_turned(&of.name, movement, order));
+        let turned = self
+            .carriers(movements)
+            .filter_map(|(name, movement)| normal_turned(name, movement, order));
         let warnings = still.then(nothing_moves).into_iter();
         let warnings = warnings.chain(suspect_units(&self.moved(movements)));
         let warnings = warnings.chain(amounts.doubts.iter().cloned()).chain(turned);
         let warnings = warnings.chain(self.rigidly_carried(movements).told);
         let of_plan = warnings.map(|warning| WarningDocument::from(&warning));
         of_plan.chain(self.warnings.iter().cloned()).collect()
+    }
+
+    /// Whether a wall turns with its segment, so that what linearity leaves out is not known.
+    pub fn is_wall_turned(&self, movements: &[RigidMovement]) -> bool {
+        self.carriers(movements).any(|(_, movement)| is_normal_turned(movement))
+    }
+
+    /// The segments that carry walls.
+    fn carriers<'a>(
+        &'a self,
+        movements: &'a [RigidMovement],
+    ) -> impl Iterator<Item = (&'a str, &'a RigidMovement)> {
+        let pairs = self.segments.iter().zip(movements).filter(|(of, _)| of.carries_wall);
+        pairs.map(|(of, movement)| (of.name.as_str(), movement))
     }
 
     fn moved<'a>(&'a self, movements: &'a [RigidMovement]) -> Vec<MovedSegment<'a>> {

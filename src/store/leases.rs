@@ -103,6 +103,15 @@ const REAP: &str = "UPDATE jobs SET losses = losses + 1, lease_token = NULL, lea
      WHERE id IN (SELECT id FROM jobs WHERE status = 'running' \
        AND lease_expires < (SELECT now_ms FROM clock) FOR UPDATE SKIP LOCKED) \
      RETURNING id, attempt, status";
+/// Leases and pauses from before the clock went back keep their length from now on.
+const CLOCK_WENT_BACK: [&str; 2] = [
+    "UPDATE jobs SET lease_expires = lease_expires - heartbeat + (SELECT now_ms FROM clock), \
+     heartbeat = (SELECT now_ms FROM clock) \
+     WHERE status = 'running' AND heartbeat > (SELECT now_ms FROM clock)",
+    "UPDATE jobs SET claimable_from = claimable_from - updated + (SELECT now_ms FROM clock), \
+     updated = (SELECT now_ms FROM clock) \
+     WHERE status = 'accepted' AND claimable_from > updated AND updated > (SELECT now_ms FROM clock)",
+];
 const INSERT_FILE: &str =
     "INSERT INTO job_files (job_id, name, media_type, blob, bytes) VALUES ($1, $2, $3, $4, $5)";
 const FILE: &str = "SELECT name, media_type, blob, bytes FROM job_files WHERE job_id = $1 AND name = $2 \
@@ -254,10 +263,13 @@ impl Store {
         Ok(changed == 1)
     }
 
-    /// Takes jobs from workers that gave no sign of life for a lease. `error` is for those that this
-    /// happened to `attempts` times.
+    /// Takes jobs from workers that gave no sign of life for a lease, however the clock was set meanwhile. `error` is for those
+    /// that this happened to `attempts` times.
     pub async fn reap(&self, attempts: u32, error: &str) -> Result<Vec<LostJob>, StoreError> {
         let mut transaction = self.database.begin().await?;
+        for keep in CLOCK_WENT_BACK {
+            query(keep).execute(&mut transaction).await?;
+        }
         let rows = query(REAP)
             .bind(i64::from(attempts))
             .bind(error)

@@ -67,6 +67,25 @@ impl ElasticTensor {
         }
     }
 
+    /// The sum of w g_j.C.g_k over pairs of gradients, from G = sum w g_j g_k^T.
+    #[inline]
+    pub fn block(&self, products: &Matrix3<f64>) -> Matrix3<f64> {
+        let both = products.trace();
+        let mut block = products * self.lambda + products.transpose() * self.mu;
+        let mut diagonal = self.mu * both;
+        if let Some(AlongFibre { direction: a, moduli }) = &self.fibre {
+            let FibreModuli { delta_lambda, delta_mu, beta } = *moduli;
+            let (of_k, of_j) = (products * a, products.tr_mul(a));
+            let along = a.dot(&of_k);
+            block += (of_k * a.transpose() + a * of_j.transpose()) * delta_lambda
+                + (a * of_k.transpose() + of_j * a.transpose()) * delta_mu
+                + a * a.transpose() * (beta * along + delta_mu * both);
+            diagonal += delta_mu * along;
+        }
+        (0..3).for_each(|k| block[(k, k)] += diagonal);
+        block
+    }
+
     /// C : grad u, of which only the symmetric part counts:
     ///
     /// lambda tr E + 2 mu E + dlam [ (a.Ea) 1 + tr E a a^T ] + 2 dmu (a (Ea)^T + Ea a^T) + beta (a.Ea) a a^T.
@@ -210,6 +229,8 @@ mod tests {
             let expected = Matrix3::from_fn(|i, j| block[i][j]) * v;
             let found = tensor.stress(&(v * gk.transpose())) * gj;
             assert!((found - expected).norm() < 1e-13, "{found} {expected}");
+            let of_products = tensor.block(&(gj * gk.transpose())) * v;
+            assert!((of_products - expected).norm() < 1e-13, "{of_products} {expected}");
         }
     }
 }

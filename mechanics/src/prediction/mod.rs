@@ -73,7 +73,7 @@ pub use skin::{Skin, least_moving};
 pub use skin_overlap::{SKIN_OVERLAPS, skin_overlap};
 pub use stated::{StatedCondition, StatedHold};
 pub use unconstrained::{NOTHING_HELD, RigidlyCarried, rigidly_carried};
-pub use walls::{NORMAL_TURNED, normal_turned};
+pub use walls::{is_normal_turned, normal_turned};
 
 pub use adaptive::{AdaptiveError, AdaptivePrediction, Level, Stop, predict_adaptively};
 pub use adequate::{

@@ -27,7 +27,7 @@ const NORMAL_TURNED_AT_SECOND_ORDER_DEG: f64 = 0.1;
 const ACROSS_MM: f64 = 1e-6;
 
 /// The code of the warning of turned normals.
-pub const NORMAL_TURNED: &str = "sliding-normal-turned";
+const NORMAL_TURNED: &str = "sliding-normal-turned";
 
 /// A set of sliding nodes as the case states it.
 struct Wall {
@@ -305,12 +305,15 @@ pub(super) fn warn_of_rotated_walls(scene: &Scene) -> Vec<Warning> {
 /// The first segment that carries a wall and turns by more than the second order bears.
 pub(super) fn rotation_beyond_second_order(scene: &Scene) -> Option<String> {
     let mut segments = (0_u32..).zip(&scene.segments);
-    let turns = |segment: &PlannedSegment| {
-        segment.movement.angle().to_degrees() > NORMAL_TURNED_AT_SECOND_ORDER_DEG
-    };
+    let turns = |segment: &PlannedSegment| is_normal_turned(&segment.movement);
     let carries = |number: u32| scene.conditions.carried_by(number) > 0;
     let turned = segments.find(|(number, segment)| turns(segment) && carries(*number))?;
     Some(turned.1.name.clone())
+}
+
+/// Whether the normals of walls carried by a segment turn by more than the second order, and so what linearity leaves out, is known for.
+pub fn is_normal_turned(movement: &RigidMovement) -> bool {
+    movement.angle().to_degrees() > NORMAL_TURNED_AT_SECOND_ORDER_DEG
 }
 
 /// The warning of a segment that carries a wall and turns by more than an answer of first or second order bears.

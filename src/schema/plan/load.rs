@@ -15,15 +15,15 @@ const LARGEST_LOAD: f64 = 1e9;
 /// 1 m/s² in mm/ms².
 const MM_PER_MS2: f64 = 1e-3;
 
-/// Exactly one of `force_mn` with `nodes`, `traction_kpa` with `faces`, `pressure_kpa` with `faces`,
+/// Exactly one of `force_millinewton` with `nodes`, `traction_kpa` with `faces`, `pressure_kpa` with `faces`,
 /// or `gravity_m_per_s2`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LoadDocument {
-    /// The force at each of the nodes.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    /// The force at each of the nodes in mN; its former name `force_mn` is read too.
+    #[serde(default, alias = "force_mn", skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
-    pub force_mn: Option<Triple>,
+    pub force_millinewton: Option<Triple>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub nodes: Option<SelectionDocument>,
@@ -65,20 +65,22 @@ impl LoadDocument {
         faults: &mut Faults,
     ) -> Option<Load> {
         let forms = [
-            self.force_mn.is_some(),
+            self.force_millinewton.is_some(),
             self.traction_kpa.is_some(),
             self.pressure_kpa.is_some(),
             self.gravity_m_per_s2.is_some(),
         ];
         let given = forms.into_iter().filter(|&form| form).count();
-        let names = "`force_mn`, `traction_kpa`, `pressure_kpa`, `gravity_m_per_s2`";
+        let names = "`force_millinewton`, `traction_kpa`, `pressure_kpa`, `gravity_m_per_s2`";
         if !faults.check_one_of(at, given, names) {
             return None;
         }
         self.check_sizes(at, faults);
         let on_faces = self.traction_kpa.is_some() || self.pressure_kpa.is_some();
-        let wanted =
-            [("nodes", self.force_mn.is_some(), &self.nodes), ("faces", on_faces, &self.faces)];
+        let wanted = [
+            ("nodes", self.force_millinewton.is_some(), &self.nodes),
+            ("faces", on_faces, &self.faces),
+        ];
         let mut selection = None;
         for (name, needed, document) in wanted {
             match (needed, document) {
@@ -104,7 +106,7 @@ impl LoadDocument {
             return Some(Load::Gravity { acceleration });
         }
         let selected = selection?;
-        if let Some(force) = self.force_mn {
+        if let Some(force) = self.force_millinewton {
             let force = context.vector(force);
             return Some(Load::Force { nodes: selected, force });
         }
@@ -118,7 +120,7 @@ impl LoadDocument {
 
     fn check_sizes(&self, at: &Pointer, faults: &mut Faults) {
         let vectors = [
-            ("force_mn", self.force_mn),
+            ("force_millinewton", self.force_millinewton),
             ("traction_kpa", self.traction_kpa),
             ("gravity_m_per_s2", self.gravity_m_per_s2),
         ];

@@ -32,7 +32,12 @@ pub struct ContactPairDocument {
     pub nodes: u64,
     pub area_mm2: f64,
     pub largest_pressure_kpa: f64,
-    /// The total normal force.
+    /// The total normal force; absent in results of before.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub force_millinewton: Option<f64>,
+    /// Former name of `force_millinewton`, until the next version of this document.
+    #[schema(deprecated)]
     pub force_mn: f64,
 }
 
@@ -80,6 +85,7 @@ impl From<&ContactPair> for ContactPairDocument {
             nodes: pair.nodes as u64,
             area_mm2: pair.area,
             largest_pressure_kpa: pair.largest_pressure,
+            force_millinewton: Some(pair.force),
             force_mn: pair.force,
         }
     }

@@ -212,7 +212,12 @@ pub struct ReactionDocument {
     pub segment: Option<String>,
     /// The nodes with a direction constrained by it and no stronger condition; of a bone the points in contact with it.
     pub nodes: u64,
-    /// In mN.
+    /// Absent in results of before.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub force_millinewton: Option<Triple>,
+    /// Former name of `force_millinewton`, until the next version of this document.
+    #[schema(deprecated)]
     pub force_mn: Triple,
 }
 
@@ -378,6 +383,7 @@ impl From<&ConditionReaction> for ReactionDocument {
             condition: reaction.pointer.clone(),
             segment: reaction.segment.clone(),
             nodes: reaction.nodes as u64,
+            force_millinewton: Some(reaction.force.into()),
             force_mn: reaction.force.into(),
         }
     }

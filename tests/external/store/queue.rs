@@ -12,6 +12,7 @@ trials! {
         a_job_is_claimed_by_one_worker_only
         a_job_that_loses_its_worker_three_times_fails_as_worker_lost
         a_worker_that_was_thought_dead_publishes_nothing
+        leases_and_pauses_outlive_no_clock_that_goes_back
         a_job_given_back_by_a_stopping_worker_loses_no_attempt
         a_result_that_comes_after_the_dismissal_is_dropped
         the_same_inputs_are_the_same_job
@@ -103,6 +104,32 @@ async fn a_job_that_loses_its_worker_three_times_fails_as_worker_lost(on: Deploy
     assert_eq!(ended.error.as_deref(), Some(LOST));
     assert!(ended.finished.is_some());
     assert!(store.claim(LEASE).await.unwrap().is_none());
+}
+
+async fn leases_and_pauses_outlive_no_clock_that_goes_back(on: Deployment) {
+    // Two hours, as seen from the clock of now.
+    const AHEAD: i64 = 2 * 3_600_000;
+    let store = on.open().await;
+    let id = enqueue(&store, "a").await;
+    store.claim(LEASE).await.unwrap().unwrap();
+    on.execute(&format!(
+        "UPDATE jobs SET lease_expires = lease_expires + {AHEAD}, heartbeat = heartbeat + {AHEAD}"
+    ))
+    .await;
+    assert!(store.reap(3, "{}").await.unwrap().is_empty(), "the lease has its length");
+    let length = LEASE.as_millis() + 1;
+    on.execute(&format!("UPDATE jobs SET lease_expires = lease_expires - {length}")).await;
+    assert_eq!(store.reap(3, "{}").await.unwrap().len(), 1);
+
+    let lease = store.claim(LEASE).await.unwrap().unwrap().lease;
+    assert!(store.lose(&lease, 3, "{}").await.unwrap());
+    on.execute(&format!(
+        "UPDATE jobs SET claimable_from = claimable_from + {AHEAD}, updated = updated + {AHEAD}"
+    ))
+    .await;
+    store.reap(3, "{}").await.unwrap();
+    on.execute("UPDATE jobs SET claimable_from = claimable_from - 60000").await;
+    assert_eq!(store.claim(LEASE).await.unwrap().expect("claimable").lease.job, id);
 }
 
 async fn a_job_given_back_by_a_stopping_worker_loses_no_attempt(on: Deployment) {

@@ -106,7 +106,7 @@ fn the_identity_in_every_form_displaces_by_exactly_nothing() {
 fn a_plan_in_the_other_frame_moves_the_same_bone_the_same_way() {
     let lps = r#"{"frame":"LPS","segments":[{"name":"jaw","translation_mm":[1,-5,2],"rotation_deg":[3,4,5],"pivot_mm":[10,20,30]}],
         "prescribed":[{"nodes":{"node_set":"a"},"displacement_mm":[1,null,2]}],
-        "loads":[{"force_mn":[1,2,3],"nodes":{"node_set":"a"}},{"gravity_m_per_s2":[0,9.81,1]}]}"#;
+        "loads":[{"force_millinewton":[1,2,3],"nodes":{"node_set":"a"}},{"gravity_m_per_s2":[0,9.81,1]}]}"#;
     let (there, here) = (plan_in(Frame::Ras, lps).expect("ok"), plan(lps).expect("ok"));
     let flip = |v: Vector| Vector::new(-v.x, -v.y, v.z);
     let point = Vector::new(12.0, -70.0, 33.0);
@@ -122,6 +122,15 @@ fn a_plan_in_the_other_frame_moves_the_same_bone_the_same_way() {
     let Load::Gravity { acceleration } = &there.loads[1] else { panic!("gravity") };
     // 9.81 m/s² is 0.00981 mm/ms².
     assert!((acceleration - Vector::new(0.0, -0.00981, 0.001)).norm() < 1e-15);
+}
+
+#[test]
+fn the_former_name_of_a_force_is_read_and_not_both_names() {
+    let text = r#"{"loads":[{"force_mn":[1,2,3],"nodes":{"node_set":"a"}}]}"#;
+    let Load::Force { force, .. } = &plan(text).expect("ok").loads[0] else { panic!("a force") };
+    assert_eq!(*force, Vector::new(1.0, 2.0, 3.0));
+    let both = text.replace("\"nodes\"", "\"force_millinewton\":[1,2,3],\"nodes\"");
+    assert!(serde_json::from_str::<PlanDocument>(&both).is_err());
 }
 
 #[test]

@@ -52,7 +52,7 @@ async fn contact_is_answered_as_it_is_asked_for_and_reported_with_its_pairs_and_
         let job = solved(Some(contact), 3.0).await;
         let told = &job["results"]["contact"];
         let [pair] = &told["pairs"].as_array().unwrap()[..] else { panic!("{told}") };
-        assert!(pair["force_mn"].as_f64().unwrap() > 0.0, "{told}");
+        assert!(pair["force_millinewton"].as_f64().unwrap() > 0.0, "{told}");
         assert!(told["largest_penetration_mm"].as_f64().unwrap() < 1e-8, "{told}");
         assert_eq!(has_warning(&job, "contact-closed"), contact == "auto", "{job}");
         for (file, arrays) in [

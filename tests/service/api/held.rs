@@ -154,6 +154,11 @@ async fn a_wall_goes_with_its_bone_in_predictions_and_responses_alike() {
             let has_turned = codes(warnings).contains(&"sliding-normal-turned");
             assert_eq!(has_turned, is_carried, "{warnings}");
         }
+        // Turned by too little for that warning, and by too much for an estimate.
+        let little = json!({"segments": [{"name": "bone", "rotation_deg": [0, 1, 0], "pivot_mm": [30, 30, 0]}]});
+        let told = apply(&server, case, &little).await.expect(StatusCode::OK);
+        assert_eq!(told["nonlinearity_estimate_mm"].is_null(), is_carried, "{told}");
+        assert_eq!(codes(&told["warnings"]).contains(&"nonlinearity-unknown"), is_carried);
         let beside = codes(&direct["results"]["warnings"]).contains(&"sliding-beside-segment");
         assert_eq!(beside, !is_carried);
     }

@@ -2,12 +2,10 @@
 
 use nalgebra::Matrix3;
 
-use super::edge_functions::MAX_EDGES;
 use super::mean_stress;
-use super::points::EnrichedCell;
+use super::points::{EnrichedCell, of_corners};
 use super::simplex::{CornerPressures, Simplex};
-use super::two_level::{AtCorners, EnrichedCells, OfEdges};
-use crate::element::MAX_NODES;
+use super::two_level::{AtCorners, Coefficients, EnrichedCells, OfEdges};
 use crate::mesh::{CellShape, Vector};
 use crate::model::fem::assembly::Tissue;
 use crate::model::fem::displacement_pressure::{PressureCells, without_pressure_part};
@@ -56,15 +54,6 @@ impl<'a> Cells<'a> {
         Cells { tissue, displacement, pressures, numbers, mean_stresses }
     }
 
-    /// The values of the corners of a cell; zero beyond its last.
-    fn of_corners(&self, cell: usize, of_nodes: &[Vector]) -> [Vector; MAX_NODES] {
-        let mut own = [Vector::zeros(); MAX_NODES];
-        for (own, &node) in own.iter_mut().zip(self.tissue.mesh.cells.nodes(cell)) {
-            *own = of_nodes[node as usize];
-        }
-        own
-    }
-
     fn cell(&self, cell: usize) -> Result<Cell, InvertedCell> {
         let (mesh, tensor) = (self.tissue.mesh, self.tissue.tensor(cell));
         let shape = mesh.cells.shape(cell);
@@ -95,35 +84,36 @@ impl EnrichedCells for Cells<'_> {
     }
 
     fn equations(&self, cell: usize, of_edges: &mut OfEdges) -> Result<(), InvertedCell> {
-        let moved = self.of_corners(cell, self.displacement);
+        let moved = of_corners(self.tissue.mesh, cell, self.displacement);
         match self.cell(cell)? {
-            Cell::Simplex(simplex) => simplex.equations(&moved, of_edges),
+            Cell::Simplex(simplex) => simplex.equations(&moved, &mut of_edges.equations),
             Cell::Points(points) => {
-                *of_edges = points.equations(&moved, &self.mean_stresses[cell]);
+                of_edges.modes = points.modes(&moved);
+                let mean_stress = &self.mean_stresses[cell];
+                of_edges.equations = points.equations(&moved, &of_edges.modes, mean_stress);
             }
         }
         Ok(())
     }
 
-    fn at_corners(
-        &self,
-        cell: usize,
-        of_edges: &[Vector; MAX_EDGES],
-    ) -> Result<AtCorners, InvertedCell> {
+    fn at_corners(&self, cell: usize, of: &Coefficients) -> Result<AtCorners, InvertedCell> {
         Ok(match self.cell(cell)? {
             Cell::Simplex(simplex) => {
-                (simplex.forces(of_edges), simplex.volumes(of_edges).unwrap_or_default())
+                (simplex.forces(&of.edges), simplex.volumes(&of.edges).unwrap_or_default())
             }
-            Cell::Points(points) => {
-                (points.forces(&self.of_corners(cell, self.displacement), of_edges), [0.0; 4])
-            }
+            Cell::Points(points) => (
+                points.forces(&of_corners(self.tissue.mesh, cell, self.displacement), of),
+                [0.0; 4],
+            ),
         })
     }
 
     fn stiffening(&self, cell: usize, of_nodes: &[Vector]) -> Result<f64, InvertedCell> {
         Ok(match self.cell(cell)? {
             Cell::Simplex(_) => 0.0,
-            Cell::Points(points) => points.stiffening(&self.of_corners(cell, of_nodes)),
+            Cell::Points(points) => {
+                points.stiffening(&of_corners(self.tissue.mesh, cell, of_nodes))
+            }
         })
     }
 }

@@ -51,7 +51,8 @@ fn edge_functions_that_are_solved_exactly_have_the_energy_of_the_error() {
             let own = cell(&mesh, &material[0], number);
             let mut moved = [Vector::zeros(); MAX_NODES];
             moved.iter_mut().zip(mesh.corners(number)).for_each(|(u, x)| *u = exact(&x));
-            let of_cell: [EdgeEquation; MAX_EDGES] = own.equations(&moved, &None);
+            let of_cell: [EdgeEquation; MAX_EDGES] =
+                own.equations(&moved, &own.modes(&moved), &None);
             let numbers = edges.of_cell(number);
             for (a, edge) in numbers.numbers().enumerate() {
                 equations.add(edge, &of_cell[a]);

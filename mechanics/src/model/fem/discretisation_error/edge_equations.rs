@@ -4,6 +4,7 @@ use nalgebra::Matrix3;
 use rayon::prelude::*;
 
 use super::held_edges::HeldEdges;
+use super::inner_modes::Modes;
 use crate::mesh::Vector;
 
 /// D b = r of one edge.
@@ -24,6 +25,8 @@ impl EdgeEquation {
 pub(super) struct EdgeEquations {
     pub residual: Vec<Vector>,
     pub stiffness: Vec<Matrix3<f64>>,
+    /// What the inner modes of each cell do; empty where no cell has any.
+    pub modes: Vec<Modes>,
 }
 
 impl EdgeEquations {
@@ -31,6 +34,7 @@ impl EdgeEquations {
         EdgeEquations {
             residual: vec![Vector::zeros(); count],
             stiffness: vec![Matrix3::zeros(); count],
+            modes: Vec::new(),
         }
     }
 

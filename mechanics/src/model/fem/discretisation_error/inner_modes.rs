@@ -26,6 +26,10 @@ use crate::mesh::{CellShape, Vector};
 pub(in crate::model::fem) const MAX_MODES: usize = 4;
 const UNKNOWNS: usize = 3 * MAX_MODES;
 
+/// A vector of each mode: its coefficients in mm, or its gradients.
+pub(in crate::model::fem) type Modes = [Vector; MAX_MODES];
+pub(in crate::model::fem) const NO_MODES: Modes = [Vector::new(0.0, 0.0, 0.0); MAX_MODES];
+
 /// The edges whose functions make a mode.
 fn parallel_edges(shape: CellShape) -> &'static [&'static [usize]] {
     match shape {
@@ -35,32 +39,25 @@ fn parallel_edges(shape: CellShape) -> &'static [&'static [usize]] {
     }
 }
 
-/// How many modes a cell has.
-pub(in crate::model::fem) fn mode_count(shape: CellShape) -> usize {
-    parallel_edges(shape).len()
-}
-
-/// The gradients of modes at the points of a cell, without their mean.
-pub(in crate::model::fem) fn mode_gradients(
+/// The gradients of modes at the points of a cell, without their mean, from those of edges and the volume of each point in mm³.
+pub(in crate::model::fem) fn mode_gradients<'a>(
     shape: CellShape,
-    of_edges: &[[Vector; MAX_EDGES]],
-    volumes: &[f64],
-) -> Vec<[Vector; MAX_MODES]> {
-    let at_point = |edges: &[Vector; MAX_EDGES]| {
-        let mut modes = [Vector::zeros(); MAX_MODES];
+    points: impl Iterator<Item = (&'a [Vector; MAX_EDGES], f64)>,
+) -> Vec<Modes> {
+    let at_point = |(edges, volume): (&[Vector; MAX_EDGES], f64)| {
+        let mut modes = NO_MODES;
         for (mode, parallel) in modes.iter_mut().zip(parallel_edges(shape)) {
             *mode = parallel.iter().map(|&edge| edges[edge]).sum();
         }
-        modes
+        (modes, volume)
     };
-    let mut all: Vec<_> = of_edges.iter().map(at_point).collect();
-    let volume: f64 = volumes.iter().sum();
-    for mode in 0..MAX_MODES {
-        let mean =
-            all.iter().zip(volumes).map(|(modes, v)| modes[mode] * *v).sum::<Vector>() / volume;
-        all.iter_mut().for_each(|modes| modes[mode] -= mean);
-    }
-    all
+    let all: Vec<(Modes, f64)> = points.map(at_point).collect();
+    let volume: f64 = all.iter().map(|(_, volume)| volume).sum();
+    let mean: Modes = std::array::from_fn(|mode| {
+        all.iter().map(|(modes, v)| modes[mode] * *v).sum::<Vector>() / volume
+    });
+    let without_mean = |(modes, _): &(Modes, f64)| std::array::from_fn(|k| modes[k] - mean[k]);
+    all.iter().map(without_mean).collect()
 }
 
 /// y_k dV of each point of a cell, from positions of the points in mm and the volumes in mm³ that they stand for.
@@ -93,16 +90,15 @@ pub(in crate::model::fem) struct ModeEquations {
 
 impl ModeEquations {
     pub fn new(shape: CellShape) -> Self {
-        let count = mode_count(shape);
+        let count = parallel_edges(shape).len();
         let mut matrix = SMatrix::zeros();
         (3 * count..UNKNOWNS).for_each(|unused| matrix[(unused, unused)] = 2.0);
         ModeEquations { count, matrix, right: SVector::zeros() }
     }
 
-    /// Pairs of modes.
+    /// Pairs of modes, each once: the matrix is symmetric and only what is on its diagonal and below is read.
     pub fn pairs(&self) -> impl Iterator<Item = (usize, usize)> + use<> {
-        let count = self.count;
-        (0..count).flat_map(move |a| (0..count).map(move |b| (a, b)))
+        (0..self.count).flat_map(|a| (0..=a).map(move |b| (a, b)))
     }
 
     pub fn modes(&self) -> std::ops::Range<usize> {
@@ -120,32 +116,40 @@ impl ModeEquations {
     }
 
     /// The work of the forces on coefficients of the modes.
-    pub fn work(&self, coefficients: &[Vector; MAX_MODES]) -> f64 {
+    pub fn work(&self, coefficients: &Modes) -> f64 {
         self.modes().map(|mode| self.right.fixed_rows::<3>(3 * mode).dot(&coefficients[mode])).sum()
     }
 
+    /// The coefficients of the modes.
+    pub fn solve(&self) -> Modes {
+        // Elastic tensors are positive definite: where rounding hides that, a cell has no modes.
+        self.matrix.cholesky().map_or(NO_MODES, |factor| vectors(&factor.solve(&self.right)))
+    }
+
     /// The coefficients of the modes, none softer than its own of `least`.
-    pub fn solve(&self, least: &[f64; MAX_MODES]) -> [Vector; MAX_MODES] {
+    pub fn solve_above(&self, least: &[f64; MAX_MODES]) -> Modes {
         let scale = SVector::<f64, UNKNOWNS>::from_fn(|unknown, _| match least[unknown / 3] {
             0.0 => 1.0,
             least => 1.0 / least.sqrt(),
         });
-        let floor = if least[0] > 0.0 { 1.0 } else { 0.0 };
         let scaled = self.matrix.component_mul(&(scale * scale.transpose()));
         let right = self.right.component_mul(&scale);
-        let is_stiff = (scaled - SMatrix::from_diagonal_element(floor)).cholesky().is_some();
+        let is_stiff = (scaled - SMatrix::identity()).cholesky().is_some();
         let solved = match scaled.cholesky().filter(|_| is_stiff) {
             Some(factor) => factor.solve(&right),
             None => {
                 let mut eigen = SymmetricEigen::new(scaled);
-                eigen.eigenvalues.iter_mut().for_each(|value| *value = value.max(floor));
+                eigen.eigenvalues.iter_mut().for_each(|value| *value = value.max(1.0));
                 let along = eigen.eigenvectors.transpose() * right;
                 eigen.eigenvectors * along.component_div(&eigen.eigenvalues)
             }
         };
-        let solved = solved.component_mul(&scale);
-        std::array::from_fn(|mode| solved.fixed_rows::<3>(3 * mode).into_owned())
+        vectors(&solved.component_mul(&scale))
     }
+}
+
+fn vectors(unknowns: &SVector<f64, UNKNOWNS>) -> Modes {
+    std::array::from_fn(|mode| unknowns.fixed_rows::<3>(3 * mode).into_owned())
 }
 
 #[cfg(test)]

@@ -11,7 +11,7 @@ use std::ops::{AddAssign, Div, Mul};
 use nalgebra::Matrix3;
 use rayon::prelude::*;
 
-use super::points::gradient_of;
+use super::points::{gradient_of, of_corners};
 use crate::mesh::{CellShape, Vector, VolumeMesh};
 use crate::model::fem::assembly::Tissue;
 use crate::model::fem::cell_stiffness::Dilatation;
@@ -121,8 +121,7 @@ fn of_cell(
         return None;
     }
     let corners: Vec<Vector> = tissue.mesh.corners(cell).collect();
-    let nodes = tissue.mesh.cells.nodes(cell);
-    let moved: Vec<Vector> = nodes.iter().map(|&node| displacement[node as usize]).collect();
+    let moved = of_corners(tissue.mesh, cell, displacement);
     let (mut gradient, mut volume) = (Matrix3::zeros(), 0.0);
     for point in &reference_cell(shape).points {
         let physical = point.at(&corners)?;

@@ -44,11 +44,11 @@ use cell::{CellAnswer, Cells};
 pub(super) use edge_equations::EdgeEquation;
 pub(super) use edge_functions::{Corners, MAX_EDGES, at_point};
 pub use indicators::{Goal, marked};
-pub(super) use inner_modes::{MAX_MODES, ModeEquations, mode_gradients, moment_weights};
+pub(super) use inner_modes::{MAX_MODES, ModeEquations, Modes, mode_gradients, moment_weights};
 pub use loads::DistributedLoads;
 pub(super) use mean_stress::{Weighted, has_wedges, smooth_in_wedges};
-pub(super) use points::gradient_of;
-pub(super) use two_level::{AtCorners, EnrichedCells, OfEdges, TwoLevel};
+pub(super) use points::{gradient_of, of_corners};
+pub(super) use two_level::{AtCorners, Coefficients, EnrichedCells, OfEdges, TwoLevel};
 
 /// Relative residual of the solve: the first digit of an estimate is all that it has.
 const LOOSE: f64 = 0.03;

@@ -5,9 +5,9 @@
 
 use nalgebra::Matrix3;
 
+use super::edge_equations::EdgeEquation;
 use super::edge_functions::MAX_EDGES;
 use super::points::gradient_of;
-use super::two_level::OfEdges;
 use crate::element::MAX_NODES;
 use crate::element::tetrahedron10::EDGES;
 use crate::material::ElasticTensor;
@@ -42,7 +42,7 @@ impl Simplex {
     }
 
     /// Writes r and D of each edge where the corners are displaced.
-    pub fn equations(&self, displacement: &[Vector], equations: &mut OfEdges) {
+    pub fn equations(&self, displacement: &[Vector], equations: &mut [EdgeEquation; MAX_EDGES]) {
         let g = &self.gradients;
         let stress = self.tensor.stress(&gradient_of(displacement, g)) * self.volume;
         let squares = g.map(|g| g * g.transpose());

@@ -7,6 +7,7 @@ use super::edge_equations::{EdgeEquation, EdgeEquations};
 use super::edge_functions::MAX_EDGES;
 use super::edges::Edges;
 use super::held_edges::HeldEdges;
+use super::inner_modes::{Modes, NO_MODES};
 use super::loads::DistributedLoads;
 use super::sheet::{Sheet, SheetState};
 use crate::boundary::Constraint;
@@ -21,8 +22,22 @@ use crate::model::problem::InvertedCell;
 /// Forces on the corners of a cell, and the volumes of its pressures; zero where it has none.
 pub(in crate::model::fem) type AtCorners = ([Vector; MAX_NODES], [f64; 4]);
 
-/// The equations of the edges of a cell; what is beyond its last edge does not count.
-pub(in crate::model::fem) type OfEdges = [EdgeEquation; MAX_EDGES];
+/// The equations of the edges of a cell, and what its inner modes do; what is beyond its last edge or mode does not count.
+#[derive(Clone)]
+pub(in crate::model::fem) struct OfEdges {
+    pub equations: [EdgeEquation; MAX_EDGES],
+    pub modes: Modes,
+}
+
+impl OfEdges {
+    const ZERO: OfEdges = OfEdges { equations: [EdgeEquation::ZERO; MAX_EDGES], modes: NO_MODES };
+}
+
+/// Coefficients of edges on one cell, and of its inner modes, in mm.
+pub(in crate::model::fem) struct Coefficients {
+    pub edges: [Vector; MAX_EDGES],
+    pub modes: Modes,
+}
 
 /// Cells of an answer with functions on their edges.
 pub(in crate::model::fem) trait EnrichedCells: Sync {
@@ -32,15 +47,11 @@ pub(in crate::model::fem) trait EnrichedCells: Sync {
     /// The numbers of the pressures of its corners, where a cell has any.
     fn pressure_numbers(&self, cell: usize) -> Option<[u32; 4]>;
 
-    /// Writes r and D of each edge of a cell.
+    /// Writes r and D of each edge of a cell, and what its inner modes do.
     fn equations(&self, cell: usize, of_edges: &mut OfEdges) -> Result<(), InvertedCell>;
 
-    /// Forces of edge coefficients on the corners of a cell.
-    fn at_corners(
-        &self,
-        cell: usize,
-        of_edges: &[Vector; MAX_EDGES],
-    ) -> Result<AtCorners, InvertedCell>;
+    /// Forces of coefficients on the corners of a cell.
+    fn at_corners(&self, cell: usize, of: &Coefficients) -> Result<AtCorners, InvertedCell>;
 
     /// v . (K_i - K) v of a cell in mN mm (`inner_modes`), for v of all nodes.
     fn stiffening(&self, cell: usize, of_nodes: &[Vector]) -> Result<f64, InvertedCell>;
@@ -72,11 +83,18 @@ impl<C: EnrichedCells> TwoLevel<'_, C> {
     /// The equations of the edges beside the answer; nothing acts on them but the answer.
     pub(super) fn equations(&self, edges: &Edges) -> Result<EdgeEquations, InvertedCell> {
         let mut equations = EdgeEquations::zeros(edges.count());
+        if self.has_modes() {
+            equations.modes = vec![NO_MODES; self.tissue.mesh.cells.len()];
+        }
         edges.each_cell(
-            [EdgeEquation::ZERO; MAX_EDGES],
+            OfEdges::ZERO,
             |cell, _, own| self.cells.equations(cell, own),
-            |_, numbers, own| {
-                numbers.numbers().zip(own).for_each(|(edge, own)| equations.add(edge, own));
+            |cell, numbers, own| {
+                let pairs = numbers.numbers().zip(&own.equations);
+                pairs.for_each(|(edge, own)| equations.add(edge, own));
+                if let Some(modes) = equations.modes.get_mut(cell) {
+                    *modes = own.modes;
+                }
             },
         )?;
         if let Some(sheet) = self.sheet(edges, &equations) {
@@ -106,13 +124,19 @@ impl<C: EnrichedCells> TwoLevel<'_, C> {
         Some(Sheet::new((skin, self.tissue.mesh), moved, edges, is_edge))
     }
 
+    /// Whether cells have inner modes.
+    fn has_modes(&self) -> bool {
+        self.tissue.mesh.cells.iter().any(|(shape, _)| shape != CellShape::Tet4)
+    }
+
     /// The share of the step e of the nodes, K e = forces, that leaves least energy where cells have inner modes.
     pub fn share(&self, step: &[Vector], forces: &[Vector]) -> Result<f64, InvertedCell> {
-        let cells = &self.tissue.mesh.cells;
-        if cells.iter().all(|(shape, _)| shape == CellShape::Tet4) {
+        if !self.has_modes() {
             return Ok(1.0);
         }
-        let own = (0..cells.len()).into_par_iter().map(|cell| self.cells.stiffening(cell, step));
+        let own = (0..self.tissue.mesh.cells.len())
+            .into_par_iter()
+            .map(|cell| self.cells.stiffening(cell, step));
         let stiffening: f64 = own.collect::<Result<Vec<f64>, _>>()?.iter().sum();
         let work: f64 = step.iter().zip(forces).map(|(e, f)| e.dot(f)).sum();
         let is_minimum = work > 0.0 && work + stiffening > 0.0;
@@ -137,7 +161,9 @@ impl<C: EnrichedCells> TwoLevel<'_, C> {
         edges.each_cell(
             ([Vector::zeros(); MAX_NODES], [0.0; 4]),
             |cell, numbers, at_corners| {
-                *at_corners = cells.at_corners(cell, &numbers.gather(&steps))?;
+                let modes = equations.modes.get(cell).copied().unwrap_or(NO_MODES);
+                let of = Coefficients { edges: numbers.gather(&steps), modes };
+                *at_corners = cells.at_corners(cell, &of)?;
                 Ok(())
             },
             |cell, _, (forces, volumes)| {

@@ -12,7 +12,8 @@ use crate::material::hyperelastic::Law;
 use crate::mesh::{CellShape, Vector, VolumeMesh};
 use crate::model::fem::assembly;
 use crate::model::fem::discretisation_error::{
-    AtCorners, EnrichedCells, MAX_EDGES, OfEdges, Weighted, has_wedges, smooth_in_wedges,
+    AtCorners, Coefficients, EnrichedCells, OfEdges, Weighted, has_wedges, of_corners,
+    smooth_in_wedges,
 };
 use crate::model::problem::InvertedCell;
 
@@ -107,28 +108,23 @@ impl EnrichedCells for Enriched<'_> {
 
     fn equations(&self, cell: usize, of_edges: &mut OfEdges) -> Result<(), InvertedCell> {
         match self.mesh.cells.shape(cell) {
-            CellShape::Tet4 => self.simplex(cell).equations(of_edges),
+            CellShape::Tet4 => self.simplex(cell).equations(&mut of_edges.equations),
             CellShape::Hex8 | CellShape::Wedge6 => self.brick(cell).equations(of_edges),
         }
         Ok(())
     }
 
-    fn at_corners(
-        &self,
-        cell: usize,
-        of_edges: &[Vector; MAX_EDGES],
-    ) -> Result<AtCorners, InvertedCell> {
+    fn at_corners(&self, cell: usize, of: &Coefficients) -> Result<AtCorners, InvertedCell> {
         Ok(match self.mesh.cells.shape(cell) {
-            CellShape::Tet4 => self.simplex(cell).at_corners(of_edges),
+            CellShape::Tet4 => self.simplex(cell).at_corners(&of.edges),
             CellShape::Hex8 | CellShape::Wedge6 => {
-                (self.brick(cell).forces(of_edges), Default::default())
+                (self.brick(cell).forces(of), Default::default())
             }
         })
     }
 
     fn stiffening(&self, cell: usize, of_nodes: &[Vector]) -> Result<f64, InvertedCell> {
-        let nodes = self.mesh.cells.nodes(cell);
-        let own = || nodes.iter().map(|&node| of_nodes[node as usize]).collect::<Vec<_>>();
+        let own = || of_corners(self.mesh, cell, of_nodes);
         Ok(match self.mesh.cells.shape(cell) {
             CellShape::Tet4 => 0.0,
             CellShape::Hex8 | CellShape::Wedge6 => self.brick(cell).stiffening(&own()),

@@ -10,8 +10,8 @@ use crate::element::{MAX_NODES, ReferencePoint};
 use crate::material::hyperelastic::point::{Corner, Point};
 use crate::mesh::{CellShape, Vector};
 use crate::model::fem::discretisation_error::{
-    Corners, EdgeEquation, MAX_EDGES, MAX_MODES, ModeEquations, OfEdges, at_point, gradient_of,
-    mode_gradients, moment_weights,
+    Coefficients, Corners, EdgeEquation, MAX_EDGES, MAX_MODES, ModeEquations, Modes, OfEdges,
+    at_point, gradient_of, mode_gradients, moment_weights,
 };
 use crate::model::reference_cell;
 
@@ -41,99 +41,112 @@ impl EnrichedBrick<'_> {
         at_point(self.shape, &corners).gradients
     }
 
-    /// The equations of the inner modes at the tangent moduli of the state.
+    /// The inner modes at the state.
     fn inner(&self) -> Inner {
         let reference = &reference_cell(self.shape).points;
         let volumes: Vec<f64> = self.brick.at_rest.iter().map(|at_rest| at_rest.volume).collect();
         let positions: Vec<Vector> = reference.iter().map(|p| p.position(&self.corners)).collect();
         let edges: Vec<_> =
             self.points().map(|(at_rest, _, point)| self.edges_at(at_rest, point)).collect();
-        let gradients = mode_gradients(self.shape, &edges, &volumes);
+        let pairs = edges.iter().zip(volumes.iter().copied());
         let mut inner = Inner {
-            equations: ModeEquations::new(self.shape),
+            gradients: mode_gradients(self.shape, pairs),
             weights: moment_weights(&positions, &volumes),
             of_volume: [[Vector::zeros(); 3]; MAX_MODES],
             means: [Vector::zeros(); MAX_MODES],
-            least: [0.0; MAX_MODES],
             bulk: self.brick.of_mean * self.brick.volume(),
             of_mean: self.brick.of_mean,
-            gradients,
+            edges,
         };
         for (place, (at_rest, point, _)) in self.points().enumerate() {
             let (modes, y) = (inner.gradients[place], inner.weights[place]);
-            let own = modes.map(|g| point.corner(&g));
-            for (a, b) in inner.equations.pairs() {
-                let block = point.block(&own[a], &own[b]) * at_rest.volume;
-                inner.equations.add_block((a, b), &block);
-            }
-            for mode in inner.equations.modes() {
-                let of_log_volume = own[mode].of_log_volume(point.volume());
+            for (mode, g) in modes.iter().enumerate() {
+                let of_log_volume = point.corner(g).of_log_volume(point.volume());
                 (0..3).for_each(|k| inner.of_volume[mode][k] += of_log_volume * y[k]);
                 inner.means[mode] += of_log_volume * at_rest.volume;
-                inner.least[mode] += LEAST * self.mu * modes[mode].norm_squared() * at_rest.volume;
             }
-        }
-        for (a, b) in inner.equations.pairs() {
-            let pairs = inner.of_volume[a].iter().zip(&inner.of_volume[b]);
-            let block: Matrix3<f64> = pairs.map(|(v, w)| v * w.transpose()).sum();
-            let of_mean = inner.means[a] * inner.means[b].transpose() * inner.of_mean;
-            inner.equations.add_block((a, b), &(block * inner.bulk + of_mean));
         }
         inner
     }
 
-    /// What the cell by itself does beside its corners in the state.
-    fn inside(&self) -> Inside {
-        let mut inner = self.inner();
-        let mut moments = [0.0; 3];
-        for (place, (at_rest, point, _)) in self.points().enumerate() {
-            let stress = point.stress() * at_rest.volume;
-            for mode in inner.equations.modes() {
-                inner.equations.add_force(mode, &(-(stress * inner.gradients[place][mode])));
+    /// The equations of the inner modes at the tangent moduli of the state.
+    fn mode_equations(&self, inner: &Inner) -> Softest {
+        let mut softest =
+            Softest { equations: ModeEquations::new(self.shape), least: [0.0; MAX_MODES] };
+        let Softest { equations, least } = &mut softest;
+        for ((at_rest, point, _), modes) in self.points().zip(&inner.gradients) {
+            let own = modes.map(|g| point.corner(&g));
+            for (a, b) in equations.pairs() {
+                let block = point.block(&own[a], &own[b]) * at_rest.volume;
+                equations.add_block((a, b), &block);
             }
-            let y = inner.weights[place];
-            (0..3).for_each(|k| moments[k] += point.log_volume() * y[k]);
+            for mode in equations.modes() {
+                least[mode] += LEAST * self.mu * modes[mode].norm_squared() * at_rest.volume;
+            }
         }
-        let coefficients = inner.solved(moments, 0.0);
-        let changes: [f64; 3] = std::array::from_fn(|k| {
-            let pairs = coefficients.iter().zip(&inner.of_volume);
-            inner.bulk * (moments[k] + pairs.map(|(a, v)| a.dot(&v[k])).sum::<f64>())
-        });
-        let along = inner.gradients.iter().map(|modes| gradient_of(&coefficients, modes));
-        Inside { along: along.collect(), changes, weights: inner.weights }
+        for (a, b) in equations.pairs() {
+            let pairs = inner.of_volume[a].iter().zip(&inner.of_volume[b]);
+            let block: Matrix3<f64> = pairs.map(|(v, w)| v * w.transpose()).sum();
+            let of_mean = inner.means[a] * inner.means[b].transpose() * inner.of_mean;
+            equations.add_block((a, b), &(block * inner.bulk + of_mean));
+        }
+        softest
+    }
+
+    /// The three moments of ln J.
+    fn moments(&self, inner: &Inner) -> [f64; 3] {
+        let pairs = self.points().zip(&inner.weights);
+        pairs.fold([0.0; 3], |sum, ((_, point, _), y)| {
+            std::array::from_fn(|k| sum[k] + point.log_volume() * y[k])
+        })
+    }
+
+    /// What the inner modes do beside the corners in the state.
+    fn modes(&self, inner: &Inner) -> Modes {
+        let mut softest = self.mode_equations(inner);
+        for ((at_rest, point, _), modes) in self.points().zip(&inner.gradients) {
+            let stress = point.stress() * at_rest.volume;
+            for mode in softest.equations.modes() {
+                softest.equations.add_force(mode, &(-(stress * modes[mode])));
+            }
+        }
+        softest.solved(inner, self.moments(inner), 0.0)
     }
 
     /// v . (K_i - K) v of displaced corners at the tangent moduli, in mN mm: what moments resist, less what modes give way.
     pub fn stiffening(&self, displacement: &[Vector]) -> f64 {
-        let mut inner = self.inner();
+        let inner = self.inner();
+        let mut softest = self.mode_equations(&inner);
         let (mut moments, mut mean) = ([0.0; 3], 0.0);
         for (place, (at_rest, point, _)) in self.points().enumerate() {
             let rows = rows(point, &gradient_of(displacement, &at_rest.gradients));
-            for mode in inner.equations.modes() {
+            for mode in softest.equations.modes() {
                 let own = point.corner(&inner.gradients[place][mode]);
                 let force = force_on(point, &own, &rows) * at_rest.volume;
-                inner.equations.add_force(mode, &-force);
+                softest.equations.add_force(mode, &-force);
             }
             let change: f64 = (0..3).map(|k| rows[k].of_log_volume(point.volume())[k]).sum();
             let y = inner.weights[place];
             (0..3).for_each(|k| moments[k] += change * y[k]);
             mean += change * at_rest.volume;
         }
-        let coefficients = inner.solved(moments, mean);
+        let coefficients = softest.solved(&inner, moments, mean);
         let resisted: f64 = moments.iter().map(|moment| inner.bulk * moment * moment).sum();
-        resisted - inner.equations.work(&coefficients)
+        resisted - softest.equations.work(&coefficients)
     }
 
     /// Writes r and D of each edge. What the mean of a wedge resists counts with the shear modulus, as in
     /// `discretisation_error::points`.
-    pub fn equations(&self, equations: &mut OfEdges) {
-        *equations = [EdgeEquation::ZERO; MAX_EDGES];
+    pub fn equations(&self, of_edges: &mut OfEdges) {
+        let inner = self.inner();
+        *of_edges =
+            OfEdges { equations: [EdgeEquation::ZERO; MAX_EDGES], modes: self.modes(&inner) };
+        let OfEdges { equations, modes } = of_edges;
         let (mut means, mut shears) = ([Vector::zeros(); MAX_EDGES], [0.0; MAX_EDGES]);
         let more = self.smooth.map_or(0.0, |smooth| smooth - self.brick.pressure());
-        let inside = self.inside();
-        for ((at_rest, point, reference), along) in self.points().zip(&inside.along) {
-            let (gradients, stress) = (self.edges_at(at_rest, reference), point.stress());
-            let rows = rows(point, along);
+        for (place, (at_rest, point, _)) in self.points().enumerate() {
+            let (gradients, stress) = (&inner.edges[place], point.stress());
+            let rows = rows(point, &gradient_of(modes, &inner.gradients[place]));
             for (edge, equation) in equations[..self.edge_count()].iter_mut().enumerate() {
                 let (g, volume) = (&gradients[edge], at_rest.volume);
                 let own = point.corner(g);
@@ -156,16 +169,20 @@ impl EnrichedBrick<'_> {
     }
 
     /// The forces on the corners of coefficients of the edges, and of the modes and moments of the state.
-    pub fn forces(&self, of_edges: &[Vector; MAX_EDGES]) -> [Vector; MAX_NODES] {
+    pub fn forces(&self, of: &Coefficients) -> [Vector; MAX_NODES] {
         let mut forces = [Vector::zeros(); MAX_NODES];
         let (mut means, mut change) = ([Vector::zeros(); MAX_NODES], 0.0);
-        let Inside { along, changes, weights } = self.inside();
-        for (((at_rest, point, reference), along), y) in self.points().zip(&along).zip(&weights) {
-            let (gradients, volume) = (self.edges_at(at_rest, reference), at_rest.volume);
-            let rows = rows(point, &(gradient_of(of_edges, &gradients) + along));
+        let inner = self.inner();
+        let changes = inner.changes(self.moments(&inner), &of.modes);
+        for (place, (at_rest, point, _)) in self.points().enumerate() {
+            let volume = at_rest.volume;
+            let along = gradient_of(&of.edges, &inner.edges[place])
+                + gradient_of(&of.modes, &inner.gradients[place]);
+            let rows = rows(point, &along);
             for (k, row) in rows.iter().enumerate() {
                 change += row.of_log_volume(point.volume())[k] * volume;
             }
+            let y = &inner.weights[place];
             let linear: f64 = changes.iter().zip(y).map(|(change, y)| change * y).sum();
             for (a, g) in at_rest.gradients.iter().enumerate() {
                 let corner = point.corner(g);
@@ -184,43 +201,48 @@ impl EnrichedBrick<'_> {
     }
 }
 
-/// The equations of the inner modes of a cell.
+/// The inner modes of a cell.
 struct Inner {
-    equations: ModeEquations,
-    gradients: Vec<[Vector; MAX_MODES]>,
+    /// The gradients at rest of the functions of edges at each point, and of modes.
+    edges: Vec<[Vector; MAX_EDGES]>,
+    gradients: Vec<Modes>,
     /// y_k dV of each point.
     weights: Vec<[f64; 3]>,
     /// d(ln J) of each mode, in the three moments and in the integral over the cell.
     of_volume: [[Vector; 3]; MAX_MODES],
     means: [Vector; MAX_MODES],
-    /// The least stiffness of each mode.
-    least: [f64; MAX_MODES],
     /// What resists the moments in kPa, and the integral.
     bulk: f64,
     of_mean: f64,
 }
 
 impl Inner {
-    /// The coefficients of the modes where the change of volume has moments and an integral too.
-    fn solved(&mut self, moments: [f64; 3], mean: f64) -> [Vector; MAX_MODES] {
-        for mode in self.equations.modes() {
-            let pairs = self.of_volume[mode].iter().zip(moments);
-            let of_moments: Vector = pairs.map(|(v, moment)| v * (self.bulk * moment)).sum();
-            let force = of_moments + self.means[mode] * (self.of_mean * mean);
-            self.equations.add_force(mode, &-force);
-        }
-        self.equations.solve(&self.least)
+    /// The pressures in kPa of the three moments of volume, those that corners make and those of modes.
+    fn changes(&self, moments: [f64; 3], modes: &Modes) -> [f64; 3] {
+        std::array::from_fn(|k| {
+            let pairs = modes.iter().zip(&self.of_volume);
+            self.bulk * (moments[k] + pairs.map(|(a, v)| a.dot(&v[k])).sum::<f64>())
+        })
     }
 }
 
-/// What the inner modes of a cell do.
-struct Inside {
-    /// Their gradient at each point.
-    along: Vec<Matrix3<f64>>,
-    /// The pressures in kPa of the three moments of volume, those that corners make among them.
-    changes: [f64; 3],
-    /// y_k dV of each point.
-    weights: Vec<[f64; 3]>,
+/// The equations of inner modes, none of them softer than its least stiffness.
+struct Softest {
+    equations: ModeEquations,
+    least: [f64; MAX_MODES],
+}
+
+impl Softest {
+    /// The coefficients of the modes where the change of volume has moments and an integral too.
+    fn solved(&mut self, inner: &Inner, moments: [f64; 3], mean: f64) -> Modes {
+        for mode in self.equations.modes() {
+            let pairs = inner.of_volume[mode].iter().zip(moments);
+            let of_moments: Vector = pairs.map(|(v, moment)| v * (inner.bulk * moment)).sum();
+            let force = of_moments + inner.means[mode] * (inner.of_mean * mean);
+            self.equations.add_force(mode, &-force);
+        }
+        self.equations.solve_above(&self.least)
+    }
 }
 
 /// H row by row: e_k (x) (H^T e_k).

@@ -8,7 +8,7 @@ use crate::element::MAX_NODES;
 use crate::element::tetrahedron10::EDGES;
 use crate::material::hyperelastic::point::{Corner, Point};
 use crate::mesh::Vector;
-use crate::model::fem::discretisation_error::{AtCorners, MAX_EDGES, OfEdges};
+use crate::model::fem::discretisation_error::{AtCorners, EdgeEquation, MAX_EDGES};
 
 /// The pressures of the corners in kPa, where it has any, and the shear modulus.
 pub(super) struct CornerPressures {
@@ -36,7 +36,7 @@ impl<'a> EnrichedSimplex<'a> {
     }
 
     /// Writes r and D of each edge.
-    pub fn equations(&self, equations: &mut OfEdges) {
+    pub fn equations(&self, equations: &mut [EdgeEquation; MAX_EDGES]) {
         let (g, volume) = (&self.at_rest.gradients, self.at_rest.volume);
         // That of the mean of the pressures.
         let stress = self.point.stress() * volume;
