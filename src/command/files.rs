@@ -8,10 +8,10 @@ use std::sync::Mutex;
 use clap::{Args, ValueEnum};
 
 use crate::jobs::{MeshSize, MeshSource, SourceError, StoredMesh};
-use crate::schema::CaseDocument;
 use crate::schema::case::document::LengthUnit;
 use crate::schema::learn::model::MODEL_FILE;
 use crate::schema::wire::canonical;
+use crate::schema::{CaseDocument, ErrorCode};
 use mechanics::format::{self, ReadLimits};
 
 /// Whether meshes are refused that no head can measure, as the service refuses them.
@@ -98,8 +98,13 @@ impl MeshSource for FileSource {
         if let Some(known) = read.get(id) {
             return Ok(known.clone());
         }
-        let bytes = std::fs::read(self.folder.join(id)).map_err(|error| match error.kind() {
-            ErrorKind::NotFound => SourceError::Unknown { id: id.to_owned() },
+        let path = self.folder.join(id);
+        let bytes = std::fs::read(&path).map_err(|error| match error.kind() {
+            ErrorKind::NotFound => SourceError::Refused {
+                id: id.to_owned(),
+                code: ErrorCode::UnknownMesh,
+                detail: format!("there is no mesh {id:?}: no file {}", path.display()),
+            },
             _ => SourceError::Unreadable {
                 id: id.to_owned(),
                 detail: error.to_string(),
@@ -114,7 +119,10 @@ impl MeshSource for FileSource {
         let stored = StoredMesh::new(mesh, stated, canonical::sha256_hex(&bytes));
         let size = MeshSize::of(&stored.shape, measured);
         size.check(self.allow_any_scale).map_err(|problem| {
-            let detail = format!("{}; --allow-any-scale takes it as it is", problem.detail);
+            let detail = format!(
+                "{}: state the unit by --units or by `units` of the case, or take the mesh as it is by --allow-any-scale",
+                problem.detail
+            );
             SourceError::Refused { id: id.to_owned(), code: problem.code, detail }
         })?;
         read.insert(id.to_owned(), stored.clone());

@@ -56,6 +56,9 @@ pub struct Arguments {
     /// Write stress and strain of the tissue to volume.vtu
     #[arg(long, conflicts_with = "refine", help_heading = "Result")]
     stress: bool,
+    /// The files to write, e.g. skin.vtp,volume.vtu [default: skin, bones, pictures and report]
+    #[arg(long, value_name = "NAME,…", value_delimiter = ',', value_parser = word::<OutputName>, help_heading = "Result")]
+    outputs: Option<Vec<OutputName>>,
     /// Do not estimate the error of the mesh
     #[arg(long, conflicts_with_all = ["corrected", "refine"], help_heading = "Result")]
     no_estimate: bool,
@@ -72,7 +75,8 @@ pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
         false => arguments.scene.documents(plan)?,
     };
     asked.file.refuse_beside_spec(&asked.path)?;
-    asked.file.spec.outputs.get_or_insert_with(usual_outputs);
+    let stated = arguments.outputs.clone().or(asked.file.spec.outputs.take());
+    asked.file.spec.outputs = Some(stated.unwrap_or_else(usual_outputs));
     asked.file.spec.method = arguments.method.unwrap_or(asked.file.spec.method);
     if arguments.load_steps.is_some() {
         let load_steps = arguments.load_steps;

@@ -11,6 +11,9 @@ use crate::config::{ConfigError, SETTINGS, Setting, file};
 const FILE_FLAG: &str = "config";
 const FILE_VARIABLE: &str = "FACIES_CONFIG";
 
+/// Letters that are wrong, missing, too many or exchanged in a name that is taken for another.
+const MISSPELT: usize = 2;
+
 /// The settings as flags; each may as well be an environment variable or a line of a file.
 #[derive(Clone, Debug, Default)]
 pub struct Arguments {
@@ -37,6 +40,8 @@ impl Arguments {
     /// Reads the file of settings, if there is one.
     pub fn given(&self) -> Result<SettingSources, ConfigError> {
         let variable = || std::env::var_os(FILE_VARIABLE).map(PathBuf::from);
+        let names = std::env::vars_os().filter_map(|(name, _)| name.into_string().ok());
+        misspelt(names).iter().for_each(|told| eprintln!("not used   {told}"));
         let file = match self.file.clone().or_else(variable) {
             Some(path) => file::read(&path)?,
             None => BTreeMap::new(),
@@ -63,6 +68,17 @@ impl SettingSources {
         let value = self.file.get(setting.name)?;
         Some((value.clone(), Source::File))
     }
+}
+
+/// Variables that are no setting and are named almost like one.
+fn misspelt(names: impl Iterator<Item = String>) -> Vec<String> {
+    let known: Vec<String> = SETTINGS.iter().map(Setting::variable).collect();
+    let almost = |name: &String| {
+        let near = known.iter().find(|known| strsim::osa_distance(name, known) <= MISSPELT)?;
+        Some(format!("the variable {name} is no setting; {near} is"))
+    };
+    let is_other = |name: &String| name.starts_with("FACIES_") && !known.contains(name);
+    names.filter(is_other).filter_map(|name| almost(&name)).collect()
 }
 
 /// The group of a setting in the help: the sections of `docs/configuration.md`.
@@ -126,6 +142,14 @@ impl FromArgMatches for Arguments {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_misspelt_variable_is_told_and_others_are_not() {
+        let names =
+            ["FACIES_WROKERS", "FACIES_WORKERS", "FACIES_CONFIG", "FACIES_FAULT", "WORKERS"];
+        let told = misspelt(names.map(str::to_owned).into_iter());
+        assert_eq!(told, ["the variable FACIES_WROKERS is no setting; FACIES_WORKERS is"]);
+    }
 
     #[test]
     fn a_switch_without_a_value_is_on_and_takes_no_flag_for_one() {

@@ -18,7 +18,7 @@ pub enum StoreError {
     #[error("the bucket of the setting `blobs` does not exist: create it, or name another one")]
     NoBucket,
     #[error(
-        "none of the {meshes} newest meshes of the database is in these blobs: all hosts of a database keep theirs in one place.          The setting `blobs` (FACIES_BLOBS) has to name the folder, or the bucket and prefix, of the other hosts; without it blobs are          in the data folder of each"
+        "none of the {meshes} newest meshes of the database is in these blobs: all hosts of a database keep theirs in one place. The setting `blobs` (FACIES_BLOBS) has to name the folder, or the bucket and prefix, of the other hosts; without it blobs are in the data folder of each"
     )]
     OtherBlobs { meshes: usize },
     #[error("file system: {0}")]

@@ -1,9 +1,10 @@
 //! Sets of nodes asked for by name, by label, or by distance from a surface.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use crate::mesh::closest_point::SurfaceSearch;
+use crate::mesh::ignored::listed;
 use crate::mesh::{ArrayUse, TriangleSurface, VolumeMesh};
 
 /// How a set of nodes is asked for (SELECT of the documents).
@@ -32,8 +33,8 @@ pub enum SelectionError {
     UnknownSurface(String),
     #[error("surface {0:?} has no triangle with an area")]
     FlatSurface(String),
-    #[error("the selection has no node")]
-    Empty,
+    #[error("{0}")]
+    Empty(String),
 }
 
 /// The mesh in which nodes are selected.
@@ -51,7 +52,7 @@ impl Selector<'_> {
         nodes.sort_unstable();
         nodes.dedup();
         match nodes.is_empty() {
-            true => Err(SelectionError::Empty),
+            true => Err(SelectionError::Empty(self.emptiness(selection))),
             false => Ok(nodes),
         }
     }
@@ -72,6 +73,25 @@ impl Selector<'_> {
                 }
                 Ok(nodes)
             }
+        }
+    }
+
+    /// What a selection without a node looks for, and what there is.
+    fn emptiness(&self, selection: &NodeSelection) -> String {
+        match selection {
+            NodeSelection::NodeSet(name) => format!("node set {name:?} has no node"),
+            NodeSelection::Label { array, value } => {
+                let labels = self.mesh.node_labels.get(array).into_iter().flatten();
+                let known: BTreeSet<i64> = labels.copied().collect();
+                let known = listed(known.iter().map(i64::to_string));
+                format!(
+                    "no node has the value {value} in the array {array:?}; its values are {known}"
+                )
+            }
+            NodeSelection::NearSurface { surface, distance } => format!(
+                "no node of the boundary is within {distance} mm of the surface {surface:?}"
+            ),
+            NodeSelection::Any(_) => "no part of the selection has a node".to_owned(),
         }
     }
 

@@ -37,7 +37,7 @@ impl Problems {
             SelectionError::UnknownArray(_) => SceneErrorCode::UnknownArray,
             SelectionError::UnknownSurface(_) => SceneErrorCode::UnknownSurface,
             SelectionError::FlatSurface(_) => SceneErrorCode::MeshDegenerate,
-            SelectionError::Empty => SceneErrorCode::EmptySelection,
+            SelectionError::Empty(_) => SceneErrorCode::EmptySelection,
         };
         self.add(pointer, code, error.to_string());
     }

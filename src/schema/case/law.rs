@@ -224,23 +224,30 @@ impl LawDocument {
 
     fn constants(&self) -> [Constant; 16] {
         let constant = |name, value, range| Constant { name, value, range };
+        // Every member by its name: one that is left out here would be neither refused nor checked.
+        #[rustfmt::skip]
+        let LawDocument {
+            kind: _, terms: _, volumetric: _,
+            mu_kpa, lambda_kpa, bulk_modulus_kpa, c10_kpa, c01_kpa, c20_kpa, c11_kpa, c02_kpa,
+            c1_kpa, g, b, eps0_kpa, p, eta1, eta2, theta,
+        } = self;
         [
-            constant("mu_kpa", self.mu_kpa, MODULUS),
-            constant("lambda_kpa", self.lambda_kpa, MODULUS_OR_NONE),
-            constant("bulk_modulus_kpa", self.bulk_modulus_kpa, MODULUS),
-            constant("c10_kpa", self.c10_kpa, COEFFICIENT),
-            constant("c01_kpa", self.c01_kpa, COEFFICIENT),
-            constant("c20_kpa", self.c20_kpa, COEFFICIENT),
-            constant("c11_kpa", self.c11_kpa, COEFFICIENT),
-            constant("c02_kpa", self.c02_kpa, COEFFICIENT),
-            constant("c1_kpa", self.c1_kpa, MODULUS),
-            constant("g", self.g, EXPONENT),
-            constant("b", self.b, EXPONENT),
-            constant("eps0_kpa", self.eps0_kpa, MODULUS),
-            constant("p", self.p, EXPONENT),
-            constant("eta1", self.eta1, FACTOR),
-            constant("eta2", self.eta2, FACTOR),
-            constant("theta", self.theta, FACTOR),
+            constant("mu_kpa", *mu_kpa, MODULUS),
+            constant("lambda_kpa", *lambda_kpa, MODULUS_OR_NONE),
+            constant("bulk_modulus_kpa", *bulk_modulus_kpa, MODULUS),
+            constant("c10_kpa", *c10_kpa, COEFFICIENT),
+            constant("c01_kpa", *c01_kpa, COEFFICIENT),
+            constant("c20_kpa", *c20_kpa, COEFFICIENT),
+            constant("c11_kpa", *c11_kpa, COEFFICIENT),
+            constant("c02_kpa", *c02_kpa, COEFFICIENT),
+            constant("c1_kpa", *c1_kpa, MODULUS),
+            constant("g", *g, EXPONENT),
+            constant("b", *b, EXPONENT),
+            constant("eps0_kpa", *eps0_kpa, MODULUS),
+            constant("p", *p, EXPONENT),
+            constant("eta1", *eta1, FACTOR),
+            constant("eta2", *eta2, FACTOR),
+            constant("theta", *theta, FACTOR),
         ]
     }
 
