@@ -53,17 +53,21 @@ fn linearisation_error_warning(
     (mean > accepted).then(|| warning.with("expected_mm", mean))
 }
 
-/// The warning where muscles around lines pull on a mesh that is refined.
+/// The warning where muscles around lines or in surfaces count on a mesh that is refined.
 fn muscles_stay(scene: &Scene) -> Option<Warning> {
-    let pulls = |own: &&MuscleField| own.has_lines && own.is_active(&scene.distributed.inner);
-    let pulling: Vec<&String> =
-        scene.muscles.iter().filter(pulls).map(|muscle| &muscle.name).collect();
+    let counts = |own: &&MuscleField| {
+        let is_drawn = own.has_lines || own.body.is_some();
+        let is_tissue = own.body.is_some() && scene.muscle_tissue.is_some();
+        is_drawn && (is_tissue || own.is_active(&scene.distributed.inner))
+    };
+    let counting: Vec<&String> =
+        scene.muscles.iter().filter(counts).map(|muscle| &muscle.name).collect();
     let detail = format!(
-        "finer cells pull as those of the first mesh, from which they are cut: how coarse the muscles around lines are there ({}) is in \
-         no estimate; a finer mesh of the case tells",
-        listed(&pulling)
+        "finer cells have the muscles of the first mesh, from which they are cut: how coarse those around lines and in surfaces are drawn \
+         there ({}) is in no estimate; a finer mesh of the case tells",
+        listed(&counting)
     );
-    (!pulling.is_empty()).then(|| Warning::new("muscles-not-refined", detail))
+    (!counting.is_empty()).then(|| Warning::new("muscles-not-refined", detail))
 }
 
 /// A mesh that was solved on.

@@ -1,14 +1,17 @@
 //! Adaptive refinement: where the skin is off, until it is not, at the nodes of the case.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use mechanics::mesh::CellShape;
 use mechanics::mesh::Vector;
 use mechanics::mesh::refinement::refine;
 use mechanics::mesh::sample::block;
+use mechanics::muscle::strap::box_surface;
 use mechanics::prediction::{
-    Activation, AdaptiveError, AdaptivePrediction, Case, ElementChoice, LimitError, Muscle,
-    MuscleCourse, Plan, RefinementGoal, Scene, Settings, Stop, predict, predict_adaptively,
+    Activation, AdaptiveError, AdaptivePrediction, BodyFibres, Case, ElementChoice, FibreDirection,
+    LimitError, Muscle, MuscleCourse, Plan, RefinementGoal, Scene, Settings, Stop, predict,
+    predict_adaptively,
 };
 use mechanics::progress::Unobserved;
 use mechanics::study::scenes::slab;
@@ -196,7 +199,7 @@ fn the_same_scene_gives_the_same_meshes_on_one_thread_and_on_two() {
 }
 
 #[test]
-fn muscles_around_lines_are_told_to_stay_as_coarse_as_they_were() {
+fn muscles_around_lines_and_in_surfaces_are_told_to_stay_as_coarse_as_they_were() {
     let (mut case, still) = scene();
     let middle = case.volume.nodes.iter().sum::<Vector>() / case.volume.nodes.len() as f64;
     let line = vec![middle - Vector::x() * 20.0, middle + Vector::x() * 20.0];
@@ -205,10 +208,18 @@ fn muscles_around_lines_are_told_to_stay_as_coarse_as_they_were() {
     case.muscles = vec![Muscle { name: name.clone(), course, tissue: None, stiffening: None }];
     let pulling =
         Plan { activations: vec![Activation { muscle: name, stress: 5.0 }], ..still.clone() };
-    let told = |plan: &Plan, skin_mm: f64| {
-        let adapted = adapted(&case, plan, &wanted(skin_mm, 20_000));
+    let told = |case: &Case, plan: &Plan, skin_mm: f64| {
+        let adapted = adapted(case, plan, &wanted(skin_mm, 20_000));
         adapted.prediction.warnings.iter().any(|own| own.code == "muscles-not-refined")
     };
-    assert!(told(&pulling, 1e-3));
-    assert!(!told(&still, 1e-3) && !told(&pulling, 1e3));
+    assert!(told(&case, &pulling, 1e-3));
+    assert!(!told(&case, &still, 1e-3) && !told(&case, &pulling, 1e3));
+
+    // So are those in surfaces, with tissue of their own whether they pull or not.
+    let surface = Arc::new(box_surface(middle, [0, 1, 2].map(|k| Vector::ith(k, 4.0))));
+    let fibres = BodyFibres::Course(FibreDirection::Uniform(Vector::x()));
+    case.muscles[0].course = MuscleCourse::Body { surface, fibres };
+    assert!(told(&case, &pulling, 1e-3) && !told(&case, &still, 1e-3));
+    case.muscles[0].tissue = Some(material(60.0, 0.4));
+    assert!(told(&case, &still, 1e-3));
 }
