@@ -150,7 +150,8 @@ impl Distances {
     pub fn covered_share(&self) -> f64 {
         let total: f64 = self.measured.iter().map(|measured| measured.area).sum();
         let covered = self.measured.iter().filter(|measured| !measured.is_beyond_border);
-        covered.map(|measured| measured.area).sum::<f64>() / total
+        // The sum of nothing is -0.
+        covered.fold(0.0, |sum, measured| sum + measured.area) / total
     }
 }
 
