@@ -339,7 +339,7 @@ def run(arguments: argparse.Namespace) -> int:
              if tag and (tag == arguments.tag or tag in own)]
     job = service.document(
         "POST", "/v1/jobs", {**study, "kind": "study", "tags": [tag for tag in own if tag not in later]})
-    say(f"study {job['id']}" + (", known and not solved again" if job["deduplicated"] else ""))
+    say(f"study {job['id']}" + (", known: it is not solved again" if job["deduplicated"] else ""))
     for truth in job.get("truths", []) if job["status"] in ("accepted", "running") else []:
         say(expected(truth))
     job = finished(service, job, arguments.timeout_s)
@@ -362,7 +362,8 @@ def run(arguments: argparse.Namespace) -> int:
     for skipped in found.get("skipped", []):
         say(f"{skipped['label']} does not apply to {skipped['scene']}: {skipped['reason']}")
     if within := sum("within-truth-error" in row.get("warnings", []) for row in found["rows"]):
-        say(f"{within} rows are nearer to the truth than that is known (within-truth-error): a finer truth would tell them apart")
+        have = "1 row has" if within == 1 else f"{within} rows have"
+        say(f"{have} an error below the uncertainty of the reference (within-truth-error): a finer reference would distinguish them")
     for line in worse(found["rows"]):
         say(line)
     for reason in verdict["reasons"]:

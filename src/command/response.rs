@@ -15,7 +15,7 @@ use crate::schema::{Limits, ResponseDocument};
 pub struct Arguments {
     #[command(flatten)]
     scene: SceneArguments,
-    /// A response document, as it is posted but for `case`. Method, element, materials, membrane, tolerance and budget that
+    /// The JSON body of the REST job, without `case`. Method, element, materials, membrane, tolerance and budget that
     /// it does not state are those of the case file, whose plan is not used
     #[arg(long, value_name = "FILE", help_heading = "How it is computed")]
     spec: Option<PathBuf>,

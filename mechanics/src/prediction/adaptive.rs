@@ -46,8 +46,8 @@ fn linearisation_error_warning(
     let mean = scene.skin.mean_length(&moving, &prediction.nonlinearity.as_ref().ok()?.left_out);
     let accepted = wanted.skin_mm;
     let detail = format!(
-        "the mesh is refined to {accepted:.3} mm, and linearity leaves out {mean:.3} mm in the mean over the skin that moves: a finer mesh of \
-         linear elements is not adequate"
+        "the mesh is refined to {accepted:.3} mm, but the linearisation error is {mean:.3} mm in the mean over the skin that moves: a finer \
+         mesh does not reduce it"
     );
     let warning = Warning::new("tolerance-not-met", detail).with("accepted_mm", accepted);
     (mean > accepted).then(|| warning.with("expected_mm", mean))

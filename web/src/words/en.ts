@@ -2,7 +2,7 @@
 export const en = {
   notice: "Research software, not a medical device",
   cases: "Cases", jobs: "Jobs", studies: "Studies", plan: "Plan", overview: "Case", inverse: "Plan backwards", comparison: "Comparison",
-  result: "Result", language: "Language", appearance: "Appearance", asSystem: "As the system", light: "Light", dark: "Dark",
+  result: "Result", language: "Language", appearance: "Appearance", asSystem: "System theme", light: "Light", dark: "Dark",
   loading: "Loading…", refused: "Refused.", notThere: "Not here.", toCases: "To the cases", lost: "No connection.", jobFailed: "The job failed.", tryAgain: "Try again",
   unreachable: "The service is out of reach. What you see may be old.", noWarnings: "No warnings.",
   calls: "Calls to the service", copyAsCurl: "Copy as curl", copied: "Copied", notCopied: "Not copied: choose the line",
