@@ -377,6 +377,8 @@ def run(arguments: argparse.Namespace) -> int:
             say(f"study {baseline} is newer and stays the baseline of {arguments.baseline_tag!r}")
     elif later:
         say(f"it does not get the tag {' or '.join(map(repr, later))}")
+    if verdict["outcome"] == "incomplete" and baseline and arguments.baseline_tag:
+        say(f"if cases were changed on purpose, run once with --tag {arguments.baseline_tag} and without --baseline-tag")
     tell(job["id"], verdict["outcome"])
     return EXIT_CODES[verdict["outcome"]]
 
