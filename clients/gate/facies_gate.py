@@ -370,7 +370,7 @@ def run(arguments: argparse.Namespace) -> int:
         say(reason.replace(f"job {NO_JOB} is no study that has ended well", no_study(arguments)))
     worst = max((row["p95_mm"] for row in found["rows"] if isinstance(row.get("p95_mm"), (int, float))), default=None)
     largest = "" if worst is None else f", largest p95 {worst:.4g} mm"
-    say(f"{verdict['rows']} rows, {verdict['worse']} worse{largest}; outcome {verdict['outcome']}")
+    say(f"{verdict['rows']} row{'' if verdict['rows'] == 1 else 's'}, {verdict['worse']} worse{largest}; outcome {verdict['outcome']}")
     if verdict["outcome"] == "pass":
         put_on(service, job, later)
         if baseline and baseline > job["id"] and arguments.baseline_tag in later:

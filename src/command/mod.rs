@@ -64,7 +64,7 @@ enum Command {
     Predict(predict::Arguments),
     /// Solve a case once, so that the skin of every further plan of its segments is a sum
     Response(response::Arguments),
-    /// Find the plan that brings the skin nearest to where it is wanted
+    /// Find the plan whose skin is nearest to given targets
     Optimise(optimise::Arguments),
     /// Find what an operation did from bone before and after it; write it as a plan
     Reproduce(reproduce::Arguments),

@@ -22,7 +22,7 @@ pub struct Arguments {
     /// A segment that the response can move; may be given several times; default: all
     #[arg(long, value_name = "NAME", help_heading = "How it is computed")]
     only: Vec<String>,
-    /// 2: with what linear elasticity leaves out, as a quadratic form in the movements; default: 1
+    /// 2: with the second-order term of finite strain, as a quadratic form in the movements; default: 1
     #[arg(long, value_name = "ORDER", help_heading = "How it is computed")]
     order: Option<u8>,
     /// The folder for the result

@@ -312,7 +312,7 @@ fn whole(
             found.push((outcome, words));
         }
     };
-    tell(OutcomeName::Worse, worse > 0, format!("of {rows} rows {worse} are worse than allowed"));
+    tell(OutcomeName::Worse, worse > 0, format!("{worse} of {rows} row(s) worse than allowed"));
     tell(OutcomeName::Worse, failed > 0, format!("of {rows} rows {failed} failed"));
     tell(OutcomeName::Incomplete, solved == 0, "no row was solved".to_owned());
     let unheld = unheld(report);
