@@ -313,7 +313,7 @@ fn whole(
         }
     };
     tell(OutcomeName::Worse, worse > 0, format!("{worse} of {rows} row(s) worse than allowed"));
-    tell(OutcomeName::Worse, failed > 0, format!("of {rows} rows {failed} failed"));
+    tell(OutcomeName::Worse, failed > 0, format!("{failed} of {rows} row(s) failed"));
     tell(OutcomeName::Incomplete, solved == 0, "no row was solved".to_owned());
     let unheld = unheld(report);
     let words = format!("the thresholds are for {}, which applies nowhere", unheld.join(", "));
