@@ -143,7 +143,7 @@ pub fn outside_second_order(beyond: &BeyondLinear) -> Option<String> {
     let is_near = third <= LINEAR_RANGE_MM && (third <= SERIES_MM || third <= SERIES * second);
     (!is_near).then(|| {
         format!(
-            "the second order is {second:.2} mm and leaves out about {third:.2} mm: more than {LINEAR_RANGE_MM} mm, or more than \
+            "the second-order term is {second:.2} mm and its error about {third:.2} mm: more than {LINEAR_RANGE_MM} mm, or more than \
              {SERIES_MM} mm and half of it"
         )
     })

@@ -59,8 +59,8 @@ fn muscles_stay(scene: &Scene) -> Option<Warning> {
     let pulling: Vec<&String> =
         scene.muscles.iter().filter(pulls).map(|muscle| &muscle.name).collect();
     let detail = format!(
-        "finer cells pull as those of the first mesh, from which they are cut: how coarse the muscles around lines are there ({}) is in \
-         no estimate; a finer mesh of the case tells",
+        "finer cells pull as those of the first mesh, from which they are cut: no estimate includes \
+         the error of muscles around lines ({}) on coarse cells; use a finer mesh of the case",
         listed(&pulling)
     );
     (!pulling.is_empty()).then(|| Warning::new("muscles-not-refined", detail))

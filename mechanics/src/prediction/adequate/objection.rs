@@ -96,7 +96,7 @@ impl<'a> CandidateAnswer<'a> {
 impl Objection {
     /// As the answer says that what was asked is not met.
     pub fn not_met(&self, accepted: &Accepted) -> Warning {
-        let detail = format!("{}: no estimate of an error has that", self.warning.detail);
+        let detail = format!("{}: no error estimate includes that", self.warning.detail);
         let warning =
             Warning::new("tolerance-not-met", detail).with("accepted_mm", accepted.skin_mm);
         let numbers = self.warning.numbers.iter();
