@@ -339,7 +339,7 @@ def run(arguments: argparse.Namespace) -> int:
              if tag and (tag == arguments.tag or tag in own)]
     job = service.document(
         "POST", "/v1/jobs", {**study, "kind": "study", "tags": [tag for tag in own if tag not in later]})
-    say(f"study {job['id']}" + (", known and not solved again" if job["deduplicated"] else ""))
+    say(f"study {job['id']}" + (", known: it is not solved again" if job["deduplicated"] else ""))
     for truth in job.get("truths", []) if job["status"] in ("accepted", "running") else []:
         say(expected(truth))
     job = finished(service, job, arguments.timeout_s)
@@ -362,20 +362,23 @@ def run(arguments: argparse.Namespace) -> int:
     for skipped in found.get("skipped", []):
         say(f"{skipped['label']} does not apply to {skipped['scene']}: {skipped['reason']}")
     if within := sum("within-truth-error" in row.get("warnings", []) for row in found["rows"]):
-        say(f"{within} rows are nearer to the truth than that is known (within-truth-error): a finer truth would tell them apart")
+        have = "1 row has" if within == 1 else f"{within} rows have"
+        say(f"{have} an error below the uncertainty of the reference (within-truth-error): a finer reference would distinguish them")
     for line in worse(found["rows"]):
         say(line)
     for reason in verdict["reasons"]:
         say(reason.replace(f"job {NO_JOB} is no study that has ended well", no_study(arguments)))
     worst = max((row["p95_mm"] for row in found["rows"] if isinstance(row.get("p95_mm"), (int, float))), default=None)
     largest = "" if worst is None else f", largest p95 {worst:.4g} mm"
-    say(f"{verdict['rows']} rows, {verdict['worse']} worse{largest}; outcome {verdict['outcome']}")
+    say(f"{verdict['rows']} row{'' if verdict['rows'] == 1 else 's'}, {verdict['worse']} worse{largest}; outcome {verdict['outcome']}")
     if verdict["outcome"] == "pass":
         put_on(service, job, later)
         if baseline and baseline > job["id"] and arguments.baseline_tag in later:
             say(f"study {baseline} is newer and stays the baseline of {arguments.baseline_tag!r}")
     elif later:
         say(f"it does not get the tag {' or '.join(map(repr, later))}")
+    if verdict["outcome"] == "incomplete" and baseline and arguments.baseline_tag:
+        say(f"if cases were changed on purpose, run once with --tag {arguments.baseline_tag} and without --baseline-tag")
     tell(job["id"], verdict["outcome"])
     return EXIT_CODES[verdict["outcome"]]
 

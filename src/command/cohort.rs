@@ -22,7 +22,7 @@ const WALL_S: f64 = 3600.0;
 
 #[derive(Debug, Args)]
 pub struct Arguments {
-    /// A cohort as it is posted, with folders of results, from its own folder, in place of ids
+    /// The JSON body of the REST job, with folders of results, relative to its folder, in place of ids
     #[arg(
         long,
         value_name = "FILE",

@@ -31,8 +31,8 @@ pub struct Arguments {
     /// The actual surface
     #[arg(long, help_heading = WHAT, value_name = "FILE", required_unless_present = "spec")]
     actual: Option<PathBuf>,
-    /// A comparison as it is posted, with paths from its folder in place of ids: regions, landmarks, histograms and
-    /// all ways of aligning. `--prediction` and `--actual` stand for its own
+    /// The JSON body of the REST job, with paths relative to its folder in place of ids: regions, landmarks, histograms and
+    /// all ways of aligning. `--prediction` and `--actual` override its own
     #[arg(
         long, help_heading = WHAT, value_name = "FILE",
         conflicts_with_all = ["align", "mask_sphere_mm", "mask_box_mm", "align_fixed", "align_moving", "matrix4x4", "samples_per_mm2", "node_wise", "range_mm"]

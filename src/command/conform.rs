@@ -18,7 +18,7 @@ const CASE_FILE: &str = "case.json";
 
 #[derive(Debug, Args)]
 pub struct Arguments {
-    /// A conformation as it is posted, with paths from its folder in place of ids
+    /// The JSON body of the REST job, with paths relative to its folder in place of ids
     #[arg(long, value_name = "FILE", help_heading = "What is conformed")]
     spec: PathBuf,
     /// The folder for the mesh, the result and `case.json`

@@ -69,7 +69,7 @@ impl CommandError {
             CommandError::Serve(error) if error.is_setting() => CONFIGURATION,
             CommandError::Health(error) if error.is_setting() => CONFIGURATION,
             CommandError::Admin(error) if error.is_setting() => CONFIGURATION,
-            CommandError::Admin(AdminError::Findings { .. }) => FAILED,
+            CommandError::Admin(AdminError::Findings { .. } | AdminError::Audit { .. }) => FAILED,
             CommandError::Config(_) => CONFIGURATION,
             CommandError::Demo(_)
             | CommandError::Serve(_)

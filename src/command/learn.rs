@@ -20,7 +20,7 @@ use mechanics::learning::virtual_cohort::USUAL_MAPPING;
 
 #[derive(Debug, Args)]
 pub struct Arguments {
-    /// What is learned as it is posted, with files of predictions (`case`, `plan`, `spec`) and meshes, from its own folder, in
+    /// The JSON body of the REST job, with files of predictions (`case`, `plan`, `spec`) and meshes, relative to its folder, in
     /// place of ids
     #[arg(
         long,

@@ -77,18 +77,18 @@ pub struct ScanArguments {
     /// A CT in Hounsfield units, to be meshed first
     #[arg(long, value_name = "FILE", group = "meshed", help_heading = SCAN)]
     scan: Option<PathBuf>,
-    /// With --scan: a surface scan of the face, which is the skin where it covers that of the CT; landmarks that both have stand in
+    /// With --scan: a surface scan of the face, which is the skin where it covers that of the CT; landmarks that both have go into
     /// `skin_scan.landmarks` of --mesh-spec
     #[arg(long, value_name = "FILE", requires = "scan", help_heading = SCAN)]
     skin_scan: Option<PathBuf>,
-    /// A label map, to be meshed first; what its labels are stands in `labels.classes` of --mesh-spec
+    /// A label map, to be meshed first; `labels.classes` of --mesh-spec says what its labels are
     #[arg(long, value_name = "FILE", conflicts_with = "scan", requires = "mesh_spec", group = "meshed", help_heading = SCAN)]
     labels: Option<PathBuf>,
     /// The surface of all bone, to be meshed first with the skin around it; NAME=FILE, which may be given several
     /// times, for bones that are segments already
     #[arg(long, value_name = "FILE|NAME=FILE", conflicts_with_all = ["scan", "labels"], group = "meshed", help_heading = SCAN)]
     bone: Vec<String>,
-    /// A meshing document, as it is posted but for `scan`, `surfaces` and `osteotomy`; --labels replaces `labels.image`, which may be any text
+    /// The JSON body of the REST job, without `scan`, `surfaces` and `osteotomy`; --labels replaces `labels.image`, which may be any text
     #[arg(long, value_name = "FILE", requires = "meshed", help_heading = SCAN)]
     mesh_spec: Option<PathBuf>,
     /// About how many tetrahedra; default 300000
@@ -275,7 +275,11 @@ fn in_memory(case: &CaseDocument, done: &JobOutput) -> BTreeMap<String, StoredMe
 /// Bone on the sides of a segment's cuts that is not connected with it; nothing where there is none, as without cuts.
 fn hangs_apart(segment: &FoundSegmentDocument) -> String {
     let left = segment.left_ml;
-    if left < 0.05 { String::new() } else { format!("; {left:.1} ml on its sides hang apart") }
+    if left < 0.05 {
+        String::new()
+    } else {
+        format!("; {left:.1} ml of bone on its side of the cuts is not connected to it")
+    }
 }
 
 fn print_result(result: &MeshingResultDocument, total_s: f64) {
@@ -285,7 +289,7 @@ fn print_result(result: &MeshingResultDocument, total_s: f64) {
         result.tetrahedra, result.nodes, result.volume_ml, result.finest_mm
     );
     println!(
-        "angles     smallest {:.1}, a thousandth below {:.1}, largest {:.1} degrees",
+        "angles     dihedral: smallest {:.1}, 0.1 % below {:.1}, largest {:.1} degrees",
         angles.smallest, angles.thousandth, angles.largest
     );
     for segment in &result.segments {

@@ -64,27 +64,27 @@ enum Command {
     Predict(predict::Arguments),
     /// Solve a case once, so that the skin of every further plan of its segments is a sum
     Response(response::Arguments),
-    /// Find the plan that brings the skin nearest to where it is wanted
+    /// Find the plan whose skin is nearest to given targets
     Optimise(optimise::Arguments),
     /// Find what an operation did from bone before and after it; write it as a plan
     Reproduce(reproduce::Arguments),
-    /// Bring a template mesh to a patient; write the mesh and its case
+    /// Fit a template mesh to a patient; write the mesh and its case
     Conform(conform::Arguments),
     /// Measure the distances between two surfaces
     Compare(compare::Arguments),
-    /// Give a surface fewer triangles, within a bound on how far it goes off
+    /// Reduce the triangles of a surface, within a bound on its deviation
     Simplify(simplify::Arguments),
     /// Find the threshold at which a bone is as large in one scan as in another
     Threshold(threshold::Arguments),
-    /// Hold methods against each other over comparisons with the scans of several patients
+    /// Compare methods over comparisons with the scans of several patients
     Cohort(cohort::Arguments),
     /// Learn from operated cases what predictions miss, and say whether that helps
     Learn(learn::Arguments),
-    /// Hold methods against each other: how long each takes, how far it is from the truth
+    /// Compare methods: the time each takes, and its distance from a reference solution
     Study(study::Arguments),
     /// List the materials of the literature that a case may name, with their sources
     Materials(materials::Arguments),
-    /// Tell what a case and a plan mean, without solving
+    /// Check a case and a plan and report what they contain, without solving
     Check(check::Arguments),
     /// Serve the API, with workers in the same process unless there are 0
     Serve(settings::Arguments),

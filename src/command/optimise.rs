@@ -23,7 +23,7 @@ const TOLD_CORRELATION: f64 = 0.9;
 pub struct Arguments {
     #[command(flatten)]
     scene: SceneArguments,
-    /// An optimise document with `targets`, `bounds` and `tissue_bounds`, as it is posted but for `case`. Method, element, materials,
+    /// The JSON body of the REST job, with `targets`, `bounds` and `tissue_bounds`, without `case`. Method, element, materials,
     /// membrane, tolerance and budget that it does not state are those of the case file, whose plan is not used
     #[arg(long, value_name = "FILE", help_heading = "How it is computed")]
     spec: PathBuf,
@@ -89,14 +89,14 @@ fn print_found(found: &OptimisationDocument) {
                 called(own.segment.as_ref(), own.region.as_ref(), own.name)
             )
         };
-        println!("not told   {}", parts.iter().map(part).collect::<Vec<_>>().join(" + "));
+        println!("undetermined {}", parts.iter().map(part).collect::<Vec<_>>().join(" + "));
     }
     if let Some(factor) = found.residual_factor {
-        println!("residual   {factor:.2} of what sigma_mm says");
+        println!("residual   {factor:.2} times the stated uncertainty (sigma_mm)");
     }
     for (index, target) in found.targets.iter().enumerate() {
         println!(
-            "target {index:<3} left {:.3} mm, at most {:.3} mm, over {} points",
+            "target {index:<3} residual {:.3} mm, at most {:.3} mm, over {} points",
             target.residual_mm, target.largest_mm, target.points
         );
     }

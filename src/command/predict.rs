@@ -35,7 +35,7 @@ pub struct Arguments {
     plan: PlanArgument,
     #[command(flatten)]
     scan: ScanArguments,
-    /// The model soft tissue [default: auto, the cheapest that is expected to be near enough]
+    /// The mechanical model of the soft tissue [default: auto, the cheapest expected to meet the accepted error]
     #[arg(long, value_name = "NAME", value_parser = word::<MethodName>, help_heading = "Tissue")]
     method: Option<MethodName>,
     /// Add what the mesh leaves out, as far as that is estimated, to the displacement
@@ -50,7 +50,7 @@ pub struct Arguments {
     /// What keeps tissue from passing through itself and bone: none, sliding, unilateral or auto
     #[arg(long, value_name = "KIND", value_parser = word::<ContactName>, help_heading = "Result")]
     contact: Option<ContactName>,
-    /// Bring tissue to rest in so many equal load steps, told one by one; with the method fem_nonlinear
+    /// Apply the load in so many equal steps and report each; with the method fem_nonlinear
     #[arg(long, value_name = "NUMBER", help_heading = "Tissue")]
     load_steps: Option<u32>,
     /// Write stress and strain of the tissue to volume.vtu
@@ -162,7 +162,7 @@ fn print_result(result: &ResultDocument, before: &CheckDocument) {
     if let Some(nonlinearity) = &result.nonlinearity_mm {
         let left = &nonlinearity.skin;
         println!(
-            "left out     by the model about {:.3} mm in the mean, p95 {:.3}, max {:.3}",
+            "linearity    estimated linearisation error: mean {:.3} mm, p95 {:.3}, max {:.3}",
             left.mean, left.p95, left.max
         );
     }
@@ -261,13 +261,13 @@ fn print_load_steps(steps: &[LoadStepDocument]) {
 fn print_error_of_mesh(result: &ResultDocument) {
     match (&result.numerical_error_mm, &result.numerical_error_unknown) {
         (Some(error), _) => println!(
-            "mesh error   {:.3} mm mean, {:.3} p95, {:.3} max, estimated{}",
+            "mesh         estimated discretisation error: mean {:.3} mm, p95 {:.3}, max {:.3}{}",
             error.mean,
             error.p95,
             error.max,
-            if error.corrected { " and added" } else { "" }
+            if error.corrected { ", added to the result" } else { "" }
         ),
-        (None, Some(why)) => println!("mesh error   not known: {why}"),
+        (None, Some(why)) => println!("mesh         discretisation error unknown: {why}"),
         (None, None) => (),
     }
 }

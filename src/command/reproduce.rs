@@ -18,7 +18,7 @@ const PLAN_FILE: &str = "plan.json";
 
 #[derive(Debug, Args)]
 pub struct Arguments {
-    /// A reproduction as it is posted, with paths from its folder in place of ids
+    /// The JSON body of the REST job, with paths relative to its folder in place of ids
     #[arg(long, value_name = "FILE", help_heading = "What is reproduced")]
     spec: PathBuf,
     /// The folder for the result and `plan.json`

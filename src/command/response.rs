@@ -15,14 +15,14 @@ use crate::schema::{Limits, ResponseDocument};
 pub struct Arguments {
     #[command(flatten)]
     scene: SceneArguments,
-    /// A response document, as it is posted but for `case`. Method, element, materials, membrane, tolerance and budget that
+    /// The JSON body of the REST job, without `case`. Method, element, materials, membrane, tolerance and budget that
     /// it does not state are those of the case file, whose plan is not used
     #[arg(long, value_name = "FILE", help_heading = "How it is computed")]
     spec: Option<PathBuf>,
     /// A segment that the response can move; may be given several times; default: all
     #[arg(long, value_name = "NAME", help_heading = "How it is computed")]
     only: Vec<String>,
-    /// 2: with what linear elasticity leaves out, as a quadratic form in the movements; default: 1
+    /// 2: with the second-order term of finite strain, as a quadratic form in the movements; default: 1
     #[arg(long, value_name = "ORDER", help_heading = "How it is computed")]
     order: Option<u8>,
     /// The folder for the result

@@ -38,11 +38,11 @@ pub struct SceneArguments {
     /// The volume mesh: VTU, VTK or Gmsh
     #[arg(long, value_name = "FILE", conflicts_with = "case", help_heading = SCENE)]
     mesh: Option<PathBuf>,
-    /// Nodes that are held: a set of the mesh, or the nodes where an integer array has a value, as in tag=4; may be given
+    /// Fixed nodes: a set of the mesh, or the nodes where an integer array has a value, as in tag=4; may be given
     /// several times
     #[arg(long, value_name = "SET|ARRAY=VALUE", value_parser = selection, conflicts_with = "case", help_heading = BOUNDARY)]
     fixed: Vec<SelectionDocument>,
-    /// The nodes of the skin, as for --fixed; default: every boundary face that nothing holds. Where a command meshes
+    /// The nodes of the skin, as for --fixed; default: every boundary face without constraint. Where a command meshes
     /// bone, the file of the skin around it
     #[arg(long, value_name = "SET|ARRAY=VALUE|FILE", conflicts_with = "case", help_heading = BOUNDARY)]
     skin: Option<String>,
@@ -56,7 +56,7 @@ pub struct SceneArguments {
     /// The frame of the mesh; default unspecified
     #[arg(long, conflicts_with = "case", help_heading = SCENE)]
     frame: Option<FrameArgument>,
-    /// The material of all tissue by its name in the literature: `facies materials` lists them; moduli beside it stand over its own
+    /// The material of all tissue by its name in the literature: `facies materials` lists them; moduli given as well override those of the preset
     #[arg(long, value_name = "NAME", value_parser = preset, conflicts_with = "case", help_heading = TISSUE)]
     preset: Option<PresetName>,
     /// Young's modulus of all tissue, in kPa; default 15

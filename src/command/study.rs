@@ -65,7 +65,7 @@ pub struct Arguments {
     /// [REGION.]volume_change=V,V; may be given several times
     #[arg(long, help_heading = WHAT, value_name = "CONSTANT=V,V", value_parser = sweep::sweep)]
     sweep: Vec<Sweep>,
-    /// Solves of each row, whose median time is told
+    /// Solves of each row, whose median time is reported
     #[arg(long, help_heading = WHAT, value_name = "N")]
     repeats: Option<u32>,
     /// Instead of a study: map where each method fails, what it does as movements, materials and meshes become
@@ -80,7 +80,7 @@ pub struct Arguments {
     /// With --random: the seed; the same one makes the same scenes
     #[arg(long, help_heading = WHAT, value_name = "S", requires = "random", default_value_t = 1)]
     seed: u64,
-    /// A study document; the other arguments stand above it. Its cases are files as those of --case
+    /// A study document; the other arguments override it. Its cases are files as those of --case
     #[arg(long, help_heading = WHAT, value_name = "FILE")]
     spec: Option<PathBuf>,
     /// The folder for the report
@@ -89,7 +89,7 @@ pub struct Arguments {
     /// The report.json of an earlier study: rows that are worse than there end the program with 1
     #[arg(long, help_heading = RULES, value_name = "FILE")]
     baseline: Option<PathBuf>,
-    /// A folder in which rows are kept by their content: another threshold or baseline solves nothing again
+    /// A folder in which rows are stored by their content: another threshold or baseline solves nothing again
     #[arg(long, help_heading = "Result", value_name = "FOLDER", conflicts_with = "stability")]
     keep: Option<PathBuf>,
     /// Rows with a larger p95 error of the skin end the program with 1

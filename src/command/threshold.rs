@@ -18,7 +18,7 @@ use mechanics::registration::SphereOrBox;
 pub struct Arguments {
     /// The scan whose threshold is known: NRRD, NIfTI, MetaImage or a zip archive of DICOM files
     before: PathBuf,
-    /// The scan whose threshold is wanted
+    /// The scan whose threshold is to be found
     after: PathBuf,
     /// Bone in the first scan is at and above this value
     #[arg(long, value_name = "HU", allow_negative_numbers = true)]

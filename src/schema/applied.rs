@@ -113,7 +113,7 @@ impl AppliedSummary {
         }
         let Some(estimate) = self.nonlinearity_estimate_mm else {
             let detail =
-                "what linearity leaves out is not known where tissue grows, muscles pull, or a wall turns with its segment"
+                "the linearisation error is unknown where tissue grows, muscles pull, or a wall turns with its segment"
                     .to_owned();
             return vec![WarningDocument {
                 code: Self::UNKNOWN.to_owned(),
@@ -124,7 +124,7 @@ impl AppliedSummary {
         let (code, detail) = match self.second_order_mm {
             None => {
                 let detail = format!(
-                    "linearity leaves out about {estimate:.1} mm, more than {LINEAR_RANGE_MM} mm"
+                    "the estimated linearisation error is {estimate:.1} mm, more than {LINEAR_RANGE_MM} mm"
                 );
                 (Self::OUTSIDE, detail)
             }
@@ -143,7 +143,7 @@ pub fn outside_second_order(beyond: &BeyondLinear) -> Option<String> {
     let is_near = third <= LINEAR_RANGE_MM && (third <= SERIES_MM || third <= SERIES * second);
     (!is_near).then(|| {
         format!(
-            "the second order is {second:.2} mm and leaves out about {third:.2} mm: more than {LINEAR_RANGE_MM} mm, or more than \
+            "the second-order term is {second:.2} mm and its error about {third:.2} mm: more than {LINEAR_RANGE_MM} mm, or more than \
              {SERIES_MM} mm and half of it"
         )
     })

@@ -120,7 +120,7 @@ fn a_plan_that_was_found_without_a_server_is_one_that_predict_takes() {
         serde_json::from_slice(&fs::read(out.join("plan.json")).unwrap()).unwrap();
     assert_eq!(Some(plan), result(&out).optimisation.map(|found| found.plan));
     let shown = text(&done.stdout);
-    assert!(shown.contains("target 0   left") && shown.contains("plan.json"), "{shown}");
+    assert!(shown.contains("target 0   residual") && shown.contains("plan.json"), "{shown}");
 
     let mesh = block().join("block.vtu");
     let (plan, again) = (out.join("plan.json"), folder.path().join("again"));

@@ -60,7 +60,7 @@ export async function mended(page, job) {
     await page.getByRole("heading", { name: "Before and after" }).waitFor();
     const codes = await page.locator(".warnings .code").allTextContents();
     assert(codes.includes("large-rotation"), codes.join());
-    assert.equal(await sign(page, "Left out by the model"), "!");
+    assert.equal(await sign(page, "Error of the model"), "!");
     const { results } = await json(`/v1/jobs/${job}`);
     assert.equal(await sign(page, "Error of the mesh"), results.numerical_error_mm.mean > 0.1 ? "!" : "✓");
     // Adding the error does not make it smaller than what is accepted.

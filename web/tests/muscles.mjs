@@ -51,7 +51,7 @@ export async function muscles(page) {
     const difference = await fromService(page, rest, plan);
     assert(difference < AGREED_MM, `${difference} mm`);
     console.log(`   ${difference.toExponential(1)} mm from the service`);
-    await page.locator(".trust.unknown", { hasText: "Left out by the model" }).waitFor();
+    await page.locator(".trust.unknown", { hasText: "Error of the model" }).waitFor();
     await page.getByRole("link", { name: "nonlinearity-unknown" }).waitFor();
     assert.deepEqual(await serious(page), []);
     await pictured(page, "muscles");

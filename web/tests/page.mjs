@@ -128,7 +128,7 @@ await check("a slider moves the skin as the service does, to 1e-4 mm", async () 
   assert(answer.max_mm > 5, "something moves");
   assert(difference < AGREED_MM, `${difference} mm`);
   await page.waitForFunction(() => Number(document.querySelector(".strip[data-apart]").dataset.apart) < 1e-4);
-  await page.locator(".trust", { hasText: "Left out by the model" }).getByText(/about \d\.\d\d mm/).waitFor();
+  await page.locator(".trust", { hasText: "Error of the model" }).getByText(/about \d\.\d\d mm/).waitFor();
   console.log(`   ${difference.toExponential(1)} mm from the service`);
 });
 
@@ -279,7 +279,7 @@ await check("what a result may be trusted with is told, and warnings show what t
   const { results } = await json(`/v1/jobs/${job}`);
   const chip = (name) => page.locator(".trust", { hasText: name });
   await chip("Error of the mesh").getByText(`mean ${results.numerical_error_mm.mean.toFixed(2)} mm`).waitFor();
-  await chip("Left out by the model").getByText(`mean ${results.nonlinearity_mm.skin.mean.toFixed(2)} mm`).waitFor();
+  await chip("Error of the model").getByText(`mean ${results.nonlinearity_mm.skin.mean.toFixed(2)} mm`).waitFor();
   const named = page.locator(".warnings li", { hasText: "large-rotation" });
   await named.getByRole("button", { name: /^Show / }).click();
   const dots = await page.evaluate(() => document.querySelector(".screen").scene.pointed.group.children.length);

@@ -43,7 +43,7 @@ try {
     await sliders.nth(at).fill(value);
     await sliders.nth(at).dispatchEvent("change");
   }
-  await page.locator("#estimate", { hasText: "Linearity leaves out about" }).waitFor();
+  await page.locator("#estimate", { hasText: "Estimated linearisation error: about" }).waitFor();
   const shown_mm = await page.evaluate(() => window.shown_mm);
   const plan = JSON.parse(await page.locator("#plan").inputValue());
   const answer = await fetch(`${address}/v1/cases/${id}/response/apply`,

@@ -77,7 +77,7 @@ class Response:
                         activations: Mapping[str, float] | None = None) -> NDArray[np.float64]:
         """How far each node of the skin goes where segments move by these 4x4 matrices (see `rigid`); others stay. `growth`:
         volume change by region, `activations`: stress in kPa by muscle, of those in `inner_columns` of the description.
-        Without asking the service, whose `apply` also refuses plans beyond the limits and estimates what linearity leaves out;
+        Without asking the service, whose `apply` also refuses plans beyond the limits and estimates the linearisation error;
         raises `ValueError` where a matrix is not that of a rigid movement."""
         segments = {segment["name"]: index for index, segment in enumerate(self.description["segments"])}
         if unknown := sorted(set(movements) - set(segments)):

@@ -126,7 +126,7 @@ class Facies:
 
     def apply(self, response: Response, plan: Document) -> Applied:
         """How far each node of the skin goes as the service computes it, which refuses plans beyond its limits, and what
-        it says of that: warnings, and what linearity leaves out."""
+        it says of that: warnings, and the estimated linearisation error."""
         said = self.ask("POST", f"/v1/cases/{response.case}/response/apply", json={"plan": plan},
                         params={"job": response.job}, headers={"Accept": "application/json"}).json()
         return Applied(np.array(said.pop("displacement_mm"), dtype=np.float32), said)

@@ -54,7 +54,7 @@ const here = response.displacement({ mandible: movement });
 const there = await facies.apply(response, plan);
 const difference = apart(here, there.displacement_mm);
 assert(difference < 1e-4, `${difference} mm from the answer of apply`);
-assert(there.within_linear_range && there.nonlinearity_estimate_mm! > 0, "what linearity leaves out is told");
+assert(there.within_linear_range && there.nonlinearity_estimate_mm! > 0, "the linearisation error is estimated");
 assert.deepEqual([there.warnings, there.not_measured], [[], ["numerical-error-large", "skin-overlaps"]]);
 const jawBy = (movement: Movement) => ({ segments: [{ name: "mandible", ...movement }] }) as Documents["PlanDocument"];
 const far = await facies.apply(response, jawBy({ translation_mm: [0, -30, 0] }));

@@ -76,7 +76,7 @@ export class Response {
   ) {}
 
   /** How far each node of the skin goes, xyz for each in mm, where segments move so and others stay. Without asking
-   * the service, whose `apply` also refuses plans beyond the limits and estimates what linearity leaves out. Throws a
+   * the service, whose `apply` also refuses plans beyond the limits and estimates the linearisation error. Throws a
    * `RangeError` where a rotation has no pivot, a member is unknown, or something is not three finite numbers. */
   displacement(movements: Record<string, Movement>): Float32Array {
     const numbers = this.description.node_ids.length * 3;

@@ -47,13 +47,13 @@ function showLegend(): void {
   find<HTMLElement>("#legend").hidden = false;
 }
 
-/** What the service says of a plan: what linearity leaves out, and its warnings. */
+/** What the service says of a plan: its linearisation error, and its warnings. */
 function showEstimate(applied?: Applied): void {
   const shown = find<HTMLElement>("#estimate");
   const warnings = applied?.warnings.map(({ code, detail }) => `\n${code}: ${detail}`) ?? [];
   shown.classList.toggle("doubtful", warnings.length > 0 || applied?.within_linear_range === false);
   const left = applied?.nonlinearity_estimate_mm;
-  const said = left === undefined ? "What linearity leaves out is not known." : `Linearity leaves out about ${left.toFixed(2)} mm, mean over the skin.`;
+  const said = left === undefined ? "The linearisation error is unknown." : `Estimated linearisation error: about ${left.toFixed(2)} mm, mean over the skin.`;
   shown.textContent = applied === undefined ? "" : `${said}${warnings.join("")}`;
 }
 

@@ -41,8 +41,8 @@ pub enum ProfileError {
     #[error("the mid-plane does not meet the skin")]
     Empty,
     #[error(
-        "the profile comes forward {forward} times from the chin to its foremost point and goes back {back} times \
-         between; a face comes forward 3 or 4 times"
+        "no face profile recognised: from the chin to its foremost point it turns forward {forward} times and backward {back} times, \
+         a face forward 3 or 4 times; give landmarks"
     )]
     NoFace { forward: usize, back: usize },
     #[error(

@@ -18,6 +18,15 @@ pub struct AreaSample {
     pub area: f64,
 }
 
+/// Points all over a triangle, so many rows of them along each side, its corners among them.
+pub fn spread_over([a, b, c]: &[Vector; 3], rows: usize) -> impl Iterator<Item = Vector> {
+    let places = (0..=rows).flat_map(move |i| (0..=rows - i).map(move |j| [i, j]));
+    places.map(move |steps| {
+        let [u, v] = steps.map(|step| step as f64 / rows as f64);
+        a + (b - a) * u + (c - a) * v
+    })
+}
+
 /// How many samples [`every_triangle`] gives.
 pub fn count_of_every_triangle(surface: &TriangleSurface, samples_per_mm2: f64) -> f64 {
     (0..surface.triangles.len())

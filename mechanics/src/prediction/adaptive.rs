@@ -46,8 +46,8 @@ fn linearisation_error_warning(
     let mean = scene.skin.mean_length(&moving, &prediction.nonlinearity.as_ref().ok()?.left_out);
     let accepted = wanted.skin_mm;
     let detail = format!(
-        "the mesh is refined to {accepted:.3} mm, and linearity leaves out {mean:.3} mm in the mean over the skin that moves: a finer mesh of \
-         linear elements is not adequate"
+        "the mesh is refined to {accepted:.3} mm, but the linearisation error is {mean:.3} mm in the mean over the skin that moves: a finer \
+         mesh does not reduce it"
     );
     let warning = Warning::new("tolerance-not-met", detail).with("accepted_mm", accepted);
     (mean > accepted).then(|| warning.with("expected_mm", mean))
@@ -63,8 +63,8 @@ fn muscles_stay(scene: &Scene) -> Option<Warning> {
     let counting: Vec<&String> =
         scene.muscles.iter().filter(counts).map(|muscle| &muscle.name).collect();
     let detail = format!(
-        "finer cells have the muscles of the first mesh, from which they are cut: how coarse those around lines and in surfaces are drawn \
-         there ({}) is in no estimate; a finer mesh of the case tells",
+        "finer cells have the muscles of the first mesh, from which they are cut: no estimate includes the error of muscles around lines \
+         and in surfaces ({}) on coarse cells; use a finer mesh of the case",
         listed(&counting)
     );
     (!counting.is_empty()).then(|| Warning::new("muscles-not-refined", detail))

@@ -15,7 +15,7 @@ use super::error_code::SceneErrorCode;
 use super::fibres::{Course, unit};
 use super::hounsfield::TissueOfCells;
 use super::method::Method;
-use super::muscle_field::{MuscleBody, MuscleField, MuscleTissue, elsewhere};
+use super::muscle_field::{MuscleBody, MuscleField, MuscleTissue, cell_volume, elsewhere};
 use super::muscle_lines::{Lines, PullShare};
 use super::scene::Scene;
 use crate::mesh::ignored::listed;
@@ -27,6 +27,11 @@ use crate::muscle::strap::{Strap, strap_of};
 
 /// Stresses in kPa with which a muscle may pull.
 pub const PULL: RangeInclusive<f64> = 0.0..=10_000.0;
+
+/// A body thinner than this many ways between sample points may be missed by them.
+const THIN: f64 = 2.0;
+/// A share of the volume of a body by which samples may be off.
+const VOLUME_OFF: f64 = 0.1;
 
 /// Directions in the cells of a mesh, of any length.
 enum FibreDirections<'a> {
@@ -99,6 +104,7 @@ impl<'a> Check<'a> {
             };
             let field = MuscleField::new(muscle, cells, body);
             self.warnings.extend(body_elsewhere(&field, &self.case.volume));
+            self.warnings.extend(self.body_missed(&field));
             fields.push(field);
         }
         fields
@@ -246,8 +252,32 @@ impl<'a> Check<'a> {
                 FibreDirections::Strap(strap)
             }),
         };
-        let body = MuscleBody { enclosed: surface.signed_volume().abs(), broadness };
+        let enclosed = surface.signed_volume().abs();
+        let body = MuscleBody { enclosed, thickness: 2.0 * enclosed / surface.area(), broadness };
         (self.directed(filled, along, pointer), Some(body))
+    }
+
+    /// The warning of a body so thin that the samples of cells have another volume than its surface encloses.
+    fn body_missed(&self, field: &MuscleField) -> Option<Warning> {
+        let body = field.body.filter(|_| !field.cells.is_empty())?;
+        let mesh = &self.case.volume;
+        let cells = field.cells.iter().map(|own| own.cell as usize);
+        let of_cells: f64 = cells.map(|cell| cell_volume(mesh, cell)).sum();
+        let samples = (field.cells.len() * self.case.muscle_mixing.samples) as f64;
+        let apart = (of_cells / samples).cbrt();
+        let share = field.volume(mesh) / body.enclosed;
+        let is_thin = body.thickness < THIN * apart;
+        let is_off = share > 1.0 + VOLUME_OFF || is_thin && share < 1.0 - VOLUME_OFF;
+        let detail = format!(
+            "muscle {:?} is {:.2} mm thick in the mean, sample points of its cells are {apart:.2} mm apart, and they hold {:.0} % of its \
+             volume: so much of it pulls; finer cells or more `samples` hold it",
+            field.name,
+            body.thickness,
+            100.0 * share
+        );
+        let warning =
+            Warning::new("muscle-few-cells", detail).with("cells", field.cells.len() as f64);
+        is_off.then(|| warning.with("pull_share", share))
     }
 
     pub(super) fn activate(&mut self, plan: &Plan, scene: &Scene, inner: &mut InnerStress) {

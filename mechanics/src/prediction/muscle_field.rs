@@ -26,6 +26,8 @@ pub struct MuscleField {
 pub struct MuscleBody {
     /// That it encloses, in mm³.
     pub enclosed: f64,
+    /// In the mean: twice the volume for its area, in mm.
+    pub thickness: f64,
     /// Of the second to the first standard deviation of the surface, where fibres run along its boxes.
     pub broadness: Option<f64>,
 }
@@ -81,6 +83,11 @@ pub(super) fn elsewhere(share: f64, of: &str, question: &str) -> Option<Warning>
 
 /// The volume of a muscle in a cell, in mm³.
 pub(super) fn muscle_volume(mesh: &VolumeMesh, own: &CellStress) -> f64 {
-    let corners: Vec<Vector> = mesh.corners(own.cell as usize).collect();
-    own.stress.trace() * signed_volume(mesh.cells.shape(own.cell as usize), &corners)
+    own.stress.trace() * cell_volume(mesh, own.cell as usize)
+}
+
+/// Of a cell, in mm³.
+pub(super) fn cell_volume(mesh: &VolumeMesh, cell: usize) -> f64 {
+    let corners: Vec<Vector> = mesh.corners(cell).collect();
+    signed_volume(mesh.cells.shape(cell), &corners)
 }

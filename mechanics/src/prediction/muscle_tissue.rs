@@ -15,11 +15,10 @@ use super::error_code::SceneErrorCode;
 use super::fibres::fibres_ignored;
 use super::hounsfield::{MOST_MATERIALS, TissueOfCells};
 use super::method::Method;
-use super::muscle_field::{MuscleField, MuscleTissue};
+use super::muscle_field::{MuscleField, MuscleTissue, cell_volume};
 use crate::material::LinearElastic;
 use crate::material::mixture::MixingRule;
-use crate::mesh::jacobian::signed_volume;
-use crate::mesh::{Vector, VolumeMesh, Warning};
+use crate::mesh::{Vector, Warning};
 use crate::muscle::axis::MeanAxis;
 use crate::muscle::equivalent::{EquivalentTissue, rule_dependent_share};
 
@@ -59,7 +58,7 @@ impl Check<'_> {
         let (mut told, mut volumes) = (Counts::default(), Vec::new());
         for (cell, parts) in parts.iter().enumerate() {
             let recipe = (mixer.tissue.material_of_cell[cell], in_steps(parts, steps));
-            let volume = volume(&self.case.volume, cell);
+            let volume = cell_volume(&self.case.volume, cell);
             if recipe.1.is_empty() {
                 volumes.push((volume, 1.0));
                 continue;
@@ -265,11 +264,6 @@ fn in_steps(parts: &[Part], steps: u16) -> Vec<(u16, u16)> {
         (*number, own)
     });
     counted.filter(|(_, own)| *own > 0).collect()
-}
-
-fn volume(mesh: &VolumeMesh, cell: usize) -> f64 {
-    let corners: Vec<Vector> = mesh.corners(cell).collect();
-    signed_volume(mesh.cells.shape(cell), &corners)
 }
 
 impl MuscleTissue {

@@ -16,7 +16,7 @@ use crate::plan::{PlannedSegment, RigidMovement};
 pub const NOTHING_HELD: &str = "nothing-held";
 
 /// What to do about it.
-const CURE: &str = "name in `fixed` what stays, or allow it with `allow_unfixed` (contact with other parts is no hold)";
+const CURE: &str = "name in `fixed` what stays, or allow it with `allow_unfixed` (contact with other parts is no constraint)";
 
 /// Parts that go along as one with a plan.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -37,8 +37,8 @@ pub fn rigidly_carried(
         let Some(carried) = part.carried(movement) else { continue };
         let (which, farthest) = (part_of(part, parts.len()), carried.farthest);
         let detail = format!(
-            "{which} goes along as one, by up to {farthest:.3} mm, without being deformed: whatever holds it moves \
-             alike or leaves it free to follow; {CURE}"
+            "{which} would move rigidly, by up to {farthest:.3} mm, without deformation: nothing is fixed, or what constrains it moves alike \
+             or leaves it free to follow; {CURE}"
         );
         match part.has_much_skin() {
             true => found.refused.push(detail),

@@ -21,6 +21,7 @@ use parry3d_f64::shape::Triangle;
 use self::bound::{BETWEEN, beyond};
 use self::draft::Draft;
 use self::quadric::Quadric;
+use crate::mesh::area_sampling::spread_over;
 use crate::mesh::{SearchError, SurfaceSearch, TriangleSurface, Vector};
 use crate::progress::Progress;
 
@@ -173,15 +174,6 @@ struct GivenSurface<'a> {
     points: &'a [GivenPoint],
     /// How far what is looked at may be from each triangle.
     bounds: &'a [f64],
-}
-
-/// Points all over a triangle, so many rows of them along each side.
-fn spread_over([a, b, c]: &[Vector; 3], rows: usize) -> impl Iterator<Item = Vector> {
-    let places = (0..=rows).flat_map(move |i| (0..=rows - i).map(move |j| [i, j]));
-    places.map(move |steps| {
-        let [u, v] = steps.map(|step| step as f64 / rows as f64);
-        a + (b - a) * u + (c - a) * v
-    })
 }
 
 /// Each corner, on one of its triangles.

@@ -9,7 +9,7 @@ use mechanics::mesh::{SurfaceSearch, TriangleSurface, Vector, Warning};
 use mechanics::plan::RigidMovement;
 use mechanics::prediction::{Bone, Case, Prediction, Scene};
 use mechanics::validation::contact_map::{contact_regions, gaps};
-use mechanics::validation::penetration::{Side, overlap, reach};
+use mechanics::validation::penetration::{Side, overlap, probes, reach};
 
 /// Additional depth under a plan for a warning, in mm: surfaces of one scan already touch.
 const NOTICEABLE: f64 = 0.1;
@@ -24,6 +24,8 @@ const FARTHEST_GAP: f64 = 5.0;
 struct PlannedBone<'a> {
     name: &'a str,
     surface: &'a TriangleSurface,
+    /// Points all over it, as scanned.
+    probes: Vec<Vector>,
     search: SurfaceSearch,
     movement: RigidMovement,
 }
@@ -164,7 +166,7 @@ fn planned_bones<'a>(case: &'a Case, scene: &Scene) -> Vec<PlannedBone<'a>> {
         let search = SurfaceSearch::new(surface).ok()?;
         let segment = scene.segment(&bone.name).map(|number| &scene.segments[number]);
         let movement = segment.map_or_else(RigidMovement::default, |segment| segment.movement);
-        Some(PlannedBone { name: &bone.name, surface, search, movement })
+        Some(PlannedBone { name: &bone.name, surface, probes: probes(surface), search, movement })
     };
     case.bones.iter().filter_map(planned).collect()
 }
@@ -240,18 +242,20 @@ impl PlannedBone<'_> {
     /// so the other stays where its search was prepared.
     fn reach_into(&self, other: &PlannedBone) -> Depth {
         let relative = self.movement.then(&other.movement.inverse());
-        let after = self.moved_by(&relative);
+        let after: Vec<Vector> = self.probes.iter().map(|point| relative.apply(point)).collect();
         Depth {
-            before: reach(&self.surface.points, Side::Inside, &other.search),
+            before: reach(&self.probes, Side::Inside, &other.search),
             after: reach(&after, Side::Inside, &other.search),
         }
     }
 
     /// The distance of this bone beyond the skin.
     fn through(&self, before: &SurfaceSearch, after: &SurfaceSearch) -> Depth {
+        let moved: Vec<Vector> =
+            self.probes.iter().map(|point| self.movement.apply(point)).collect();
         Depth {
-            before: reach(&self.surface.points, Side::Outside, before),
-            after: reach(&self.moved_by(&self.movement), Side::Outside, after),
+            before: reach(&self.probes, Side::Outside, before),
+            after: reach(&moved, Side::Outside, after),
         }
     }
 

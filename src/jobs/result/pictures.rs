@@ -100,7 +100,7 @@ pub fn slices_picture(anatomy: &Anatomy, frame: Frame) -> Result<String, PngErro
         |(low, high), node| (low.inf(node), high.sup(node)),
     );
     let subtitle = format!(
-        "{} tetrahedra, {} nodes; smallest dihedral angle {:.1}°, a thousandth below {:.1}°, largest {:.1}°",
+        "{} tetrahedra, {} nodes; smallest dihedral angle {:.1}°, 0.1 % below {:.1}°, largest {:.1}°",
         report.tetrahedra,
         report.nodes,
         report.angles.smallest,

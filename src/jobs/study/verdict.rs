@@ -312,8 +312,8 @@ fn whole(
             found.push((outcome, words));
         }
     };
-    tell(OutcomeName::Worse, worse > 0, format!("of {rows} rows {worse} are worse than allowed"));
-    tell(OutcomeName::Worse, failed > 0, format!("of {rows} rows {failed} failed"));
+    tell(OutcomeName::Worse, worse > 0, format!("{worse} of {rows} row(s) worse than allowed"));
+    tell(OutcomeName::Worse, failed > 0, format!("{failed} of {rows} row(s) failed"));
     tell(OutcomeName::Incomplete, solved == 0, "no row was solved".to_owned());
     let unheld = unheld(report);
     let words = format!("the thresholds are for {}, which applies nowhere", unheld.join(", "));

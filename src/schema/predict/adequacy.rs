@@ -88,7 +88,7 @@ impl AdequacyDocument {
         let taken = self.rungs.iter().find(|rung| rung.name == self.taken);
         let Some(error) = taken.and_then(|rung| rung.error_mm) else {
             return format!(
-                "`{}` is the best that was found, and how far it is off is not known: it is not said to be within {} mm",
+                "`{}` is used; its error is unknown, so it may not be within the accepted {} mm",
                 self.taken, self.accepted_mm
             );
         };
@@ -98,17 +98,16 @@ impl AdequacyDocument {
         });
         let is_accepted = error <= self.accepted_mm && over.next().is_none();
         let (taken, wanted) = (&self.taken, self.accepted_mm);
-        let told = format!(
-            "`{taken}` with an expected mean error of {error:.3} mm over the skin that moves is"
-        );
+        let told =
+            format!("`{taken}`, expected mean error {error:.3} mm over the skin that moves:");
         let objections = self.objections.join(", ");
         match (objections.is_empty(), is_accepted) {
             (true, true) => format!("{told} the cheapest model within {wanted} mm"),
             (true, false) => format!(
-                "{told} the cheapest whose error is within a quarter of the least that was found, short of {wanted} mm"
+                "{told} no model reaches the accepted errors ({wanted} mm); this is the cheapest within 25 % of the best"
             ),
             (false, _) => format!(
-                "{told} what was found, and not said to be within {wanted} mm: no estimate of an error contains {objections}"
+                "{told} it may not be within {wanted} mm, because no error estimate includes {objections}"
             ),
         }
     }
@@ -164,13 +163,11 @@ mod tests {
 
     #[test]
     fn an_accepted_error_that_is_not_met_is_no_error_that_falls_short() {
-        assert!(chosen(&[], 0.05, 0.1).contains("is the cheapest model within 0.1 mm"));
+        assert!(chosen(&[], 0.05, 0.1).contains("the cheapest model within 0.1 mm"));
         let inverted = chosen(&["cells-inverted"], 0.05, 0.1);
-        assert!(
-            inverted.ends_with("within 0.1 mm: no estimate of an error contains cells-inverted")
-        );
+        assert!(inverted.ends_with("0.1 mm, because no error estimate includes cells-inverted"));
         for short in [chosen(&[], 0.15, 0.1), chosen(&[], 0.05, 0.3)] {
-            assert!(short.ends_with("short of 0.1 mm"), "{short}");
+            assert!(short.contains("no model reaches the accepted errors (0.1 mm)"), "{short}");
         }
     }
 }

@@ -231,10 +231,10 @@ async fn a_report_says_what_its_numbers_were_computed_with() {
     let server = Server::start();
     let case = case(&server).await;
     let acts = ["volume of all tissue -5 %", "strap pulls with 5 kPa", "gains or loses volume"];
-    let second = ["its term of second order", "The answer to second order leaves out"];
-    let finite = ["hyperelastic solid at finite strain", "what else it leaves out"];
-    let linear = ["linear elastic solid at small strain", "Linear elasticity leaves out"];
-    let added = ["What the mesh leaves out, as estimated, was added"];
+    let second = ["its term of second order", "Estimated error of the second-order model"];
+    let finite = ["hyperelastic solid at finite strain", "its other errors are not estimated"];
+    let linear = ["linear elastic solid at small strain", "Estimated linearisation error (model)"];
+    let added = ["The estimated discretisation error was added"];
     let ways = [
         (
             json!({"method": "auto", "accept_mm": 0.001}),

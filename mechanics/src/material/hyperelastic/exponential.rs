@@ -1,7 +1,7 @@
 //! The exponential of the laws of Fung, Veronda and Westmann, and of fibres, continued where it would grow beyond all bounds.
 
 /// Beyond this exponent the exponential goes on as a parabola with the same value, slope and curvature
-/// (docs/methods.md#hyperelastic-laws).
+/// (docs/finite-strain.md#laws).
 pub const LARGEST_EXPONENT: f64 = 30.0;
 
 /// e^x with its first two derivatives, all of them continuous.

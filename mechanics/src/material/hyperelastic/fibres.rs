@@ -1,5 +1,5 @@
 //! Fibres that only pull, beside any law of the tissue between them (Holzapfel, Gasser, Ogden 2000, with the whole invariant I4 of
-//! Nolan et al. 2014 in place of its isochoric part: docs/methods.md#hyperelastic-laws).
+//! Nolan et al. 2014 in place of its isochoric part: docs/finite-strain.md#laws).
 
 use super::exponential::exponential;
 

@@ -1,4 +1,4 @@
-//! Fung's law, exponential in shape and alike in all directions (Fung 1967, Demiray 1972; docs/methods.md#hyperelastic-laws).
+//! Fung's law, exponential in shape and alike in all directions (Fung 1967, Demiray 1972; docs/finite-strain.md#laws).
 
 use super::exponential::exponential;
 use super::isochoric::{OfShape, split};

@@ -1,5 +1,5 @@
 //! Energies that are a function of shape alone and one of volume alone: W = w(Ibar1, Ibar2) + U(J), with
-//! Ibar1 = J^-2/3 I1 and Ibar2 = J^-4/3 I2 (docs/methods.md#hyperelastic-laws).
+//! Ibar1 = J^-2/3 I1 and Ibar2 = J^-4/3 I2 (docs/finite-strain.md#laws).
 
 use super::volumetric::Volumetric;
 use super::{Derivatives, Invariants};

@@ -1,4 +1,4 @@
-//! Mooney-Rivlin as a polynomial of second degree (docs/methods.md#hyperelastic-laws).
+//! Mooney-Rivlin as a polynomial of second degree (docs/finite-strain.md#laws).
 
 use super::isochoric::{OfShape, split};
 use super::volumetric::Volumetric;

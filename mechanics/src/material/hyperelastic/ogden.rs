@@ -1,4 +1,4 @@
-//! Ogden's law, a sum of powers of the principal stretches (Ogden 1972; docs/methods.md#hyperelastic-laws).
+//! Ogden's law, a sum of powers of the principal stretches (Ogden 1972; docs/finite-strain.md#laws).
 
 use super::Derivatives;
 use super::volumetric::Volumetric;

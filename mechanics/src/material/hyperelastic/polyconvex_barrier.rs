@@ -1,5 +1,5 @@
 //! Ogden's compressible law with a logarithmic barrier, in its polyconvex form (Ciarlet 1988; Zachow et al.
-//! 2006, section 4.1; docs/methods.md#hyperelastic-laws).
+//! 2006, section 4.1; docs/finite-strain.md#laws).
 //!
 //! It agrees with Saint Venant-Kirchhoff to second order at rest, and no finite energy turns tissue inside out.
 

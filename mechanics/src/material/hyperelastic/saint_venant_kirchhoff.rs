@@ -1,4 +1,4 @@
-//! Saint Venant-Kirchhoff: W = lambda/2 (tr E)^2 + mu tr E^2, E = (C - I)/2 (docs/methods.md#hyperelastic-laws).
+//! Saint Venant-Kirchhoff: W = lambda/2 (tr E)^2 + mu tr E^2, E = (C - I)/2 (docs/finite-strain.md#laws).
 //!
 //! Tissue that is pressed to less than .577 of its length gives way: never chosen unasked.
 

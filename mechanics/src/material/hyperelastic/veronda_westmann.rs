@@ -1,4 +1,4 @@
-//! Veronda and Westmann's law of skin, exponential in shape (Veronda, Westmann 1970; docs/methods.md#hyperelastic-laws).
+//! Veronda and Westmann's law of skin, exponential in shape (Veronda, Westmann 1970; docs/finite-strain.md#laws).
 
 use super::exponential::exponential;
 use super::isochoric::{OfShape, split};

@@ -70,11 +70,14 @@ impl Accepted {
     }
 }
 
+/// What may help.
+const CURE: &str = "refine the mesh, allow more time or accept a larger error";
+
 /// The warning where expected errors are not within those that are accepted, or not known.
 pub(super) fn not_met(error: Option<&MeanErrors>, accepted: &Accepted) -> Warning {
     let wanted = accepted.skin_mm;
     let Some(error) = error else {
-        let detail = "how far the skin is off is not known".to_owned();
+        let detail = "the error of the skin is unknown".to_owned();
         return Warning::new("tolerance-not-met", detail).with("accepted_mm", wanted);
     };
     let skin = error.skin_mm;
@@ -86,12 +89,11 @@ pub(super) fn not_met(error: Option<&MeanErrors>, accepted: &Accepted) -> Warnin
         Some((name, wanted)) if skin <= accepted.skin_mm => {
             let own = error.regions_mm.get(name).copied().unwrap_or(f64::NAN);
             format!(
-                "{name:?} is expected to be off by {own:.3} mm in the mean, and {wanted:.3} mm were to be met"
+                "expected mean error {own:.3} mm over {name:?} exceeds the accepted {wanted:.3} mm; {CURE}"
             )
         }
         Some(_) | None => format!(
-            "the skin that moves is expected to be off by {skin:.3} mm in the mean, and {wanted:.3} mm were to be met: no adequate \
-             model fits the mesh, the time and the case"
+            "expected mean error {skin:.3} mm over the skin that moves exceeds the accepted {wanted:.3} mm; {CURE}"
         ),
     };
     let warning = Warning::new("tolerance-not-met", detail).with("accepted_mm", wanted);

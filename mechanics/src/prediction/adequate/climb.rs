@@ -320,8 +320,7 @@ impl Climb<'_> {
             return Some("its error is not known".to_owned());
         }
         if rung.is_corrected() && found.contact.is_some() {
-            let why =
-                "what the mesh leaves out is not added where tissue presses on what it touches";
+            let why = "the estimated discretisation error is not added where tissue is in contact";
             return Some(why.to_owned());
         }
         let objections = found.objections(rung.is_corrected(), self.accepted);

@@ -96,7 +96,7 @@ impl<'a> CandidateAnswer<'a> {
 impl Objection {
     /// As the answer says that what was asked is not met.
     pub fn not_met(&self, accepted: &Accepted) -> Warning {
-        let detail = format!("{}: no estimate of an error has that", self.warning.detail);
+        let detail = format!("{}: no error estimate includes that", self.warning.detail);
         let warning =
             Warning::new("tolerance-not-met", detail).with("accepted_mm", accepted.skin_mm);
         let numbers = self.warning.numbers.iter();
@@ -122,15 +122,15 @@ fn overlap(scene: &Scene, displacement: &[Vector], accepted: &Accepted) -> Optio
     let moved = scene.skin.moved(displacement);
     let told = skin_overlap(&scene.skin, &moved)?;
     let Some(Deepest { depth, at, .. }) = added_overlap(&scene.skin, &moved) else {
-        let detail = format!("{}, and how deep is not known", told.detail);
+        let detail = format!("{}, at an unknown depth", told.detail);
         return Some(Warning { detail, ..told });
     };
     if depth <= accepted.skin_mm {
         return None;
     }
     let detail = format!(
-        "the skin passes through itself {depth:.2} mm deeper than at rest, and {:.3} mm were to be met; `contact` asks for a model in \
-         which it does not",
+        "the skin passes through itself {depth:.2} mm deeper than before the movement, more than the accepted {:.3} mm; request `contact` to \
+         prevent it",
         accepted.skin_mm
     );
     let warning = Warning::new(SKIN_OVERLAPS, detail).with("depth_mm", depth);

@@ -188,7 +188,7 @@ fn skin_that_passes_through_itself_deeper_than_accepted_is_never_called_met() {
     let told = told.unwrap();
     let depth = told.numbers.iter().find(|(name, _)| *name == "depth_mm").unwrap().1;
     assert!(!is_met && depth > 1.5 && depth < 5.0, "{told:?}");
-    assert!(told.detail.contains("deeper than at rest"), "{told:?}");
+    assert!(told.detail.contains("deeper than before the movement"), "{told:?}");
     let (is_met, told) = met(3.0, 1.5);
     assert!(is_met && told.is_none(), "{told:?}");
 }

@@ -177,7 +177,7 @@ fn prescribed_nodes_that_go_along_are_no_hold() {
         let array = array.to_owned();
         Plan { prescribed: vec![Prescribed::FromArray { nodes, array }], ..Plan::default() }
     };
-    assert_refused(&alone, &from("turned"), "the tissue goes along as one");
+    assert_refused(&alone, &from("turned"), "the tissue would move rigidly");
     assert_eq!(judged(&alone, &from("sheared")), Ok(None));
 }
 

@@ -94,8 +94,8 @@ impl<'a> Tissue<'a> {
     pub fn bulk_warning(&self) -> Option<Warning> {
         let keeps_all = self.bulk_in_cells > 0.0 && !self.shares_all;
         let detail = format!(
-            "tissue is pressed so far that {:.2} times the shear modulus stays in all its {} cells as bulk modulus, and not in the pressed ones alone: \
-             against the answer to a slightly smaller movement, of which that is not so, its skin may jump by some tenths of a millimetre",
+            "strong compression: the solver needed an extra bulk modulus of {:.2} times the shear modulus in all {} cells, not in the compressed \
+             ones alone; a slightly different plan may change the skin by some tenths of a millimetre",
             self.bulk_in_cells, self.cells_with_bulk
         );
         let warning = Warning::new("bulk-in-all-cells", detail);
