@@ -1,5 +1,6 @@
 //! Tests of the chart of speed and accuracy.
 
+use super::super::drawing::Rectangle;
 use super::*;
 use crate::chart::drawing::Item;
 
