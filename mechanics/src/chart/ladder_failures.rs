@@ -2,7 +2,7 @@
 
 use super::colour::FAILED_INK;
 use super::drawing::{Document, Paint, Rectangle, Style, estimated_width, wrapped};
-use super::ladder::LadderPicture;
+use super::ladder_content::LadderPicture;
 use super::series::mark_data;
 use super::symbol::Symbol;
 

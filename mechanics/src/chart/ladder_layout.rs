@@ -3,7 +3,7 @@
 use super::axis::{LogAxis, duration};
 use super::colour::{GRID, INK};
 use super::drawing::{Document, Paint, Rectangle, Style, wrapped};
-use super::ladder::LadderPicture;
+use super::ladder_content::LadderPicture;
 use super::ladder_failures::FailureBand;
 use super::ladder_legend::Legend;
 
