@@ -2,6 +2,7 @@
 
 use super::colour::GRID;
 use super::drawing::{Document, Paint, Rectangle, Style, wrapped};
+use super::label_column::{ColumnLabel, write_labels};
 use super::svg::svg;
 use super::symbol::Symbol;
 
@@ -46,7 +47,7 @@ impl CellSizesPicture<'_> {
         document.text([MARGIN, 38.0], room, Style::of(19.0).bold(), self.title);
         document.text([MARGIN, 62.0], room, Style::of(13.0).faint(), self.subtitle);
         self.write_grid(&mut document);
-        let mut names: Vec<(f64, String, &str)> = Vec::new();
+        let mut labels: Vec<ColumnLabel> = Vec::new();
         for (number, series) in self.series.iter().enumerate() {
             let symbol = Symbol::of(number);
             if let Some(curve) = self.curve(series) {
@@ -63,13 +64,17 @@ impl CellSizesPicture<'_> {
             }
             let last = series.points.last().map_or(0.0, |[_, mean]| *mean);
             let words = match series.fit {
-                Some([limit, order]) => format!("{}: {limit:.3}, order {order:.2}", series.name),
+                Some([limit, order]) => {
+                    format!("{}: limit {limit:.3}, order {order:.2}", series.name)
+                }
                 None => format!("{}: {last:.3}", series.name),
             };
-            let y = self.place([0.0, series.fit.map_or(last, |[limit, _]| limit)])[1];
-            names.push((y, words, symbol.colour));
+            let coarsest = places.into_iter().max_by(|a, b| a[0].total_cmp(&b[0]));
+            labels.extend(coarsest.map(|at| ColumnLabel { at, symbol: Some(symbol), words }));
         }
-        write_names(&mut document, names);
+        let left = PLOT.x + PLOT.width;
+        let ends = [PLOT.y, PLOT.y + PLOT.height];
+        write_labels(&mut document, &labels, [left, WIDTH - left - 12.0], ends);
         for (line, words) in notes.iter().enumerate() {
             document.text([MARGIN, foot + LINE * line as f64], room, style, words);
         }
@@ -154,22 +159,6 @@ fn step(length: f64) -> (f64, usize) {
     (step, (-step.log10().floor()).clamp(0.0, 6.0) as usize)
 }
 
-/// Beside the plot, one below the other.
-fn write_names(document: &mut Document, mut names: Vec<(f64, String, &str)>) {
-    names.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let x = PLOT.x + PLOT.width + 12.0;
-    let mut free = 0.0_f64;
-    for (y, name, colour) in names {
-        let y = (y + 4.0).max(free);
-        document.stroke(&[[x, y - 4.0], [x + 12.0, y - 4.0]], colour, 3.0);
-        for line in wrapped(&name, WIDTH - x - 28.0, Style::of(12.0)) {
-            let line_y = y.max(free);
-            document.text([x + 18.0, line_y], WIDTH - x - 28.0, Style::of(12.0), &line);
-            free = line_y + 16.0;
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -191,8 +180,7 @@ mod tests {
             CellSizesPicture { title: "sizes", subtitle: "a plan", series: &series, notes: &notes };
         let text = picture.to_svg();
         assert_eq!(text.matches("class=\"mesh\"").count(), 4);
-        for words in ["plain: 4.310, order 1.90", "noise: 4.000", "cell size, mm", "What it says."]
-        {
+        for words in ["plain: limit 4.310", "noise: 4.000", "cell size, mm", "What it says."] {
             assert!(text.contains(words), "{words}");
         }
         for point in [[8.0, 3.9], [0.0, 4.31], [9.0, 9.0]] {

@@ -6,7 +6,7 @@ use super::drawing::{Document, Rectangle, Style};
 use super::facet::Finish;
 use super::raster::{ColouredSurface, Panel, PngError, Shot, draw_all};
 use super::svg::svg;
-use super::view::FaceDirection;
+use super::view::{Camera, Extent, FaceDirection, coordinates};
 
 /// Class of a node's boundary condition.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -73,7 +73,8 @@ impl ClassesPicture<'_> {
             .collect();
         let held = self.held();
         let cameras = VIEWS.map(|view| self.face_direction.camera(view.around, view.above));
-        let extents = cameras.map(|camera| camera.extent(self.points.iter()));
+        let shown = VIEWS.map(|view| if view.held_alone { &held } else { self.triangles });
+        let extents = [0, 1, 2].map(|view| self.extent(&cameras[view], shown[view]));
         let widest = extents.iter().map(|e| e.size(0)).fold(1e-9, f64::max);
         let tallest = extents.iter().map(|e| e.size(1)).fold(1e-9, f64::max);
         let panel_height = (PANEL_WIDTH * (tallest / widest).clamp(0.7, 1.35)).round();
@@ -89,11 +90,11 @@ impl ClassesPicture<'_> {
         let panels: Vec<Panel> = cameras
             .into_iter()
             .zip(&extents)
-            .zip(&VIEWS)
-            .map(|((camera, extent), view)| Panel {
+            .zip(shown)
+            .map(|((camera, extent), triangles)| Panel {
                 painted: ColouredSurface {
                     points: self.points,
-                    triangles: if view.held_alone { &held } else { self.triangles },
+                    triangles,
                     colours: &colours,
                     finish: Finish::Classes,
                 },
@@ -116,9 +117,18 @@ impl ClassesPicture<'_> {
             document.text(middle, PANEL_WIDTH, style, VIEWS[panel].name);
         }
         self.write_legend(&mut document, HEAD + panel_height + 30.0, &palette);
-        let frame = format!("Nodes of the whole mesh, coordinates in frame {}.", self.frame);
+        let frame = format!("Nodes of the whole mesh, {}.", coordinates(self.frame));
         document.text([MARGIN, height - 10.0], room, Style::of(11.0).faint(), &frame);
         Ok(svg(&document, self.title))
+    }
+
+    /// What a panel shows, or the whole mesh where it shows nothing.
+    fn extent(&self, camera: &Camera, triangles: &[[u32; 3]]) -> Extent {
+        let shown = triangles.iter().flatten().map(|&point| &self.points[point as usize]);
+        match triangles {
+            [] => camera.extent(self.points.iter()),
+            _ => camera.extent(shown),
+        }
     }
 
     /// The triangles with a node that something holds.

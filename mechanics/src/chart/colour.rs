@@ -19,6 +19,9 @@ pub const FAILED_INK: &str = "#a3262a";
 /// neighbours differ in lightness.
 pub const SERIES: [&str; 7] =
     ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#333333"];
+/// The same for words: so much darker that they can be read on white.
+pub(super) const SERIES_INK: [&str; 7] =
+    ["#00639b", "#a84a00", "#00714f", "#9b4679", "#1d76ad", "#8a5f00", "#333333"];
 /// The best compromises of a chart.
 pub(super) const FRONT: &str = "#3a3f47";
 
@@ -141,6 +144,16 @@ mod tests {
             mean > 5.0 && steps.iter().all(|step| (step / mean - 1.0).abs() < 0.25),
             "{steps:?}"
         );
+    }
+
+    #[test]
+    fn words_of_series_are_dark_enough_to_be_read_on_white() {
+        for colour in SERIES_INK {
+            let channel = |at: usize| u8::from_str_radix(&colour[at..at + 2], 16).unwrap();
+            let lightness = lightness([1, 3, 5].map(channel));
+            // A contrast of 4.5 to white, as WCAG 2 has it.
+            assert!(lightness < 49.9, "{colour}: {lightness}");
+        }
     }
 
     #[test]

@@ -1,13 +1,15 @@
-//! A face before, after, and coloured by how far its skin moved, from the front and from beside.
+//! A face before, after, and coloured by how far its skin moved, from the front and obliquely.
+
+use std::collections::HashSet;
 
 use super::Vector;
 use super::colour::{self, Rgb};
 use super::drawing::{Document, Rectangle, Style, wrapped};
 use super::facet::Finish;
-use super::legend::round_length;
+use super::legend::write_scale_bar;
 use super::raster::{ColouredSurface, Panel, PngError, Shot, draw_all};
 use super::svg::svg;
-use super::view::{Camera, FaceDirection};
+use super::view::{Camera, FaceDirection, coordinates};
 use super::views::ViewValues;
 
 /// Content of the picture. Points in mm; `before` and `after` correspond one to one.
@@ -54,7 +56,8 @@ impl DisplacementPicture<'_> {
         let layout = Layout::of(&cameras, self);
         let width = 2.0 * MARGIN + 3.0 * PANEL_WIDTH + 3.0 * GAP + LEGEND_WIDTH;
         let foot = wrapped(self.statistics, width - 2.0 * MARGIN, Style::of(13.0));
-        let foot_height = 40.0 + 20.0 * foot.len() as f64;
+        let notes = wrapped(&self.notes(), width - 2.0 * MARGIN, Style::of(11.0));
+        let foot_height = 25.0 + 20.0 * foot.len() as f64 + 15.0 * notes.len() as f64;
         let height = HEAD + 2.0 * (layout.image_height + STRIP) + GAP + foot_height;
 
         let mut document = Document::new(width, height);
@@ -66,13 +69,24 @@ impl DisplacementPicture<'_> {
             let y = height - foot_height + 28.0 + 20.0 * line as f64;
             document.text([MARGIN, y], width, Style::of(13.0), words);
         }
-        let y = height - 12.0;
-        let frame = format!(
-            "Lengths in mm, coordinates in frame {}. Parallel projection; all panels have one scale.",
-            self.frame
-        );
-        document.text([MARGIN, y], width, Style::of(11.0).faint(), &frame);
+        for (line, words) in notes.iter().enumerate() {
+            let y = height - 12.0 - 15.0 * (notes.len() - 1 - line) as f64;
+            document.text([MARGIN, y], width, Style::of(11.0).faint(), words);
+        }
         Ok(svg(&document, self.title))
+    }
+
+    /// In small letters at the foot.
+    fn notes(&self) -> String {
+        let mut notes = format!(
+            "Lengths in mm, {}. Parallel projection; all panels have one scale.",
+            coordinates(self.frame)
+        );
+        if is_open(self.triangles) {
+            notes +=
+                " Grey is the inner side of the skin, seen through a hole in it or past its edge.";
+        }
+        notes
     }
 
     fn write_panels(
@@ -124,6 +138,13 @@ impl DisplacementPicture<'_> {
     }
 }
 
+/// Whether a surface has an edge of one triangle alone.
+fn is_open(triangles: &[[u32; 3]]) -> bool {
+    let sides = |&[a, b, c]: &[u32; 3]| [[a, b], [b, c], [c, a]];
+    let all: HashSet<[u32; 2]> = triangles.iter().flat_map(sides).collect();
+    all.iter().any(|&[from, to]| !all.contains(&[to, from]))
+}
+
 /// Where things stand; one scale for all panels.
 struct Layout {
     image_height: f64,
@@ -167,13 +188,10 @@ impl Layout {
         }
     }
 
+    /// Over the first panel, where it lies over no face.
     fn write_scale_bar(&self, document: &mut Document) {
-        let units_per_millimetre = 1.0 / (self.millimetres_per_pixel * SHARPNESS);
-        let length = round_length(PANEL_WIDTH / 4.0 / units_per_millimetre);
-        let place = self.panel(1, 0);
-        let [x, y] = [place.x + 12.0, place.y + place.height - 14.0];
-        document.line([x, y], [x + length * units_per_millimetre, y]);
-        document.text([x, y - 6.0], PANEL_WIDTH, Style::of(11.0).faint(), &format!("{length} mm"));
+        let strip = Rectangle { height: STRIP, ..self.panel(0, 0) };
+        write_scale_bar(document, strip, 1.0 / (self.millimetres_per_pixel * SHARPNESS));
     }
 
     /// Both panels of the last column, beside which the legend stands.
@@ -203,8 +221,13 @@ mod tests {
             statistics: "mean 2.30 mm",
         };
         let svg = picture.to_svg().unwrap();
+        assert!(!is_open(&[[0, 1, 2], [0, 2, 3], [0, 3, 1], [1, 3, 2]]));
+        let unnamed = DisplacementPicture { frame: "unspecified", ..picture };
+        assert!(unnamed.notes().contains("which names no frame"));
         assert_eq!(svg.matches("data:image/png;base64,").count(), 6);
-        for words in ["Case &lt;7&gt;", ">5<", ">0<", "frame LPS", "mean 2.30 mm", ">10 mm<"] {
+        for words in
+            ["Case &lt;7&gt;", ">5<", ">0<", "frame LPS", "Grey is", "mean 2.30 mm", ">10 mm<"]
+        {
             assert!(svg.contains(words), "{words}");
         }
     }

@@ -100,8 +100,6 @@ pub enum Run {
     Level,
     /// Upwards, with their middle at the point.
     Upwards,
-    /// They rise by so many degrees.
-    Rising(f64),
 }
 
 /// How the path of an item is drawn, as [`Paint`].
@@ -222,11 +220,6 @@ impl Document {
     pub fn stroke(&mut self, points: &[[f64; 2]], colour: &str, width: f64) {
         let (points, colour) = (points.to_vec(), colour.to_owned());
         self.items.push(Item::Stroke { points, colour, width });
-    }
-
-    /// Words that rise by this many degrees from where they begin.
-    pub fn rising_text(&mut self, at: [f64; 2], degrees: f64, style: Style, words: &str) {
-        self.words(at, Run::Rising(degrees), style, words);
     }
 
     /// Words on one line, at most `room` wide: what does not fit is cut and marked by an ellipsis.

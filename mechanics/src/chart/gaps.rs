@@ -4,9 +4,10 @@ use super::Vector;
 use super::colour::{GROUND, Rgb, hexadecimal};
 use super::drawing::{Document, Rectangle, Style};
 use super::facet::Finish;
+use super::legend::write_scale_bar;
 use super::raster::{ColouredSurface, Panel, PngError, Shot, draw_all};
 use super::svg::svg;
-use super::view::{Camera, Extent, FaceDirection};
+use super::view::{Camera, Extent, FaceDirection, coordinates};
 
 /// Content of the picture.
 pub struct GapsPicture<'a> {
@@ -44,8 +45,11 @@ const GAP: f64 = 10.0;
 const HEAD: f64 = 104.0;
 const FOOT: f64 = 34.0;
 const SHARPNESS: f64 = 1.6;
-/// Around what lies within the last band, in mm.
+/// Above the image of a panel, where its name and the scale stand.
+const STRIP: f64 = 26.0;
+/// Around what lies within the last band, in mm, and as a share of its size as far as there is bone.
 const AROUND: f64 = 4.0;
+const BONE_AROUND: f64 = 0.5;
 
 impl GapsPicture<'_> {
     /// The picture as one SVG document.
@@ -57,7 +61,7 @@ impl GapsPicture<'_> {
         let height = (PANEL_WIDTH * aspect.clamp(0.5, 1.3)).round();
         let width = 2.0 * MARGIN + 2.0 * PANEL_WIDTH + 2.0 * GAP + LEGEND;
         let rows = self.bones.len() as f64;
-        let whole = HEAD + rows * (height + GAP) + FOOT;
+        let whole = HEAD + rows * (STRIP + height + GAP) + FOOT;
         let mut document = Document::new(width, whole.max(HEAD + 24.0 * 9.0 + FOOT));
         document.text([MARGIN, 40.0], width, Style::of(20.0).bold(), self.title);
         document.text([MARGIN, 64.0], width, Style::of(13.0).faint(), self.subtitle);
@@ -75,13 +79,15 @@ impl GapsPicture<'_> {
         for (number, png) in images.iter().enumerate() {
             let (row, column) = ((number / 2) as f64, (number % 2) as f64);
             let x = MARGIN + column * (PANEL_WIDTH + GAP);
-            let place = Rectangle { x, y: HEAD + row * (height + GAP), width: PANEL_WIDTH, height };
+            let y = HEAD + row * (STRIP + height + GAP);
+            let place = Rectangle { x, y, width: PANEL_WIDTH, height: STRIP + height };
             document.rectangle(place, GROUND, 6.0);
-            document.image(place, png);
+            document.image(Rectangle { y: y + STRIP, height, ..place }, png);
             if column == 0.0 {
-                let corner = [place.x + 10.0, place.y + 20.0];
                 let name = self.words(&self.bones[number / 2], &cameras[number / 2]);
-                document.text(corner, PANEL_WIDTH, Style::of(13.0), &name);
+                document.text([x + 10.0, y + 18.0], 0.6 * PANEL_WIDTH, Style::of(13.0), &name);
+                let strip = Rectangle { height: STRIP, ..place };
+                write_scale_bar(&mut document, strip, 1.0 / (scale * SHARPNESS));
             }
         }
         for (column, name) in ["Before", "As planned"].into_iter().enumerate() {
@@ -90,9 +96,8 @@ impl GapsPicture<'_> {
         }
         write_legend(&mut document, [MARGIN + 2.0 * (PANEL_WIDTH + GAP) + 4.0, HEAD]);
         let foot = format!(
-            "Gap to the nearest bone that the plan moves against it, mm; frame {}. Parallel projection; all panels have one \
-             scale.",
-            self.frame
+            "Gap to the nearest bone that the plan moves against it, mm; {}. Parallel projection; all panels have one scale.",
+            coordinates(self.frame)
         );
         let at = [MARGIN, document.height - 12.0];
         document.text(at, width - 2.0 * MARGIN, Style::of(11.0).faint(), &foot);
@@ -150,7 +155,8 @@ fn colour_of(gap: f64) -> Rgb {
     BANDS.iter().find(|(edge, ..)| gap < *edge).map_or(BONE, |(_, colour, _)| *colour)
 }
 
-/// What lies within the last band at either stage, and a little around it; all of the bone where nothing does.
+/// What lies within the last band at either stage, with so much of the bone around it as has room; all of the bone where nothing
+/// does.
 fn near(bone: &GapsOfBone, camera: &Camera) -> Extent {
     let of = |within: f64| {
         let stages = bone.stages.iter();
@@ -159,9 +165,14 @@ fn near(bone: &GapsOfBone, camera: &Camera) -> Extent {
             points.filter(|(_, gap)| **gap < within).map(|(point, _)| point).collect();
         (!close.is_empty()).then(|| camera.extent(close.into_iter()))
     };
-    let found = of(FARTHEST).or_else(|| of(f64::INFINITY));
-    let Extent { low, high } = found.unwrap_or(Extent { low: [0.0; 2], high: [1.0; 2] });
-    Extent { low: low.map(|x| x - AROUND), high: high.map(|x| x + AROUND) }
+    let unit = Extent { low: [0.0; 2], high: [1.0; 2] };
+    let whole = of(f64::INFINITY).unwrap_or(unit);
+    let close = of(FARTHEST).unwrap_or(whole);
+    let around = BONE_AROUND * f64::max(close.size(0), close.size(1));
+    Extent {
+        low: [0, 1].map(|k| whole.low[k].max(close.low[k] - around) - AROUND),
+        high: [0, 1].map(|k| whole.high[k].min(close.high[k] + around) + AROUND),
+    }
 }
 
 fn write_legend(document: &mut Document, [x, y]: [f64; 2]) {
@@ -204,8 +215,13 @@ mod tests {
         let picture = GapsPicture { title, subtitle, bones: &bones, face_direction, frame: "LPS" };
         let text = picture.to_svg().expect("a picture");
         assert_eq!(text.matches("data:image/png;base64,").count(), 4);
-        for words in ["mandible, from above", "maxilla, from below", "0 to 0.3: contact", "Before"]
-        {
+        for words in [
+            "mandible, from above",
+            "maxilla, from below",
+            "0 to 0.3: contact",
+            "Before",
+            ">10 mm<",
+        ] {
             assert!(text.contains(words), "{words}");
         }
     }

@@ -1,5 +1,8 @@
 //! Tests of the chart of speed and accuracy.
 
+use super::super::drawing::Rectangle;
+use super::super::ladder_content::LadderFailure;
+use super::super::series::MethodSeries;
 use super::*;
 use crate::chart::drawing::Item;
 

@@ -2,6 +2,7 @@
 
 use super::colour::{FAINT_INK, GRID};
 use super::drawing::{Document, Paint, Rectangle, Style};
+use super::label_column::{ColumnLabel, write_labels};
 use super::svg::svg;
 use super::symbol::Symbol;
 
@@ -31,12 +32,13 @@ impl LearningPicture<'_> {
         let mut document = Document::new(SIZE[0], SIZE[1]);
         document.text([28.0, 38.0], SIZE[0] - 56.0, Style::of(19.0).bold(), self.title);
         self.write_grid(&mut document);
-        let mut names: Vec<([f64; 2], String)> = Vec::new();
+        let mut labels: Vec<ColumnLabel> = Vec::new();
         for (name, error) in self.levels {
             let y = self.place(1.0, *error)[1];
             let steps = format!("M{:.1} {y:.1}L{:.1} {y:.1}", PLOT.x, PLOT.x + PLOT.width);
             document.path(&steps, Paint { dashes: "5 4", ..Paint::line(FAINT_INK, 1.3) });
-            names.push(([PLOT.x + PLOT.width, y], format!("{name} {error:.2}")));
+            let (at, words) = ([PLOT.x + PLOT.width, y], format!("{name} {error:.2}"));
+            labels.push(ColumnLabel { at, symbol: None, words });
         }
         for (number, series) in self.series.iter().enumerate() {
             let places: Vec<[f64; 2]> =
@@ -48,11 +50,14 @@ impl LearningPicture<'_> {
                 symbol.draw(&mut document, *place, 5.0, 1.0);
                 document.close();
             }
-            if let (Some(place), Some((_, error))) = (places.last(), series.points.last()) {
-                names.push((*place, format!("{} {error:.2}", series.name)));
+            if let (Some(&at), Some((_, error))) = (places.last(), series.points.last()) {
+                let words = format!("{} {error:.2}", series.name);
+                labels.push(ColumnLabel { at, symbol: Some(symbol), words });
             }
         }
-        write_names(&mut document, names);
+        let left = PLOT.x + PLOT.width;
+        let ends = [PLOT.y - 12.0, PLOT.y + PLOT.height + 12.0];
+        write_labels(&mut document, &labels, [left, SIZE[0] - left - 12.0], ends);
         svg(&document, self.title)
     }
 
@@ -100,18 +105,6 @@ impl LearningPicture<'_> {
         let height = (error / self.most_error()).clamp(0.0, 1.0);
         let x = PLOT.x + 14.0 + share.min(1.0) * (PLOT.width - 28.0);
         [x, PLOT.y + PLOT.height * (1.0 - height)]
-    }
-}
-
-/// Beside the plot, one below the other.
-fn write_names(document: &mut Document, mut names: Vec<([f64; 2], String)>) {
-    names.sort_by(|a, b| a.0[1].total_cmp(&b.0[1]));
-    let mut free = 0.0_f64;
-    for ([_, y], name) in names {
-        let y = (y + 4.0).max(free);
-        free = y + 16.0;
-        let at = [PLOT.x + PLOT.width + 12.0, y];
-        document.text(at, SIZE[0] - at[0] - 12.0, Style::of(12.5), &name);
     }
 }
 

@@ -1,5 +1,8 @@
 //! Scales with round numbers.
 
+use super::colour::INK;
+use super::drawing::{Document, Rectangle, Style};
+
 /// Ticks at 1, 2 or 5 times a power of ten, from 0 to the first one at or above the maximum.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scale {
@@ -40,13 +43,23 @@ impl Scale {
 }
 
 /// The largest round length (1, 2 or 5 times a power of ten) of at most `room`.
-pub fn round_length(room: f64) -> f64 {
+fn round_length(room: f64) -> f64 {
     let power = 10f64.powf(room.max(1e-9).log10().floor());
     [5.0, 2.0, 1.0]
         .into_iter()
         .map(|multiple| multiple * power)
         .find(|&length| length <= room)
         .unwrap_or(power)
+}
+
+/// A bar of a round length at the right of a strip over a panel, with its length beside it.
+pub fn write_scale_bar(document: &mut Document, strip: Rectangle, units_per_millimetre: f64) {
+    let length = round_length(strip.width / 4.0 / units_per_millimetre);
+    let (right, y) = (strip.x + strip.width - 12.0, strip.y + strip.height / 2.0 + 3.0);
+    let left = right - length * units_per_millimetre;
+    document.stroke(&[[left, y - 4.0], [left, y], [right, y], [right, y - 4.0]], INK, 1.2);
+    let style = Style::of(12.0).faint().end();
+    document.text([left - 6.0, y + 3.0], strip.width / 4.0, style, &format!("{length} mm"));
 }
 
 #[cfg(test)]

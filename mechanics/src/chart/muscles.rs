@@ -6,7 +6,7 @@ use super::drawing::{Document, Rectangle, Style};
 use super::facet::Finish;
 use super::raster::{ColouredSurface, Panel, PngError, Shot, draw_all};
 use super::svg::svg;
-use super::view::FaceDirection;
+use super::view::{FaceDirection, coordinates};
 
 /// Content of the picture.
 pub struct MusclesPicture<'a> {
@@ -94,7 +94,7 @@ impl MusclesPicture<'_> {
         }
         self.write_legend(&mut document, HEAD + panel_height + 30.0);
         let foot = [MARGIN, HEAD + panel_height + 42.0 + LINE * lines];
-        let frame = format!("Coordinates in frame {}.", self.frame);
+        let frame = format!("Points in mm, {}.", coordinates(self.frame));
         document.text(foot, room, Style::of(11.0).faint(), &frame);
         Ok(svg(&document, self.title))
     }

@@ -276,7 +276,6 @@ fn text(content: &mut Content, [x, y]: [f64; 2], run: Run, style: Style, words: 
     let turned = match run {
         Run::Level => 0.0,
         Run::Upwards => 90.0,
-        Run::Rising(degrees) => degrees,
     };
     let (sin, cos) = f64::to_radians(turned).sin_cos();
     let matrix = [cos, -sin, -sin, -cos, x - back * cos, y + back * sin].map(|value| value as f32);

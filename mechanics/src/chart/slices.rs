@@ -7,7 +7,7 @@ use super::facet::Finish;
 use super::legend::Scale;
 use super::raster::{ColouredSurface, Panel, PngError, Shot, draw_all};
 use super::svg::svg;
-use super::view::{Camera, Extent, FaceDirection};
+use super::view::{Camera, Extent, FaceDirection, coordinates};
 
 /// Content of the picture. Points in mm.
 pub struct SlicesPicture<'a> {
@@ -31,7 +31,7 @@ const HEAD: f64 = 100.0;
 const SHARPNESS: f64 = 2.0;
 /// Degrees around the head and above it, for each column.
 const COLUMNS: [(&str, f64, f64); 3] =
-    [("from beside", 90.0, 0.0), ("from the front", 0.0, 0.0), ("from above", 0.0, 90.0)];
+    [("from the side", 90.0, 0.0), ("from the front", 0.0, 0.0), ("from above", 0.0, 90.0)];
 /// Cells are drawn so much smaller than they are, so that their edges are seen.
 const SHRUNK: f64 = 0.9;
 /// The dihedral angle of a regular tetrahedron, in degrees: no smallest angle is larger.
@@ -93,8 +93,8 @@ impl SlicesPicture<'_> {
         write_legend(&mut document, 1, ["smallest", "angle, °"], &angle_scale, true);
         let [x, y, z] = self.middle.into();
         let foot = format!(
-            "Planes through ({x:.1}, {y:.1}, {z:.1}) mm, coordinates in frame {}. Cells are drawn smaller than they are.",
-            self.frame
+            "Planes through ({x:.1}, {y:.1}, {z:.1}) mm, {}. Cells are drawn smaller than they are.",
+            coordinates(self.frame)
         );
         document.text([MARGIN, height - 12.0], room, Style::of(11.0).faint(), &foot);
         Ok(svg(&document, self.title))

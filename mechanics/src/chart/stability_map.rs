@@ -1,8 +1,8 @@
 //! Map of failures: the outcome of each method as a parameter grows; one row for each method, one panel for each axis,
 //! one small cell for each value. A wrong answer without a warning is what the eye must find first.
 
-use super::colour::{INK, SERIES};
-use super::drawing::{Document, Rectangle, Style, wrapped};
+use super::colour::{FAINT_INK, INK, SERIES};
+use super::drawing::{Document, Rectangle, Style, estimated_width, wrapped};
 use super::svg::svg;
 
 /// Outcome of a method.
@@ -37,14 +37,18 @@ pub struct StabilityMap<'a> {
     pub axes: &'a [StabilityAxis],
 }
 
-const WIDTH: f64 = 1100.0;
+/// About that of a page, so that words stay as large as they are.
+const WIDTH: f64 = 900.0;
 const MARGIN: f64 = 28.0;
 const NAMES: f64 = 136.0;
 const GAP: f64 = 22.0;
-const CELL: [f64; 2] = [20.0, 20.0];
-const ROW: f64 = 39.0;
+const CELL: [f64; 2] = [26.0, 20.0];
+const ROW: f64 = 42.0;
 /// Above the first row of a panel: its title, its unit, its bound, its values.
-const PANEL_HEAD: f64 = 98.0;
+const PANEL_HEAD: f64 = 96.0;
+/// The size of values, units and notes, and from one line of values to the next.
+const SMALL: f64 = 12.0;
+const VALUES: f64 = 16.0;
 /// Room for the title of an axis with few values.
 const NARROWEST: f64 = 150.0;
 
@@ -163,13 +167,17 @@ impl StabilityAxis {
     fn draw(&self, document: &mut Document, [x, top]: [f64; 2], rows: &[usize]) {
         let room = self.width() + GAP - 4.0;
         document.text([x, top + 16.0], room, Style::of(14.0).bold(), &self.title);
-        document.text([x, top + 31.0], room, Style::of(11.0).faint(), &self.unit);
-        document.text([x, top + 45.0], room, Style::of(11.0).faint(), &self.bound);
-        let first = top + PANEL_HEAD;
-        for (place, words) in self.values.iter().enumerate() {
-            let at = [x + CELL[0] * (place as f64 + 0.42), first - 7.0];
-            document.rising_text(at, 52.0, Style::of(11.0), words);
+        let about: Vec<&str> = [&self.unit, &self.bound]
+            .into_iter()
+            .map(String::as_str)
+            .filter(|s| !s.is_empty())
+            .collect();
+        for (line, words) in about.iter().enumerate() {
+            let at = [x, top + 33.0 + 15.0 * line as f64];
+            document.text(at, room, Style::of(SMALL).faint(), words);
         }
+        let first = top + PANEL_HEAD;
+        self.draw_values(document, [x, first - 6.0]);
         let own = rows.iter().filter_map(|row| self.marks.get(*row)).enumerate();
         for (row, marks) in own.filter(|(_, marks)| marks.iter().any(Option::is_some)) {
             let y = first + ROW * row as f64;
@@ -186,10 +194,26 @@ impl StabilityAxis {
                 draw_mark(document, [x + CELL[0] * place as f64, y], Mark::Wrong);
             }
             let style = match marks.contains(&Some(Mark::Wrong)) {
-                true => Style::of(10.0).bold(),
-                false => Style::of(10.0).faint(),
+                true => Style::of(SMALL).bold(),
+                false => Style::of(SMALL).faint(),
             };
-            document.text([x, y + CELL[1] + 10.0], room, style, &self.note(marks));
+            document.text([x, y + CELL[1] + 12.0], room, style, &self.note(marks));
+        }
+    }
+
+    /// Over the cells: in two lines by turns where they have no room in one.
+    fn draw_values(&self, document: &mut Document, [x, foot]: [f64; 2]) {
+        let style = Style::of(SMALL).middle();
+        let fits = |words: &String| estimated_width(words, style) <= CELL[0] - 5.0;
+        let has_room = self.values.iter().all(fits);
+        for (place, words) in self.values.iter().enumerate() {
+            let middle = x + CELL[0] * (place as f64 + 0.5);
+            let is_upper = !has_room && place % 2 == 1;
+            let y = if is_upper { foot - VALUES } else { foot };
+            document.text([middle, y], 2.0 * CELL[0], style, words);
+            if is_upper {
+                document.stroke(&[[middle, y + 4.0], [middle, foot + 4.0]], FAINT_INK, 0.8);
+            }
         }
     }
 
@@ -218,9 +242,9 @@ fn draw_legend(document: &mut Document, top: f64) {
     let mut x = MARGIN;
     for (mark, words) in LEGEND {
         draw_mark(document, [x, top], mark);
-        let style = if mark == Mark::Wrong { Style::of(13.0).bold() } else { Style::of(13.0) };
+        let style = if mark == Mark::Wrong { Style::of(SMALL).bold() } else { Style::of(SMALL) };
         document.text([x + CELL[0] + 6.0, top + 15.0], 160.0, style, words);
-        x += 172.0;
+        x += CELL[0] + 20.0 + 0.9 * estimated_width(words, style);
     }
 }
 
@@ -341,6 +365,6 @@ mod tests {
         let map = StabilityMap { title: "", subtitle: "", rows: &[], axes: &axes };
         let bands: Vec<usize> = map.bands().iter().map(|band| band.axes.len()).collect();
         assert_eq!(bands.iter().sum::<usize>(), 8);
-        assert!(bands.iter().all(|axes| (1..=5).contains(axes)), "{bands:?}");
+        assert!(bands.iter().all(|axes| (1..=3).contains(axes)), "{bands:?}");
     }
 }

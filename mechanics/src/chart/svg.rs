@@ -32,13 +32,6 @@ fn written(item: &Item) -> String {
                 at[1],
                 text([0.0, 0.0], *style, words)
             ),
-            Run::Rising(degrees) => format!(
-                "<g transform=\"rotate({:.1} {:.1} {:.1})\">{}</g>\n",
-                -degrees,
-                at[0],
-                at[1],
-                text(*at, *style, words)
-            ),
         },
         Item::Image { place: Rectangle { x, y, width, height }, png } => format!(
             "<image x=\"{x:.1}\" y=\"{y:.1}\" width=\"{width:.1}\" height=\"{height:.1}\" href=\"data:image/png;base64,{}\"/>\n",

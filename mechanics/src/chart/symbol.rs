@@ -1,6 +1,6 @@
 //! Marks that differ in shape and colour, so that either alone tells them apart.
 
-use super::colour::{FAINT_INK, SERIES};
+use super::colour::{FAINT_INK, SERIES, SERIES_INK};
 use super::drawing::{Document, Paint};
 
 /// A shape and a colour.
@@ -42,6 +42,12 @@ impl Symbol {
     /// A circle in the colour of words, for what holds of every series.
     pub fn neutral() -> Symbol {
         Symbol { colour: FAINT_INK, shape: Shape::Circle }
+    }
+
+    /// The colour of its words.
+    pub fn ink(&self) -> &'static str {
+        let found = SERIES.iter().position(|colour| *colour == self.colour);
+        found.map_or(self.colour, |place| SERIES_INK[place])
     }
 
     /// Draws it around a point; `filled` from 0, an outline, to 1.

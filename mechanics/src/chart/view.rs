@@ -2,6 +2,14 @@
 
 use super::Vector;
 
+/// What a picture says of the coordinates that it is drawn in, for a frame as clients name it.
+pub(super) fn coordinates(frame: &str) -> String {
+    match frame {
+        "unspecified" => "coordinates as the mesh has them, which names no frame".to_owned(),
+        frame => format!("coordinates in frame {frame}"),
+    }
+}
+
 /// Which way a face looks and which way its head points; neither has to have length 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FaceDirection {

@@ -8,8 +8,17 @@ const MOST_PROBLEMS: usize = 50;
 
 /// Everything wrong with a case and a plan, at most 50 entries.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("{} problems, the first: {}", .0.len(), .0[0])]
+#[error("{}", in_words(.0))]
 pub struct SceneErrors(pub Vec<SceneError>);
+
+/// The only one, or how many there are and the first.
+fn in_words(problems: &[SceneError]) -> String {
+    match problems {
+        [] => "no problem".to_owned(),
+        [only] => only.to_string(),
+        [first, ..] => format!("{} problems, the first: {first}", problems.len()),
+    }
+}
 
 /// One thing wrong, and where: a JSON pointer that starts with `/case`, `/plan` or `/spec`.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

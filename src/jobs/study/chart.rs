@@ -9,9 +9,6 @@ use mechanics::chart::{
 };
 use mechanics::study::{LINEAR_TRUTH, TRUTH_WITHOUT_CONTACT, WITHIN_TRUTH_ERROR, pareto};
 
-/// The longest reason in a chart; the report has it in full.
-const REASON: usize = 110;
-
 /// Warnings on rows whose true error differs from the drawn one.
 pub const MARKED: [(&str, &str); 3] = [
     (
@@ -152,8 +149,7 @@ fn failed(rows: &[&RowDocument], series: usize, level: u32) -> Vec<LadderFailure
         } else {
             String::new()
         };
-        let words: String = in_words(detail).chars().take(REASON).collect();
-        LadderFailure { series, level, reason: format!("{kind}{of}: {words}") }
+        LadderFailure { series, level, reason: format!("{kind}{of}: {}", in_words(detail)) }
     };
     found.into_iter().map(failure).collect()
 }
@@ -193,9 +189,10 @@ fn subtitle(report: &ReportDocument, rows: &[&RowDocument], scene: Option<&str>)
     }
 }
 
-/// The only name, or how many there are.
+/// The only name, or how many there are. Plans without a name are called `plan 1` and so on.
 fn counted(names: &[&str], what: &str) -> String {
     match names {
+        [only] if only.starts_with(&format!("{what} ")) => (*only).to_owned(),
         [only] => format!("{what} {}", in_words(only)),
         names => format!("{} {what}s", names.len()),
     }
