@@ -235,7 +235,8 @@ impl<'a> Check<'a> {
             shares.into_iter().enumerate().filter(|(_, share)| *share > 0.0).collect();
         if filled.is_empty() {
             let detail = format!(
-                "no cell has a sample point inside muscle {name:?}, which {}; the mesh {}: are both in the same frame and unit?",
+                "no cell has a sample point inside muscle {name:?}, which {}; the mesh {}: are both in the same frame and unit, and is it thicker than the way between sample \
+                 points?",
                 reach(&surface.points),
                 reach(&self.case.volume.nodes)
             );

@@ -216,7 +216,9 @@ impl MovementReportDocument {
 
 impl From<&[ContactRegion]> for ContactMapDocument {
     fn from(regions: &[ContactRegion]) -> Self {
-        let sum = |of: fn(&ContactRegion) -> f64| regions.iter().map(of).sum::<f64>();
+        // The sum of nothing is -0.
+        let sum =
+            |of: fn(&ContactRegion) -> f64| regions.iter().map(of).fold(0.0, |sum, own| sum + own);
         ContactMapDocument {
             area_mm2: sum(|region| region.area),
             overlap_area_mm2: sum(|region| region.overlap_area),

@@ -290,3 +290,20 @@ fn a_method_without_fibres_takes_muscles_as_stiff_as_they_are_across_them() {
     let made = Scene::new(&case, &pushed(), &mtm).unwrap();
     assert!(told(&made, "fibres-missing").is_none() && !made.fibres.is_empty());
 }
+
+#[test]
+fn a_thin_body_that_samples_of_cells_miss_is_told_by_how_much_of_it_pulls() {
+    // .3 mm thick where sample points are .75 mm apart: a layer of them stands for more than it is.
+    let thin = boxed([2.0, 2.0, 5.5], [22.0, 10.0, 5.8]);
+    let along = || BodyFibres::Course(FibreDirection::Uniform(Vector::x()));
+    let scene = scene(&held(vec![muscle("thin", thin, along())]));
+    let warning = told(&scene, "muscle-few-cells").expect("told");
+    let share = scene.muscles[0].volume(&scene.mesh) / (20.0 * 8.0 * 0.3);
+    let numbers = BTreeMap::from_iter(warning.numbers.iter().copied());
+    assert!((numbers["pull_share"] - share).abs() < 1e-9, "{numbers:?} {share}");
+    assert!((share - 1.0).abs() > 0.1, "{share}");
+
+    let thick = boxed([2.0, 2.0, 3.0], [22.0, 10.0, 9.0]);
+    let scene = self::scene(&held(vec![muscle("thick", thick, along())]));
+    assert!(told(&scene, "muscle-few-cells").is_none());
+}
