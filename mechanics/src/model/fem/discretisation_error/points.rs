@@ -35,7 +35,7 @@ pub(super) struct EnrichedCell {
     tensor: ElasticTensor,
     points: Vec<Gradients>,
     /// With mean dilatation.
-    of_volume: Option<VolumeChange>,
+    of_volume: Option<Box<VolumeChange>>,
 }
 
 /// What the change of volume of a cell resists.
@@ -84,7 +84,7 @@ impl EnrichedCell {
                 let (of_shape, of_volume) = tensor.split_volume();
                 let reference = reference_cell(shape).points.iter();
                 let positions: Vec<Vector> = reference.map(|p| p.position(corners)).collect();
-                (of_shape, Some(VolumeChange::new(of_volume, &points, &positions)))
+                (of_shape, Some(Box::new(VolumeChange::new(of_volume, &points, &positions))))
             }
         };
         Ok(EnrichedCell { shape, tensor, points, of_volume })
@@ -92,14 +92,16 @@ impl EnrichedCell {
 
     /// The points and the mean.
     fn places(&self) -> impl Iterator<Item = (&Gradients, &ElasticTensor)> {
-        let mean = self.of_volume.iter().map(|all| (&all.mean, &all.tensor));
+        let mean = self.of_volume.as_deref().into_iter().map(|all| (&all.mean, &all.tensor));
         self.points.iter().map(|point| (point, &self.tensor)).chain(mean)
     }
 
     fn moments(&self) -> impl Iterator<Item = (&Gradients, &ElasticTensor)> {
-        self.of_volume.iter().flat_map(|VolumeChange { tensor, moments, .. }| {
-            moments.iter().map(move |moment| (moment, tensor))
-        })
+        self.of_volume.as_deref().into_iter().flat_map(
+            |VolumeChange { tensor, moments, .. }| {
+                moments.iter().map(move |moment| (moment, tensor))
+            },
+        )
     }
 
     /// The equations of the inner modes where the corners are displaced. Modes have no mean.
@@ -114,7 +116,7 @@ impl EnrichedCell {
         for (a, b) in equations.pairs() {
             let of_points = products(&self.points, |point| [point.modes[a], point.modes[b]]);
             let mut block = self.tensor.block(&of_points);
-            if let Some(VolumeChange { tensor, moments, .. }) = &self.of_volume {
+            if let Some(VolumeChange { tensor, moments, .. }) = self.of_volume.as_deref() {
                 let of_moments = products(moments, |moment| [moment.modes[a], moment.modes[b]]);
                 block += tensor.block(&of_moments);
             }
@@ -178,7 +180,7 @@ impl EnrichedCell {
     /// of them do a third of what they do together; without it they overshoot the more the larger lambda is. It counts with
     /// the shear modulus in place of lambda.
     fn share_of_mean(&self) -> f64 {
-        match (self.shape, &self.of_volume) {
+        match (self.shape, self.of_volume.as_deref()) {
             (CellShape::Wedge6, Some(all)) => (self.tensor.mu / all.tensor.lambda).min(1.0),
             (CellShape::Tet4 | CellShape::Hex8 | CellShape::Wedge6, _) => 1.0,
         }
@@ -187,7 +189,7 @@ impl EnrichedCell {
     fn block(&self, edge: usize, other: usize, share_of_mean: f64) -> Matrix3<f64> {
         let of_edges = |place: &Gradients| [place.edges[edge], place.edges[other]];
         let block = self.tensor.block(&products(&self.points, of_edges));
-        let of_mean = self.of_volume.as_ref().map(|VolumeChange { tensor, mean, .. }| {
+        let of_mean = self.of_volume.as_deref().map(|VolumeChange { tensor, mean, .. }| {
             tensor.block(&products(std::slice::from_ref(mean), of_edges)) * share_of_mean
         });
         block + of_mean.unwrap_or_default()
