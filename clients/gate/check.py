@@ -103,6 +103,8 @@ def documented(folder: pathlib.Path) -> None:
     expect("the documented action on the first day", action(folder, **inputs)[0], 0)
     expect("and on the second", action(folder, **inputs)[0], 0)
     variables = {**ours["validation"]["variables"], "BASELINE_TAG": "another trunk"}
+    # The submodule.
+    (folder / variables["FACIES_SOURCE"]).symlink_to(CLIENTS.parent)
     expect("the documented job of GitLab on the first day", gitlab(folder, **variables), 0)
 
 

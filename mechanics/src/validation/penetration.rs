@@ -186,7 +186,8 @@ mod tests {
         assert_eq!(reach(&other.points, Side::Inside, &search), 0.0);
         let found = overlap(&one, &other).expect("they overlap");
         assert!((3.0..=4.0 + 1e-9).contains(&found.depth), "{found:?}");
-        assert!((found.volume - 400.0).abs() < 12.0, "{found:?}");
+        // Samples are half a mm apart, on sides of 10 mm.
+        assert!((found.volume - 400.0).abs() < 24.0, "{found:?}");
     }
 
     #[test]
