@@ -54,7 +54,7 @@ enum Command {
         #[command(flatten)]
         settings: Settings,
     },
-    /// Print the audit log and check its integrity; exits with 3 if it was changed
+    /// Print the audit log and check its integrity; exits with 1 if it was changed
     Audit {
         /// Rows with a larger number
         #[arg(long, default_value_t = 0)]
