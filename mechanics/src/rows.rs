@@ -77,6 +77,18 @@ impl<T> Rows<T> {
         &mut self.entries[range]
     }
 
+    /// All rows, for threads to change.
+    pub fn rows_mut(&mut self) -> Vec<&mut [T]> {
+        let mut rest = self.entries.as_mut_slice();
+        let mut next = |ends: &[u32]| {
+            let (row, others) =
+                std::mem::take(&mut rest).split_at_mut((ends[1] - ends[0]) as usize);
+            rest = others;
+            row
+        };
+        self.starts.windows(2).map(&mut next).collect()
+    }
+
     pub fn iter(&self) -> impl ExactSizeIterator<Item = &[T]> {
         (0..self.len()).map(|row| self.row(row))
     }

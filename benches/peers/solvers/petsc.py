@@ -1,9 +1,18 @@
 """PETSc conjugate gradients: smoothed aggregation (gamg) with rigid movements, or hypre's BoomerAMG (hypre)."""
 
+import glob
+import os
 import sys
 
 import numpy as np
-import petsc4py
+
+# Debian keeps the module with the library; the link that should lead there, /usr/lib/petsc, is not on every machine.
+LIBRARIES = sorted(glob.glob("/usr/lib/petscdir/petsc*/*-real"))
+if LIBRARIES and not os.path.exists("/usr/lib/petsc"):
+    os.environ.setdefault("PETSC_DIR", LIBRARIES[-1])
+    sys.path.append(os.environ["PETSC_DIR"] + "/lib/python3/dist-packages")
+
+import petsc4py  # noqa: E402  (after its place is known)
 
 VARIANT = "gamg"
 OPTIONS = {

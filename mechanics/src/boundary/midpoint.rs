@@ -1,6 +1,8 @@
 //! Boundary condition of the middle of an edge between two constrained nodes.
 
 use super::constraint::Constraint;
+use crate::mesh::VolumeMesh;
+use crate::mesh::volume::BoundaryFace;
 
 /// The smallest cosine between directions of the two ends that count as one direction, bent by the surface.
 const SAME_DIRECTION: f64 = 0.7;
@@ -30,6 +32,38 @@ pub fn between(node: u32, first: &Constraint, second: &Constraint) -> Option<Con
         constraint.add(&sum.normalize(), (fewer.values()[held] + other_value) / sum.norm());
     }
     (constraint.count() > 0).then_some(constraint)
+}
+
+/// The edges whose middles are held as their ends are: those of faces of the boundary all of whose nodes are constrained, and those
+/// of cells all of whose nodes are held altogether, as those of bone that is part of the mesh. Each as its two nodes with the
+/// places of their constraints; an edge may come several times.
+pub fn held_edges(
+    mesh: &VolumeMesh,
+    boundary: &[BoundaryFace],
+    constraints: &[Constraint],
+) -> Vec<[(u32, usize); 2]> {
+    let mut constraint_of = vec![None; mesh.nodes.len()];
+    for (place, constraint) in constraints.iter().enumerate() {
+        // Constraints of nodes in the middle of edges are their own.
+        if let Some(own) = constraint_of.get_mut(constraint.node as usize) {
+            *own = Some(place);
+        }
+    }
+    let of_node = |node: u32| constraint_of[node as usize].map(|place| (node, place));
+    let mut edges = Vec::new();
+    for nodes in boundary.iter().map(BoundaryFace::nodes) {
+        let held: Option<Vec<(u32, usize)>> = nodes.iter().map(|&node| of_node(node)).collect();
+        let Some(held) = held else { continue };
+        edges.extend((0..held.len()).map(|side| [held[side], held[(side + 1) % held.len()]]));
+    }
+    let wholly = |node: u32| of_node(node).filter(|(_, place)| constraints[*place].count() == 3);
+    for (shape, nodes) in mesh.cells.iter() {
+        if nodes.iter().all(|&node| wholly(node).is_some()) {
+            let ends = shape.edges().iter().map(|edge| edge.map(|corner| wholly(nodes[corner])));
+            edges.extend(ends.filter_map(|[a, b]| Some([a?, b?])));
+        }
+    }
+    edges
 }
 
 #[cfg(test)]

@@ -8,6 +8,7 @@ use nalgebra::{Matrix6, Vector6};
 use super::constraint::Constraint;
 use super::freedom::{Freedom, free_movements};
 use crate::mesh::{Vector, VolumeMesh};
+use crate::rows::Rows;
 
 /// A part of the mesh that some rigid movement can carry away.
 #[derive(Clone, Debug, PartialEq)]
@@ -29,9 +30,8 @@ pub fn loose_parts(
     for constraint in constraints {
         for held in 0..constraint.count() {
             let axis = constraint.axes().column(held).into_owned();
-            for place in parts.places_of(constraint.node) {
-                parts.bodies[parts.body_of[place] as usize]
-                    .constrain(&mesh.nodes[constraint.node as usize], &axis);
+            for &body in parts.of_node.row(constraint.node as usize) {
+                parts.bodies[body as usize].constrain(&mesh.nodes[constraint.node as usize], &axis);
             }
         }
     }
@@ -80,47 +80,34 @@ impl Body {
 
 struct ConnectedBodies {
     bodies: Vec<Body>,
-    /// Compressed lists: the bodies of node n are `body_of[start[n]..start[n + 1]]`.
-    start: Vec<usize>,
-    body_of: Vec<u32>,
+    /// Those of each node, ascending.
+    of_node: Rows<u32>,
 }
 
 impl ConnectedBodies {
     fn new(mesh: &VolumeMesh, part_of_cell: &[u32]) -> Self {
-        // The parts of the cells around each node, several times each.
-        let mut first = vec![0_usize; mesh.nodes.len() + 1];
-        mesh.cells
-            .iter()
-            .for_each(|(_, nodes)| nodes.iter().for_each(|&n| first[n as usize + 1] += 1));
-        for node in 0..mesh.nodes.len() {
-            first[node + 1] += first[node];
-        }
-        let mut next = first.clone();
-        let mut around = vec![0_u32; first[mesh.nodes.len()]];
+        // Each node with each part around it; the same part mostly comes again and again.
+        let mut last = vec![u32::MAX; mesh.nodes.len()];
+        let mut pairs: Vec<(u32, u32)> = Vec::with_capacity(mesh.nodes.len());
         for ((_, nodes), &part) in mesh.cells.iter().zip(part_of_cell) {
             for &node in nodes {
-                around[next[node as usize]] = part;
-                next[node as usize] += 1;
+                if std::mem::replace(&mut last[node as usize], part) != part {
+                    pairs.push((node, part));
+                }
             }
         }
+        pairs.sort_unstable();
+        pairs.dedup();
         let count = part_of_cell.iter().max().map_or(0, |last| *last as usize + 1);
         let mut nodes_of: Vec<Vec<u32>> = vec![Vec::new(); count];
-        let mut parts = ConnectedBodies { bodies: Vec::new(), start: vec![0], body_of: Vec::new() };
-        for node in 0..mesh.nodes.len() {
-            let own = &mut around[first[node]..first[node + 1]];
-            own.sort_unstable();
-            for same in own.chunk_by(|a, b| a == b) {
-                nodes_of[same[0] as usize].push(node as u32);
-                parts.body_of.push(same[0]);
-            }
-            parts.start.push(parts.body_of.len());
+        let mut lengths = vec![0; mesh.nodes.len()];
+        for &(node, part) in &pairs {
+            nodes_of[part as usize].push(node);
+            lengths[node as usize] += 1;
         }
-        parts.bodies = nodes_of.into_iter().map(|nodes| Body::new(mesh, nodes)).collect();
-        parts
-    }
-
-    fn places_of(&self, node: u32) -> std::ops::Range<usize> {
-        self.start[node as usize]..self.start[node as usize + 1]
+        let of_node = Rows::of_lengths(&lengths, pairs.into_iter().map(|(_, part)| part).collect());
+        let bodies = nodes_of.into_iter().map(|nodes| Body::new(mesh, nodes)).collect();
+        ConnectedBodies { bodies, of_node }
     }
 
     /// Passes on from held bodies, through the nodes they share, until nothing changes.
@@ -131,8 +118,8 @@ impl ConnectedBodies {
         let mut passed: Vec<bool> = self.bodies.iter().map(held).collect();
         while let Some(holder) = waiting.pop() {
             for node in self.bodies[holder].nodes.clone() {
-                for place in self.places_of(node) {
-                    let other = self.body_of[place] as usize;
+                for &other in self.of_node.row(node as usize) {
+                    let other = other as usize;
                     if passed[other] {
                         continue;
                     }

@@ -28,23 +28,23 @@ pub fn tearing(
     conditions: &Conditions,
     name: impl Fn(NodeClass) -> String,
 ) -> Option<Warning> {
-    let mut torn: Vec<(u32, u32)> = Vec::new();
-    let (mut worst, mut worst_edge) = (0.0, (0, 0));
-    for HeldEdge { nodes: [a, b], along, parts, .. } in held_edges(mesh, conditions) {
+    let mut torn: Vec<[u32; 2]> = Vec::new();
+    let (mut worst, mut worst_edge) = (0.0, [0, 0]);
+    each_held_edge(mesh, conditions, |HeldEdge { nodes, along, parts, .. }| {
         let ratio = parts.norm() / along.norm();
         if ratio > TEARING {
-            torn.push((a, b));
+            torn.push(nodes);
         }
         if ratio > worst {
-            (worst, worst_edge) = (ratio, (a, b));
+            (worst, worst_edge) = (ratio, nodes);
         }
-    }
+    });
     torn.sort_unstable();
     torn.dedup();
     if torn.is_empty() {
         return None;
     }
-    let (a, b) = worst_edge;
+    let [a, b] = worst_edge;
     let turned = turned_edges(mesh, conditions);
     let through =
         turned.as_ref().map_or_else(String::new, |turned| format!("; {}", turned.told(name)));
@@ -67,11 +67,11 @@ pub fn tearing(
 pub fn turned_edges(mesh: &VolumeMesh, conditions: &Conditions) -> Option<TurnedEdges> {
     let (mut edges, mut cells) = (BTreeSet::new(), BTreeSet::new());
     let (mut between, mut farthest, mut at) = (BTreeSet::new(), f64::INFINITY, Vector::zeros());
-    for HeldEdge { cell, nodes, along, parts } in held_edges(mesh, conditions) {
+    each_held_edge(mesh, conditions, |HeldEdge { cell, nodes, along, parts }| {
         let [a, b] = nodes.map(|node| conditions.classes[node as usize]);
         let left = 1.0 + parts.dot(&along) / along.norm_squared();
         if a == b || left > 0.0 {
-            continue;
+            return;
         }
         edges.insert(nodes);
         cells.insert(cell);
@@ -79,7 +79,7 @@ pub fn turned_edges(mesh: &VolumeMesh, conditions: &Conditions) -> Option<Turned
         if left < farthest {
             (farthest, at) = (left, mesh.nodes[nodes[0] as usize] + 0.5 * along);
         }
-    }
+    });
     let (edges, cells) = (edges.len(), cells.len());
     (edges > 0).then_some(TurnedEdges { edges, cells, at, between })
 }
@@ -109,22 +109,22 @@ struct HeldEdge {
     parts: Vector,
 }
 
-fn held_edges<'a>(
-    mesh: &'a VolumeMesh,
-    conditions: &Conditions,
-) -> impl Iterator<Item = HeldEdge> + use<'a> {
+fn each_held_edge(mesh: &VolumeMesh, conditions: &Conditions, mut seen: impl FnMut(HeldEdge)) {
     let mut displacement: Vec<Option<Vector>> = vec![None; mesh.nodes.len()];
     for constraint in conditions.constraints.iter().filter(|constraint| constraint.count() == 3) {
         displacement[constraint.node as usize] = Some(constraint.axes() * constraint.values());
     }
-    mesh.cells.iter().enumerate().flat_map(move |(cell, (shape, nodes))| {
-        let edges = shape.edges().iter().map(|edge| edge.map(|local| nodes[local]));
-        let held = edges.filter_map(|[a, b]| {
+    for (cell, (shape, nodes)) in mesh.cells.iter().enumerate() {
+        // Most cells have no two held nodes.
+        if nodes.iter().filter(|node| displacement[**node as usize].is_some()).nth(1).is_none() {
+            continue;
+        }
+        for [a, b] in shape.edges().iter().map(|edge| edge.map(|local| nodes[local])) {
             let [a, b] = [a.min(b), a.max(b)];
-            let parts = displacement[b as usize]? - displacement[a as usize]?;
+            let ends = [a, b].map(|node| displacement[node as usize]);
+            let [Some(of_a), Some(of_b)] = ends else { continue };
             let along = mesh.nodes[b as usize] - mesh.nodes[a as usize];
-            Some(HeldEdge { cell, nodes: [a, b], along, parts })
-        });
-        held.collect::<Vec<_>>()
-    })
+            seen(HeldEdge { cell, nodes: [a, b], along, parts: of_b - of_a });
+        }
+    }
 }

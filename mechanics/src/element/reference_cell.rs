@@ -30,8 +30,9 @@ pub struct PhysicalPoint {
 }
 
 impl ReferencePoint {
-    /// The point in a cell with these corners; `None` where the cell is inverted or flat there.
-    pub fn at(&self, corners: &[Vector]) -> Option<PhysicalPoint> {
+    /// What takes reference gradients to those in a cell with these corners, J^-T in 1/mm, and the volume in mm³ that the point stands
+    /// for; `None` where the cell is inverted or flat there.
+    pub fn to_cell(&self, corners: &[Vector]) -> Option<(Matrix3<f64>, f64)> {
         let jacobian = corners
             .iter()
             .zip(&self.gradients)
@@ -42,9 +43,14 @@ impl ReferencePoint {
         if determinant.is_nan() || determinant <= 0.0 {
             return None;
         }
-        let inverse_transpose = jacobian.try_inverse()?.transpose();
-        let gradients = self.gradients.map(|gradient| inverse_transpose * gradient);
-        Some(PhysicalPoint { gradients, volume: self.weight * determinant })
+        Some((jacobian.try_inverse()?.transpose(), self.weight * determinant))
+    }
+
+    /// The point in a cell with these corners; `None` where the cell is inverted or flat there.
+    pub fn at(&self, corners: &[Vector]) -> Option<PhysicalPoint> {
+        let (to_cell, volume) = self.to_cell(corners)?;
+        let gradients = self.gradients.map(|gradient| to_cell * gradient);
+        Some(PhysicalPoint { gradients, volume })
     }
 
     /// Where the point is in a cell with these corners.

@@ -42,7 +42,7 @@ pub struct FibreModuli {
 }
 
 /// block += lambda g_j g_k^T + mu g_k g_j^T + mu (g_j . g_k) I, with moduli times the volume of a point.
-#[inline]
+#[inline(always)]
 pub fn add_isotropic_pair(block: &mut Block, [gj, gk]: [&Vector; 2], lambda: f64, mu: f64) {
     let diagonal = mu * gj.dot(gk);
     for (r, row) in block.iter_mut().enumerate() {

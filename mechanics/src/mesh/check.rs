@@ -5,7 +5,6 @@ use std::collections::BTreeMap;
 
 use super::connectivity::{Faces, parts_by_nodes};
 use super::disjoint_sets::DisjointSets;
-use super::jacobian::signed_volume;
 use super::surface_edges::count_edges;
 use super::{CellShape, TriangleSurface, Vector, VolumeMesh, Warning};
 
@@ -66,7 +65,7 @@ impl MeshReport {
             cells: cells_by_shape(mesh),
             triangles: surface.triangles.len() as u64,
             bounding_box: bounding_box(&mesh.nodes),
-            volume_mm3: Some(volume(mesh)),
+            volume_mm3: Some((0..mesh.cells.len()).map(|cell| mesh.cell_volume(cell)).sum()),
             area_mm2: surface.area(),
             components: parts.len() as u64,
             open_edges: 0,
@@ -188,17 +187,6 @@ fn bounding_box(nodes: &[Vector]) -> Option<[Vector; 2]> {
     let widened =
         nodes.iter().fold([first, first], |[low, high], node| [low.inf(node), high.sup(node)]);
     Some(widened)
-}
-
-fn volume(mesh: &VolumeMesh) -> f64 {
-    let mut sum = 0.0;
-    let mut corners = Vec::new();
-    for cell in 0..mesh.cells.len() {
-        corners.clear();
-        corners.extend(mesh.corners(cell));
-        sum += signed_volume(mesh.cells.shape(cell), &corners);
-    }
-    sum
 }
 
 fn sizes(sets: &BTreeMap<String, Vec<u32>>) -> BTreeMap<String, u64> {

@@ -3,6 +3,7 @@
 //! Points at exactly the same place count as one, so that a triangle soup (STL) has neighbours too.
 
 use super::{TriangleSurface, Vector};
+use crate::rows::Sorting;
 use std::collections::HashMap;
 
 /// Normals of faces, edges and vertices, and which edges and vertices lie on an open border.
@@ -39,7 +40,7 @@ impl SurfaceTopology {
             .iter()
             .map(|corners| corners.map(|corner| vertex_of[corner as usize]))
             .collect();
-        let (edges_of, edge_ends, edge_uses) = number_edges(&vertices_of);
+        let (edges_of, edge_ends, edge_uses) = number_edges(&vertices_of, vertex_count);
         let mut topology = SurfaceTopology {
             faces: vec![Vector::zeros(); vertices_of.len()],
             edges: vec![SurfaceFeature::BARE; edge_ends.len()],
@@ -116,26 +117,38 @@ fn weld(points: &[Vector]) -> (Vec<u32>, usize) {
     (numbers, places.len())
 }
 
-/// For each triangle its three edges, for each edge its two ends, and how many triangles use it.
-fn number_edges(vertices_of: &[[u32; 3]]) -> (Vec<[u32; 3]>, Vec<[u32; 2]>, Vec<u32>) {
-    let mut numbers: HashMap<[u32; 2], u32> = HashMap::with_capacity(vertices_of.len() * 2);
-    let mut ends = Vec::new();
-    let mut uses = Vec::new();
-    let mut edges_of = Vec::with_capacity(vertices_of.len());
-    for corners in vertices_of {
-        let [a, b, c] = *corners;
-        // A triangle folded onto one edge would close a border that is open.
-        let use_count = u32::from(a != b && b != c && c != a);
-        edges_of.push([[a, b], [b, c], [c, a]].map(|[from, to]| {
-            let key = [from.min(to), from.max(to)];
-            let edge = *numbers.entry(key).or_insert_with(|| {
-                ends.push(key);
-                uses.push(0);
-                ends.len() as u32 - 1
-            });
-            uses[edge as usize] += use_count;
-            edge
-        }));
+/// For each triangle its three edges, for each edge its two ends, and how many triangles use it. Of `vertices` places.
+fn number_edges(
+    vertices_of: &[[u32; 3]],
+    vertices: usize,
+) -> (Vec<[u32; 3]>, Vec<[u32; 2]>, Vec<u32>) {
+    let sides = |[a, b, c]: [u32; 3]| [[a, b], [b, c], [c, a]];
+    let all = || vertices_of.iter().copied().flat_map(sides);
+    // The sides of triangles by their lower end, then by the other, and which side of which triangle each is.
+    let mut lengths = vec![0; vertices];
+    all().for_each(|[from, to]| lengths[from.min(to) as usize] += 1);
+    let mut sorting = Sorting::new(&lengths, (0, 0));
+    for (side, [from, to]) in (0_u32..).zip(all()) {
+        sorting.put(from.min(to) as usize, (from.max(to), side));
+    }
+    let mut by_lower = sorting.finish();
+    let (mut edges_of, mut ends, mut uses) =
+        (vec![[0; 3]; vertices_of.len()], Vec::new(), Vec::new());
+    for lower in 0..vertices {
+        let own = by_lower.row_mut(lower);
+        own.sort_unstable();
+        for same in own.chunk_by(|one, other| one.0 == other.0) {
+            let mut used = 0;
+            for &(_, side) in same {
+                let (triangle, local) = (side as usize / 3, side as usize % 3);
+                edges_of[triangle][local] = ends.len() as u32;
+                // A triangle folded onto one edge would close a border that is open.
+                let [a, b, c] = vertices_of[triangle];
+                used += u32::from(a != b && b != c && c != a);
+            }
+            ends.push([lower as u32, same[0].0]);
+            uses.push(used);
+        }
     }
     (edges_of, ends, uses)
 }

@@ -8,7 +8,7 @@
 //! the mesh leaves out of it (`discretisation_error::indicators`) are halved three times. Tissue is not made anew: the finer
 //! scene asks the question of the first one (`refined_scene`), and its answer is given at the nodes of the case.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::answer::Answer;
 use super::muscle_field::MuscleField;
@@ -46,8 +46,8 @@ fn linearisation_error_warning(
     let mean = scene.skin.mean_length(&moving, &prediction.nonlinearity.as_ref().ok()?.left_out);
     let accepted = wanted.skin_mm;
     let detail = format!(
-        "the mesh is refined to {accepted:.3} mm, but the linearisation error is {mean:.3} mm in the mean over the skin that moves: a finer \
-         mesh does not reduce it"
+        "{accepted:.3} mm are accepted, and the linearisation error alone is {mean:.3} mm in the mean over the skin that moves: a finer mesh \
+         does not reduce it"
     );
     let warning = Warning::new("tolerance-not-met", detail).with("accepted_mm", accepted);
     (mean > accepted).then(|| warning.with("expected_mm", mean))
@@ -68,6 +68,34 @@ fn muscles_stay(scene: &Scene) -> Option<Warning> {
         listed(&counting)
     );
     (!counting.is_empty()).then(|| Warning::new("muscles-not-refined", detail))
+}
+
+/// The warning where conditions or forces act at points, which a refined mesh feels less and less, or without end.
+fn points_stay(scene: &Scene) -> Result<Option<Warning>, NotRefined> {
+    let mut held: BTreeSet<u32> = BTreeSet::new();
+    for stated in &scene.stated {
+        let without = stated.nodes_without_extent(&scene.mesh, &scene.boundary);
+        // Some at the rim of a surface are usual.
+        if 2 * without.len() > stated.nodes.len() {
+            held.extend(without);
+        }
+    }
+    let forces = scene.nodes_with_forces()?;
+    let Some(&first) = held.iter().chain(&forces).next() else { return Ok(None) };
+    let at = scene.mesh.nodes[first as usize];
+    let detail = format!(
+        "{} nodes are held that fill no face of the boundary and no cell together, and forces act at {} nodes, the first at ({:.1}, {:.1}, \
+         {:.1}) mm: a refined mesh keeps them as points, which hold less and yield more the finer it is; neither the answer nor its estimate \
+         has a limit there. State a surface, cells or a traction, or do not refine",
+        held.len(),
+        forces.len(),
+        at.x,
+        at.y,
+        at.z
+    );
+    let warning = Warning::new("points-refined", detail);
+    let warning = warning.with("held_nodes", held.len() as f64);
+    Ok(Some(warning.with("forces", forces.len() as f64)))
 }
 
 /// A mesh that was solved on.
@@ -297,7 +325,10 @@ pub fn predict_adaptively(
     });
     prediction.warnings.extend((stop != Stop::Met).then(|| not_met(&limits, &levels, stop)));
     prediction.warnings.extend(linearisation_error_warning(scene, &prediction, wanted));
-    prediction.warnings.extend(finest.is_some().then(|| muscles_stay(scene)).flatten());
+    if finest.is_some() {
+        prediction.warnings.extend(muscles_stay(scene));
+        prediction.warnings.extend(points_stay(scene)?);
+    }
     Ok(AdaptivePrediction { prediction, finest, levels, stop })
 }
 

@@ -7,7 +7,7 @@ use super::far_segment::far_segments;
 use super::fibres::Tissues;
 use super::hounsfield::TissueOfCells;
 use super::muscle_field::{MuscleField, MuscleTissue};
-use super::pressure_kind::pressure_kinds;
+use super::pressure_kind::{part_held_cells, pressure_kinds};
 use super::problem::SceneErrors;
 use super::scene::Scene;
 use super::skin_check::suspect_skin;
@@ -62,7 +62,7 @@ impl Scene {
         // 1. Tissue.
         let (regions, region_of_cell) = check.regions();
         let of_cells = (&regions[..], &region_of_cell[..]);
-        let InCells { tissue, fibres, muscles, muscle_tissue } =
+        let InCells { mut tissue, fibres, muscles, muscle_tissue } =
             check.in_cells(of_cells, settings, plan);
         let element = check.element(settings);
 
@@ -71,6 +71,7 @@ impl Scene {
         let (segments, held) = check.held_nodes(plan, settings);
         let conditions = check.conditions(&held);
         let is_sound = check.problems.count() == sound;
+        part_held_cells(&mut tissue.pressure_of_cell, &case.volume, &conditions.constraints);
         check.plan_size(plan, &segments, &held);
         let far = far_segments(case, &held);
 

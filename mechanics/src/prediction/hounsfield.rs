@@ -13,7 +13,6 @@ use super::imaged_tissue::{ImagedTissue, TissueShare};
 use crate::image::{SampledCells, SamplingRule, Windows, sample_cells};
 use crate::material::LinearElastic;
 use crate::material::mixture::{MixingRule, mixture};
-use crate::mesh::jacobian::signed_volume;
 use crate::mesh::{Vector, VolumeMesh, Warning};
 use std::collections::BTreeMap;
 
@@ -263,8 +262,7 @@ fn describe(
     let mut found = vec![TissueShare::default(); hounsfield.tissues.len() + 1];
     let mut whole = 0.0;
     for (cell, parts) in parts.iter().enumerate() {
-        let corners: Vec<Vector> = mesh.corners(cell).collect();
-        let volume = signed_volume(mesh.cells.shape(cell), &corners).abs();
+        let volume = mesh.cell_volume(cell).abs();
         let steps: f64 = parts.iter().map(|&part| f64::from(part)).sum();
         whole += volume;
         for (tissue, &part) in found.iter_mut().zip(parts).filter(|(_, part)| **part > 0) {

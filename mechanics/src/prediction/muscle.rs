@@ -15,7 +15,7 @@ use super::error_code::SceneErrorCode;
 use super::fibres::{Course, unit};
 use super::hounsfield::TissueOfCells;
 use super::method::Method;
-use super::muscle_field::{MuscleBody, MuscleField, MuscleTissue, cell_volume, elsewhere};
+use super::muscle_field::{MuscleBody, MuscleField, MuscleTissue, elsewhere};
 use super::muscle_lines::{Lines, PullShare};
 use super::scene::Scene;
 use crate::mesh::ignored::listed;
@@ -263,7 +263,7 @@ impl<'a> Check<'a> {
         let body = field.body.filter(|_| !field.cells.is_empty())?;
         let mesh = &self.case.volume;
         let cells = field.cells.iter().map(|own| own.cell as usize);
-        let of_cells: f64 = cells.map(|cell| cell_volume(mesh, cell)).sum();
+        let of_cells: f64 = cells.map(|cell| mesh.cell_volume(cell)).sum();
         let samples = (field.cells.len() * self.case.muscle_mixing.samples) as f64;
         let apart = (of_cells / samples).cbrt();
         let share = field.volume(mesh) / body.enclosed;

@@ -3,8 +3,7 @@
 
 use super::case::{Muscle, MuscleCourse};
 use crate::material::mixture::MixingRule;
-use crate::mesh::jacobian::signed_volume;
-use crate::mesh::{Vector, VolumeMesh, Warning};
+use crate::mesh::{VolumeMesh, Warning};
 use crate::model::fem::inner_stress::{CellStress, InnerStress};
 
 /// A muscle, whether it pulls or not.
@@ -83,11 +82,5 @@ pub(super) fn elsewhere(share: f64, of: &str, question: &str) -> Option<Warning>
 
 /// The volume of a muscle in a cell, in mm³.
 pub(super) fn muscle_volume(mesh: &VolumeMesh, own: &CellStress) -> f64 {
-    own.stress.trace() * cell_volume(mesh, own.cell as usize)
-}
-
-/// Of a cell, in mm³.
-pub(super) fn cell_volume(mesh: &VolumeMesh, cell: usize) -> f64 {
-    let corners: Vec<Vector> = mesh.corners(cell).collect();
-    signed_volume(mesh.cells.shape(cell), &corners)
+    own.stress.trace() * mesh.cell_volume(own.cell as usize)
 }

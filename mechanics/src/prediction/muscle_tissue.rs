@@ -15,7 +15,7 @@ use super::error_code::SceneErrorCode;
 use super::fibres::fibres_ignored;
 use super::hounsfield::{MOST_MATERIALS, TissueOfCells};
 use super::method::Method;
-use super::muscle_field::{MuscleField, MuscleTissue, cell_volume};
+use super::muscle_field::{MuscleField, MuscleTissue};
 use crate::material::LinearElastic;
 use crate::material::mixture::MixingRule;
 use crate::mesh::{Vector, Warning};
@@ -58,7 +58,7 @@ impl Check<'_> {
         let (mut told, mut volumes) = (Counts::default(), Vec::new());
         for (cell, parts) in parts.iter().enumerate() {
             let recipe = (mixer.tissue.material_of_cell[cell], in_steps(parts, steps));
-            let volume = cell_volume(&self.case.volume, cell);
+            let volume = self.case.volume.cell_volume(cell);
             if recipe.1.is_empty() {
                 volumes.push((volume, 1.0));
                 continue;

@@ -31,6 +31,9 @@ use crate::model::problem::InvertedCell;
 /// Normals of the two ends of an edge with a smaller cosine are those of two walls.
 const SAME_WALL: f64 = 0.7;
 
+/// Forces below this share of the largest are rounding.
+const ROUNDING: f64 = 1e-9;
+
 /// Why a scene has none on a finer mesh.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum NotRefined {
@@ -95,6 +98,17 @@ impl Scene {
         let consistent = consistent(&scene)?;
         scene.forces.iter_mut().zip(consistent).for_each(|(force, own)| *force += own);
         Ok(scene)
+    }
+}
+
+impl Scene {
+    /// Nodes at which a force acts that no load between nodes stands for.
+    pub(super) fn nodes_with_forces(&self) -> Result<Vec<u32>, InvertedCell> {
+        let between = consistent(self)?;
+        let largest = self.forces.iter().map(Vector::norm).fold(0.0, f64::max);
+        let acts = |all: &Vector, between: &Vector| (all - between).norm() > ROUNDING * largest;
+        let pairs = (0_u32..).zip(self.forces.iter().zip(&between));
+        Ok(pairs.filter(|(_, (all, between))| acts(all, between)).map(|(node, _)| node).collect())
     }
 }
 

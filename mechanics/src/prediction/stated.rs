@@ -1,6 +1,7 @@
 //! Boundary conditions as case and plan state them, each with its place.
 
-use crate::mesh::Vector;
+use crate::mesh::volume::BoundaryFace;
+use crate::mesh::{Vector, VolumeMesh};
 
 /// A condition of the case or the plan.
 #[derive(Clone, Debug, PartialEq)]
@@ -24,4 +25,26 @@ pub enum StatedHold {
     Fixed,
     /// Unit normals of the walls of each node.
     Walls(Vec<Vec<Vector>>),
+}
+
+impl StatedCondition {
+    /// Its nodes that belong to no face of the boundary and to no cell all of whose nodes are its: points and lines, and sheets inside
+    /// the tissue.
+    pub(super) fn nodes_without_extent(
+        &self,
+        mesh: &VolumeMesh,
+        boundary: &[BoundaryFace],
+    ) -> Vec<u32> {
+        let mut is_own = vec![false; mesh.nodes.len()];
+        self.nodes.iter().for_each(|&node| is_own[node as usize] = true);
+        let faces = boundary.iter().map(BoundaryFace::nodes);
+        let cells = mesh.cells.iter().map(|(_, nodes)| nodes);
+        let mut has_extent = vec![false; mesh.nodes.len()];
+        for nodes in faces.chain(cells) {
+            if nodes.iter().all(|&node| is_own[node as usize]) {
+                nodes.iter().for_each(|&node| has_extent[node as usize] = true);
+            }
+        }
+        self.nodes.iter().copied().filter(|&node| !has_extent[node as usize]).collect()
+    }
 }

@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use super::bounds::Bounds;
 use super::node::Star;
-use crate::mesh::jacobian::{bezier_coefficients, jacobian_sign, signed_volume, smallest_jacobian};
+use crate::mesh::jacobian::{bezier_coefficients, jacobian_sign, smallest_jacobian};
 use crate::mesh::{Vector, VolumeMesh};
 use crate::progress::Progress;
 use crate::rows::Rows;
@@ -107,11 +107,7 @@ fn cells_around(mesh: &VolumeMesh) -> Rows<u32> {
 
 /// For each cell the mean |J| of all cells that share a node with it.
 fn scales(mesh: &VolumeMesh, around: &Rows<u32>) -> Vec<f64> {
-    let jacobian = |cell: usize| {
-        let corners: Vec<Vector> = mesh.corners(cell).collect();
-        signed_volume(mesh.cells.shape(cell), &corners).abs()
-    };
-    let own: Vec<f64> = (0..mesh.cells.len()).map(jacobian).collect();
+    let own: Vec<f64> = (0..mesh.cells.len()).map(|cell| mesh.cell_volume(cell).abs()).collect();
     let mean = |cell: usize| {
         let neighbours = mesh.cells.nodes(cell).iter().flat_map(|&node| around.row(node as usize));
         let (sum, count) = neighbours.fold((0.0, 0), |(sum, n), &c| (sum + own[c as usize], n + 1));

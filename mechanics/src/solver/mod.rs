@@ -26,7 +26,7 @@ pub mod sparse_rows;
 pub mod stationary;
 mod system;
 mod vector;
-mod vectorised;
+pub(crate) mod vectorised;
 pub use choice::{Solver, solve};
 pub use half_matrix::HalfMatrix;
 pub use report::{LoadStep, NewtonReport, RestOnTheWay, SolveReport};

@@ -137,6 +137,8 @@ impl<T: Entry> SparseRows<T> {
     }
 }
 
+// Sums are held apart from the product: the compiler does not use vector units for what it writes to memory term by term.
+
 impl SparseRows<f64> {
     /// `product` = A x, for N right-hand sides.
     pub fn multiply<const N: usize>(&self, x: &[[f64; N]], product: &mut [[f64; N]]) {
@@ -144,13 +146,14 @@ impl SparseRows<f64> {
             vectorised(
                 #[inline(always)]
                 || {
-                    for (local, sums) in product.iter_mut().enumerate() {
-                        *sums = [0.0; N];
+                    for (local, product) in product.iter_mut().enumerate() {
+                        let mut sums = [0.0; N];
                         for (column, value) in self.row(chunk * ROW_CHUNK + local) {
                             for n in 0..N {
                                 sums[n] += value * x[column][n];
                             }
                         }
+                        *product = sums;
                     }
                 },
             );
@@ -165,14 +168,15 @@ impl SparseRows<[f64; 3]> {
             vectorised(
                 #[inline(always)]
                 || {
-                    for (local, sums) in product.iter_mut().enumerate() {
-                        *sums = [0.0; N];
+                    for (local, product) in product.iter_mut().enumerate() {
+                        let mut sums = [0.0; N];
                         for (column, v) in self.row(chunk * ROW_CHUNK + local) {
                             let Some(x) = x.get(column) else { break };
                             for n in 0..N {
                                 sums[n] += v[0] * x[0][n] + v[1] * x[1][n] + v[2] * x[2][n];
                             }
                         }
+                        *product = sums;
                     }
                 },
             );
@@ -186,14 +190,17 @@ impl SparseRows<[f64; 3]> {
             vectorised(
                 #[inline(always)]
                 || {
-                    for (local, sums) in product.iter_mut().enumerate() {
+                    for (local, product) in product.iter_mut().enumerate() {
+                        let mut sums = *product;
                         for (column, v) in self.row(chunk * ROW_CHUNK + local) {
+                            let x = &x[column];
                             for c in 0..3 {
                                 for n in 0..N {
-                                    sums[c][n] += v[c] * x[column][n];
+                                    sums[c][n] += v[c] * x[n];
                                 }
                             }
                         }
+                        *product = sums;
                     }
                 },
             );

@@ -2,59 +2,8 @@
 
 use super::content::{Block, Section};
 use super::words::{Words, filled};
+use crate::jobs::result::warnings::rank;
 use crate::schema::WarningDocument;
-
-/// Codes that precede all others, in this order: those of doubtful input or measurements, those of a result that
-/// has larger errors than reported elsewhere, and those of an impossible one.
-const GRAVE: [&str; 47] = [
-    "nothing-moves",
-    "nothing-performed",
-    "units-suspect",
-    "plan-units-suspect",
-    "constant-suspect",
-    "moduli-far-apart",
-    "frame-suspect",
-    "landmarks-swapped",
-    "landmark-doubtful",
-    "mirrored?",
-    "another-person-suspect",
-    "before-operation-suspect",
-    "unregistered-suspect",
-    "model-suspect",
-    "skin-unlike-learned",
-    "segment-misfit",
-    "template-apart",
-    "surfaces-apart",
-    "surfaces-opposed",
-    "cells-inverted",
-    "cells-do-not-match",
-    "mesh-inverted-elements",
-    "tearing",
-    "tolerance-not-met",
-    "numerical-error-large",
-    "locking",
-    "large-strain",
-    "large-rotation",
-    "outside-linear-range",
-    "outside-second-order-range",
-    "nonlinearity-unknown",
-    "another-equilibrium",
-    "bulk-in-all-cells",
-    "skin-outruns-plan",
-    "skin-overlaps",
-    "bone-through-skin",
-    "bones-overlap",
-    "contact-overlap",
-    "contact-chatter",
-    "contact-points-move",
-    "out-of-distribution",
-    "learned-otherwise",
-    "correction-above-movement",
-    "nothing-to-correct",
-    "learning-does-not-help",
-    "not-corrected",
-    "cut-near-risk",
-];
 
 /// Warnings of one code.
 struct Kind<'a> {
@@ -63,10 +12,6 @@ struct Kind<'a> {
 }
 
 impl Kind<'_> {
-    fn rank(&self) -> usize {
-        GRAVE.iter().position(|code| *code == self.code).unwrap_or(GRAVE.len())
-    }
-
     /// The worst of them, and their number.
     fn told(&self, words: &Words) -> Option<String> {
         // Of several as bad the first.
@@ -102,7 +47,7 @@ pub fn warnings(list: &[WarningDocument], words: &Words) -> Section {
             None => kinds.push(Kind { code: &warning.code, all: vec![warning] }),
         }
     }
-    kinds.sort_by_key(Kind::rank);
+    kinds.sort_by_key(|kind| rank(kind.code));
     let told = kinds.iter().filter_map(|kind| kind.told(words)).collect();
     Section::new(words.warnings, vec![Block::List(told)])
 }
@@ -140,13 +85,5 @@ mod tests {
             ]
         );
         assert!(told(Language::De)[1].ends_with("(landmark-far, 56-mal, hier das schlimmste)"));
-    }
-
-    #[test]
-    fn every_grave_code_is_one_of_the_page_of_errors() {
-        let page = include_str!("../../../docs/errors.md");
-        for code in GRAVE {
-            assert!(page.contains(&format!("\n| `{code}` |")), "{code}");
-        }
     }
 }

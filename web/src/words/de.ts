@@ -274,6 +274,7 @@ export const de: Words = {
     "mouth-open": "der Mund ist offen", "muscle-broad": "die Fasern eines breiten Muskels sind geraten",
     "muscle-few-cells": "das Netz ist grob für einen Muskel", "muscle-outside": "ein Muskel liegt außerhalb des Gewebes",
     "muscles-cross": "Muskeln kreuzen sich, eine Achse steht für sie", "muscles-not-refined": "Muskeln bleiben so grob, wie sie waren",
+    "points-refined": "Punkte halten oder ziehen, die auf feineren Netzen Punkte bleiben",
     "no-cuts": "nichts ist geschnitten: kein Knochen lässt sich bewegen", "no-free-skin": "der ganze Rand gilt als Haut",
     "no-hounsfield": "die Aufnahme hat vielleicht keine Hounsfield-Werte", "no-landmarks": "keine Landmarken wurden gefunden",
     "nonlinearity-unknown": "was linear fehlt, ist nicht bekannt", "nonmanifold-edges": "Kanten haben mehr als zwei Dreiecke",

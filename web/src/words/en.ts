@@ -269,6 +269,7 @@ export const en = {
     "mouth-open": "the mouth is open", "muscle-broad": "the fibres of a broad muscle are guessed",
     "muscle-few-cells": "the mesh is coarse for a muscle", "muscle-outside": "a muscle lies outside the tissue",
     "muscles-cross": "muscles cross, and one axis stands for them", "muscles-not-refined": "muscles stay as coarse as they were",
+    "points-refined": "points hold or pull that stay points on finer meshes",
     "no-cuts": "nothing is cut: no bone can be moved", "no-free-skin": "the whole boundary is taken as skin",
     "no-hounsfield": "the scan may be in no Hounsfield units", "no-landmarks": "no landmarks were found",
     "nonlinearity-unknown": "the linearisation error is unknown", "nonmanifold-edges": "edges have more than two triangles",

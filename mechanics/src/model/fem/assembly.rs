@@ -10,7 +10,9 @@ use crate::model::problem::InvertedCell;
 use crate::progress::Progress;
 use crate::solver::Block;
 use crate::solver::half_matrix::{HalfMatrix, RowChunk};
+use crate::solver::vectorised::vectorised;
 use rayon::prelude::*;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Rows that one thread assembles at a time.
 const ROW_CHUNK: usize = 1024;
@@ -84,15 +86,31 @@ impl Tissue<'_> {
     ) -> Result<Option<HalfMatrix<f64, 3>>, InvertedCell> {
         let mut matrix = HalfMatrix::zeros(dof_map.pattern.clone());
         let order = &dof_map.ordering.element_order;
-        let simplex = |&cell: &u32| self.simplex(cell as usize, &tensor(cell as usize));
-        let simplices: Vec<Option<Simplex>> =
-            order.par_iter().map(simplex).collect::<Result<_, _>>()?;
+        // Collected in place: a `Result` of them would be made in pieces and copied.
+        let inverted = AtomicUsize::new(usize::MAX);
+        let simplex = |&cell: &u32| {
+            let made = self.simplex(cell as usize, &tensor(cell as usize));
+            made.unwrap_or_else(|InvertedCell { cell }| {
+                inverted.fetch_min(cell, Ordering::Relaxed);
+                None
+            })
+        };
+        let simplices: Vec<Option<Simplex>> = order.par_iter().map(simplex).collect();
+        match inverted.into_inner() {
+            usize::MAX => {}
+            cell => return Err(InvertedCell { cell }),
+        }
         if progress.is_cancelled() {
             return Ok(None);
         }
         matrix.row_chunks(ROW_CHUNK).into_par_iter().for_each_init(
             || vec![0_u32; dof_map.pattern.rows()],
-            |at, chunk| add_rows(dof_map, &simplices, chunk, at),
+            |at, mut chunk| {
+                vectorised(
+                    #[inline(always)]
+                    || add_rows(dof_map, &simplices, &mut chunk, at),
+                );
+            },
         );
         let others: Vec<usize> =
             (0..order.len()).filter(|&element| simplices[element].is_none()).collect();
@@ -133,7 +151,7 @@ impl Tissue<'_> {
 }
 
 impl Simplex {
-    #[inline]
+    #[inline(always)]
     fn add_block(&self, j: usize, k: usize, block: &mut Block) {
         add_isotropic_pair(block, [&self.gradients[j], &self.gradients[k]], self.lambda, self.mu);
     }
@@ -141,10 +159,11 @@ impl Simplex {
 
 /// Row by row: no two threads write to the same block, and cells are added in their order. `at` is
 /// scratch: where the block of each column of the row lies.
+#[inline(always)]
 fn add_rows(
     dof_map: &DofMap,
     simplices: &[Option<Simplex>],
-    chunk: RowChunk<f64, 3>,
+    chunk: &mut RowChunk<f64, 3>,
     at: &mut [u32],
 ) {
     let begin = dof_map.pattern.range(chunk.first).start;

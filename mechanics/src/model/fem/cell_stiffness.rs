@@ -80,6 +80,7 @@ pub(in crate::model) fn tetrahedron(
     if six_volumes.is_nan() || six_volumes <= 0.0 {
         return Err(InvertedCell { cell });
     }
-    let (g1, g2, g3) = (normal / six_volumes, c.cross(&a) / six_volumes, a.cross(&b) / six_volumes);
+    let inverse = 1.0 / six_volumes;
+    let (g1, g2, g3) = (normal * inverse, c.cross(&a) * inverse, a.cross(&b) * inverse);
     Ok((six_volumes / 6.0, [-(g1 + g2 + g3), g1, g2, g3]))
 }

@@ -64,33 +64,22 @@ impl EdgeNodes {
         mesh: &VolumeMesh,
         constraints: &[Constraint],
     ) -> (Vec<Constraint>, Vec<[usize; 2]>) {
-        let mut constraint_of = vec![None; self.node_count()];
-        for (index, constraint) in constraints.iter().enumerate() {
-            constraint_of[constraint.node as usize] = Some(index);
-        }
+        let mut is_held = vec![false; self.node_count()];
+        constraints.iter().for_each(|constraint| is_held[constraint.node as usize] = true);
         let mut all = constraints.to_vec();
         let mut parents = Vec::new();
-        for face in mesh.boundary_faces() {
-            let nodes = face.nodes();
-            let Some(held) =
-                nodes.iter().map(|&n| constraint_of[n as usize]).collect::<Option<Vec<usize>>>()
-            else {
+        for [(a, of_a), (b, of_b)] in
+            midpoint::held_edges(mesh, &mesh.boundary_faces(), constraints)
+        {
+            let middle = self.between(a, b);
+            if is_held[middle as usize] {
                 continue;
-            };
-            for side in 0..nodes.len() {
-                let next = (side + 1) % nodes.len();
-                let middle = self.between(nodes[side], nodes[next]);
-                if constraint_of[middle as usize].is_some() {
-                    continue;
-                }
-                let [a, b] = [held[side], held[next]];
-                if let Some(constraint) =
-                    midpoint::between(middle, &constraints[a], &constraints[b])
-                {
-                    constraint_of[middle as usize] = Some(all.len());
-                    all.push(constraint);
-                    parents.push([a, b]);
-                }
+            }
+            let between = midpoint::between(middle, &constraints[of_a], &constraints[of_b]);
+            if let Some(constraint) = between {
+                is_held[middle as usize] = true;
+                all.push(constraint);
+                parents.push([of_a, of_b]);
             }
         }
         (all, parents)

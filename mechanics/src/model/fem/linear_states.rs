@@ -14,7 +14,6 @@ use super::assembly::Tissue;
 use super::displacement_pressure::without_pressure_part;
 use super::edge_nodes::EdgeNodes;
 use super::inner_stress::{InnerStress, slopes, volume};
-use crate::mesh::jacobian::signed_volume;
 use crate::mesh::{Vector, VolumeMesh};
 use crate::model::cell_state::CellState;
 use crate::model::problem::InvertedCell;
@@ -64,8 +63,7 @@ fn mean_gradient(
 pub fn node_states(mesh: &VolumeMesh, cells: &[CellState]) -> Vec<CellState> {
     let mut sums = vec![(CellState::default(), 0.0); mesh.nodes.len()];
     for (cell, state) in cells.iter().enumerate() {
-        let corners: Vec<Vector> = mesh.corners(cell).collect();
-        let volume = signed_volume(mesh.cells.shape(cell), &corners);
+        let volume = mesh.cell_volume(cell);
         for &node in mesh.cells.nodes(cell) {
             let (sum, volumes) = &mut sums[node as usize];
             sum.stress += state.stress * volume;

@@ -8,7 +8,7 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use nalgebra::{Matrix6, Vector3};
+use nalgebra::Vector3;
 use rayon::prelude::*;
 
 use super::prolongator::{Weight, Weights};
@@ -98,21 +98,19 @@ where
     let around = renumbered.inverted(aggregates);
     let pattern = Arc::new(Pattern::new(&renumbered, &around, aggregates));
     let mut coarse = HalfMatrix::zeros(pattern);
-    let shift: Vec<Matrix6<f64>> =
-        weights.centres.iter().map(|centre| shift(&(fine.origin - centre))).collect();
+    let arm = |aggregate: usize| fine.origin - weights.centres[aggregate];
     for (aggregate, partner, block) in sums.iter().flat_map(Accumulator::entries) {
-        let block = Matrix6::from_fn(|i, j| block[i][j]);
-        let moved = shift[aggregate].transpose() * block * shift[partner as usize];
+        let moved = moved(block, &arm(aggregate), &arm(partner as usize));
         let (row, column) =
             (ordering.place[aggregate] as usize, ordering.place[partner as usize] as usize);
         let target = coarse.block_mut(row.max(column), row.min(column));
         for i in 0..6 {
             for j in 0..6 {
                 if row >= column {
-                    target[i][j] += moved[(i, j)];
+                    target[i][j] += moved[i][j];
                 }
                 if row <= column {
-                    target[i][j] += moved[(j, i)];
+                    target[i][j] += moved[j][i];
                 }
             }
         }
@@ -120,11 +118,25 @@ where
     Coarse { matrix: coarse, ordering }
 }
 
-/// S_I for the arm from the centre to the origin: the same movement taken about the origin.
-fn shift(arm: &Vector3<f64>) -> Matrix6<f64> {
-    let mut shift = Matrix6::identity();
-    shift.fixed_view_mut::<3, 3>(0, 3).copy_from(&-arm.cross_matrix());
-    shift
+/// S_I^T block S_J, with S = [ I , -[arm]x ; 0 , I ] for the arm from the centre of an aggregate to the origin: the same
+/// movements taken about the centres.
+fn moved(block: &[[f64; 6]; 6], arm: &Vector3<f64>, other_arm: &Vector3<f64>) -> [[f64; 6]; 6] {
+    let mut moved = *block;
+    for row in &mut moved {
+        for c in 0..3 {
+            let (a, b) = ((c + 1) % 3, (c + 2) % 3);
+            row[3 + c] += other_arm[a] * row[b] - other_arm[b] * row[a];
+        }
+    }
+    let [x, y, z, turns @ ..] = &mut moved;
+    let forces = [x, y, z];
+    for (c, turn) in turns.iter_mut().enumerate() {
+        let (a, b) = ((c + 1) % 3, (c + 2) % 3);
+        for (k, turn) in turn.iter_mut().enumerate() {
+            *turn += arm[a] * forces[b][k] - arm[b] * forces[a][k];
+        }
+    }
+    moved
 }
 
 /// The share of a range of rows.

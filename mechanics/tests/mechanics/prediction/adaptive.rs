@@ -10,7 +10,7 @@ use mechanics::mesh::sample::block;
 use mechanics::muscle::strap::box_surface;
 use mechanics::prediction::{
     Activation, AdaptiveError, AdaptivePrediction, BodyFibres, Case, ElementChoice, FibreDirection,
-    LimitError, Muscle, MuscleCourse, Plan, RefinementGoal, Scene, Settings, Stop, predict,
+    LimitError, Load, Muscle, MuscleCourse, Plan, RefinementGoal, Scene, Settings, Stop, predict,
     predict_adaptively,
 };
 use mechanics::progress::Unobserved;
@@ -222,4 +222,33 @@ fn muscles_around_lines_and_in_surfaces_are_told_to_stay_as_coarse_as_they_were(
     assert!(told(&case, &pulling, 1e-3) && !told(&case, &still, 1e-3));
     case.muscles[0].tissue = Some(material(60.0, 0.4));
     assert!(told(&case, &still, 1e-3));
+}
+
+#[test]
+fn a_sheet_inside_tissue_and_forces_at_nodes_are_told_to_stay_points() {
+    let mut mesh = block(Vector::new(20.0, 20.0, 20.0), [4, 4, 4], CellShape::Tet4);
+    let middle = |x: &Vector| [x.x, x.y, x.z].iter().all(|at| *at > 4.0 && *at < 16.0);
+    let sheet = (0_u32..).zip(&mesh.nodes).filter(|(_, x)| middle(x) && (x.z - 10.0).abs() < 0.1);
+    let sheet: Vec<u32> = sheet.map(|(node, _)| node).collect();
+    assert_eq!(sheet.len(), 9);
+    mesh.node_sets.insert("sheet".to_owned(), sheet);
+    let base = Case { fixed: vec![set("z_min")], ..case_of(mesh, material(15.0, 0.3)) };
+    let numbers = |case: &Case, plan: &Plan| {
+        let adapted = adapted(case, plan, &wanted(1e-3, 1000));
+        assert!(adapted.finest.is_some());
+        let mut warnings = adapted.prediction.warnings.into_iter();
+        let told = warnings.find(|warning| warning.code == "points-refined")?;
+        Some(told.numbers.iter().take(2).map(|(_, value)| *value).collect::<Vec<f64>>())
+    };
+    let moved = |name: &str| Plan {
+        prescribed: vec![constraint(name, [Some(0.5), Some(0.0), Some(1.0)])],
+        ..Plan::default()
+    };
+    assert_eq!(numbers(&base, &moved("sheet")), Some(vec![9.0, 0.0]));
+    assert_eq!(numbers(&base, &moved("z_max")), None);
+    let pulled = Plan {
+        loads: vec![Load::Force { nodes: set("z_max"), force: Vector::z() * 5.0 }],
+        ..Plan::default()
+    };
+    assert_eq!(numbers(&base, &pulled), Some(vec![0.0, 25.0]));
 }

@@ -66,7 +66,7 @@ fn edge_functions_that_are_solved_exactly_have_the_energy_of_the_error() {
         let loads = DistributedLoads { acceleration, ..DistributedLoads::default() };
         loads.add_to(&tissue, &edges, &|_| false, &mut equations.residual).unwrap();
         let faces = mesh.boundary_faces();
-        let held = HeldEdges::new(&faces, &constraints, mesh.nodes.len(), &edges);
+        let held = HeldEdges::new(&mesh, &faces, &constraints, &edges);
         let steps = equations.steps(&held);
 
         // Held edges, and pairs of nodes that no edge joins, stay out.

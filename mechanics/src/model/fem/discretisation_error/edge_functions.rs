@@ -5,8 +5,11 @@
 //! 4 L_i L_j, on a hexahedron (1 - x²)(1 + b y)(1 + c z) / 4, on a wedge 4 L_i L_j (1 + c z) / 2 and L_i (1 - z²). With the
 //! shape functions of the corners they span the serendipity element, and agree where cells of different shapes meet.
 
+use std::sync::LazyLock;
+
 use crate::element::MAX_NODES;
 use crate::mesh::{CellShape, Vector};
+use crate::model::reference_cell;
 
 /// The most edges a cell has.
 pub(in crate::model::fem) const MAX_EDGES: usize = 12;
@@ -42,6 +45,25 @@ pub(in crate::model::fem) fn at_point(shape: CellShape, corners: &Corners) -> At
     all
 }
 
+/// The functions of all edges at the quadrature points of a reference cell.
+pub(super) fn reference_edges(shape: CellShape) -> &'static [AtPoint] {
+    static OF_SHAPES: LazyLock<[Vec<AtPoint>; 3]> = LazyLock::new(|| {
+        [CellShape::Tet4, CellShape::Hex8, CellShape::Wedge6].map(|shape| {
+            let corners = reference_cell(shape)
+                .points
+                .iter()
+                .map(|point| Corners { values: &point.values, gradients: &point.gradients });
+            corners.map(|corners| at_point(shape, &corners)).collect()
+        })
+    });
+    let [of_tetrahedra, of_hexahedra, of_wedges] = &*OF_SHAPES;
+    match shape {
+        CellShape::Tet4 => of_tetrahedra,
+        CellShape::Hex8 => of_hexahedra,
+        CellShape::Wedge6 => of_wedges,
+    }
+}
+
 /// The corners whose shape functions make S.
 fn shares(shape: CellShape, ends: &'static [usize; 2]) -> &'static [usize] {
     match shape {
@@ -60,7 +82,6 @@ mod tests {
     use super::*;
     use crate::mesh::VolumeMesh;
     use crate::mesh::sample::block;
-    use crate::model::reference_cell;
 
     fn cell(shape: CellShape) -> VolumeMesh {
         block(Vector::new(2.0, 2.0, 2.0), [1, 1, 1], shape)

@@ -1,11 +1,11 @@
-//! Constrained edges of the boundary: those of faces all of whose nodes are constrained, as in `quadratic`.
+//! Constrained edges: those whose middles are held as their ends are (`midpoint::held_edges`), as in `quadratic`.
 
 use nalgebra::Matrix3;
 
 use super::edges::Edges;
 use crate::boundary::{Constraint, midpoint};
-use crate::mesh::Vector;
 use crate::mesh::volume::BoundaryFace;
+use crate::mesh::{Vector, VolumeMesh};
 
 /// The holds of the middles of held edges.
 pub(super) struct HeldEdges {
@@ -18,29 +18,15 @@ const FREE: u32 = u32::MAX;
 
 impl HeldEdges {
     pub fn new(
-        faces: &[BoundaryFace],
+        mesh: &VolumeMesh,
+        boundary: &[BoundaryFace],
         constraints: &[Constraint],
-        nodes: usize,
         edges: &Edges,
     ) -> Self {
-        let mut of_node = vec![FREE; nodes];
-        for (place, constraint) in (0..).zip(constraints) {
-            of_node[constraint.node as usize] = place;
-        }
         let mut held = HeldEdges { of_edge: vec![FREE; edges.count()], constraints: Vec::new() };
-        for face in faces {
-            let nodes = face.nodes();
-            let of_face: Option<Vec<&Constraint>> = nodes
-                .iter()
-                .map(|&node| constraints.get(of_node[node as usize] as usize))
-                .collect();
-            let Some(of_face) = of_face else { continue };
-            for side in 0..nodes.len() {
-                let next = (side + 1) % nodes.len();
-                let Some(edge) = edges.between(nodes[side], nodes[next]) else { continue };
-                let middle = midpoint::between(nodes[side], of_face[side], of_face[next]);
-                held.constrain(edge, middle);
-            }
+        for [(a, of_a), (b, of_b)] in midpoint::held_edges(mesh, boundary, constraints) {
+            let Some(edge) = edges.between(a, b) else { continue };
+            held.constrain(edge, midpoint::between(a, &constraints[of_a], &constraints[of_b]));
         }
         held
     }

@@ -39,19 +39,20 @@ fn parallel_edges(shape: CellShape) -> &'static [&'static [usize]] {
     }
 }
 
-/// The gradients of modes at the points of a cell, without their mean, from those of edges and the volume of each point in mm³.
-pub(in crate::model::fem) fn mode_gradients<'a>(
-    shape: CellShape,
-    points: impl Iterator<Item = (&'a [Vector; MAX_EDGES], f64)>,
+/// What modes are of the functions of edges: sums of their gradients at a point.
+pub(in crate::model::fem) fn sums_of_edges(shape: CellShape, edges: &[Vector; MAX_EDGES]) -> Modes {
+    let mut modes = NO_MODES;
+    for (mode, parallel) in modes.iter_mut().zip(parallel_edges(shape)) {
+        *mode = parallel.iter().map(|&edge| edges[edge]).sum();
+    }
+    modes
+}
+
+/// The gradients of modes at the points of a cell without their mean, from those sums and the volume of each point in mm³.
+pub(in crate::model::fem) fn mode_gradients(
+    points: impl Iterator<Item = (Modes, f64)>,
 ) -> Vec<Modes> {
-    let at_point = |(edges, volume): (&[Vector; MAX_EDGES], f64)| {
-        let mut modes = NO_MODES;
-        for (mode, parallel) in modes.iter_mut().zip(parallel_edges(shape)) {
-            *mode = parallel.iter().map(|&edge| edges[edge]).sum();
-        }
-        (modes, volume)
-    };
-    let all: Vec<(Modes, f64)> = points.map(at_point).collect();
+    let all: Vec<(Modes, f64)> = points.collect();
     let volume: f64 = all.iter().map(|(_, volume)| volume).sum();
     let mean: Modes = std::array::from_fn(|mode| {
         all.iter().map(|(modes, v)| modes[mode] * *v).sum::<Vector>() / volume

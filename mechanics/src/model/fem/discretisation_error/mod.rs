@@ -44,7 +44,9 @@ use cell::{CellAnswer, Cells};
 pub(super) use edge_equations::EdgeEquation;
 pub(super) use edge_functions::{Corners, MAX_EDGES, at_point};
 pub use indicators::{Goal, marked};
-pub(super) use inner_modes::{MAX_MODES, ModeEquations, Modes, mode_gradients, moment_weights};
+pub(super) use inner_modes::{
+    MAX_MODES, ModeEquations, Modes, mode_gradients, moment_weights, sums_of_edges,
+};
 pub use loads::DistributedLoads;
 pub(super) use mean_stress::{Weighted, has_wedges, smooth_in_wedges};
 pub(super) use points::{gradient_of, of_corners};

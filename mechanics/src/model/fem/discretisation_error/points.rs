@@ -4,68 +4,61 @@
 //! is (`cell_stiffness`), and the stress of it is that of `mean_stress`.
 //!
 //! What the cell by itself does better, its inner modes, comes first: edges see the stress that these leave.
+//!
+//! Gradients stand on the reference cell, where they are the same for all cells of a shape; a field and a stress are brought
+//! there and back by one matrix at each point.
 
 use nalgebra::Matrix3;
 
 use super::edge_equations::EdgeEquation;
-use super::edge_functions::{Corners, MAX_EDGES, at_point};
+use super::edge_functions::{AtPoint, MAX_EDGES, reference_edges};
 use super::inner_modes::{
-    MAX_MODES, ModeEquations, Modes, NO_MODES, mode_gradients, moment_weights,
+    MAX_MODES, ModeEquations, Modes, mode_gradients, moment_weights, sums_of_edges,
 };
 use super::two_level::Coefficients;
-use crate::element::MAX_NODES;
+use crate::element::{MAX_NODES, ReferencePoint};
 use crate::material::ElasticTensor;
 use crate::mesh::{CellShape, Vector, VolumeMesh};
 use crate::model::fem::cell_stiffness::Dilatation;
 use crate::model::problem::InvertedCell;
 use crate::model::reference_cell;
 
-/// Gradients at a point, or their means over a cell, and the volume that it stands for in mm³.
-struct Gradients {
-    corners: [Vector; MAX_NODES],
-    edges: [Vector; MAX_EDGES],
-    modes: [Vector; MAX_MODES],
+/// A quadrature point of a cell.
+struct Point {
+    corners: &'static ReferencePoint,
+    edges: &'static AtPoint,
+    /// J^-T: a gradient on the reference cell times this is that in 1/mm.
+    to_cell: Matrix3<f64>,
+    /// That it stands for, in mm³.
     volume: f64,
+    /// The gradients of the inner modes in 1/mm.
+    modes: Modes,
+    /// y_k dV of the three moments of volume (`inner_modes`); zero without mean dilatation.
+    moments: [f64; 3],
 }
 
-/// Places at which gradients are taken, with the stiffness that counts there.
+impl Point {
+    /// The gradient of a displacement of the corners.
+    fn of_corners(&self, displacement: &[Vector]) -> Matrix3<f64> {
+        gradient_of(displacement, &self.corners.gradients) * self.to_cell.transpose()
+    }
+
+    /// The same of coefficients of the edges.
+    fn of_edges(&self, coefficients: &[Vector]) -> Matrix3<f64> {
+        gradient_of(coefficients, &self.edges.gradients) * self.to_cell.transpose()
+    }
+}
+
+/// A cell with functions on its edges.
 pub(super) struct EnrichedCell {
     shape: CellShape,
     /// Of the points.
     tensor: ElasticTensor,
-    points: Vec<Gradients>,
-    /// With mean dilatation.
-    of_volume: Option<Box<VolumeChange>>,
-}
-
-/// What the change of volume of a cell resists.
-struct VolumeChange {
-    tensor: ElasticTensor,
-    mean: Gradients,
-    /// Moments of volume that the mean does not hold; they count for the modes alone and leave edges out.
-    moments: [Gradients; 3],
-}
-
-impl VolumeChange {
-    fn new(tensor: ElasticTensor, points: &[Gradients], positions: &[Vector]) -> Self {
-        let volumes: Vec<f64> = points.iter().map(|point| point.volume).collect();
-        let weights = moment_weights(positions, &volumes);
-        let volume: f64 = volumes.iter().sum();
-        let mut mean = Gradients::ZERO;
-        for point in points {
-            mean.add(point, point.volume / volume);
-            let edges = mean.edges.iter_mut().zip(&point.edges);
-            edges.for_each(|(sum, gradient)| *sum += gradient * (point.volume / volume));
-        }
-        mean.volume = volume;
-        let moments = std::array::from_fn(|k| {
-            let mut moment = Gradients::ZERO;
-            points.iter().zip(&weights).for_each(|(point, y)| moment.add(point, y[k]));
-            moment.volume = 1.0;
-            moment
-        });
-        VolumeChange { tensor, mean, moments }
-    }
+    /// With mean dilatation, of the change of volume: its mean, and for inner modes its moments, which leave edges out.
+    of_volume: Option<ElasticTensor>,
+    points: Vec<Point>,
+    /// In mm³.
+    volume: f64,
 }
 
 impl EnrichedCell {
@@ -77,48 +70,66 @@ impl EnrichedCell {
     ) -> Result<Self, InvertedCell> {
         let shape = mesh.cells.shape(cell);
         let corners = &of_corners(mesh, cell, &mesh.nodes);
-        let points = gradients_at_points(shape, corners).ok_or(InvertedCell { cell })?;
+        let mut points = points(shape, corners).ok_or(InvertedCell { cell })?;
+        let volume = points.iter().map(|point| point.volume).sum();
         let (tensor, of_volume) = match dilatation {
             Dilatation::Pointwise => (*tensor, None),
             Dilatation::Mean => {
+                let position = |point: &Point| point.corners.position(corners);
+                let positions: Vec<Vector> = points.iter().map(position).collect();
+                let volumes: Vec<f64> = points.iter().map(|point| point.volume).collect();
+                let weights = moment_weights(&positions, &volumes);
+                points.iter_mut().zip(weights).for_each(|(point, own)| point.moments = own);
                 let (of_shape, of_volume) = tensor.split_volume();
-                let reference = reference_cell(shape).points.iter();
-                let positions: Vec<Vector> = reference.map(|p| p.position(corners)).collect();
-                (of_shape, Some(Box::new(VolumeChange::new(of_volume, &points, &positions))))
+                (of_shape, Some(of_volume))
             }
         };
-        Ok(EnrichedCell { shape, tensor, points, of_volume })
+        Ok(EnrichedCell { shape, tensor, of_volume, points, volume })
     }
 
-    /// The points and the mean.
-    fn places(&self) -> impl Iterator<Item = (&Gradients, &ElasticTensor)> {
-        let mean = self.of_volume.as_deref().into_iter().map(|all| (&all.mean, &all.tensor));
-        self.points.iter().map(|point| (point, &self.tensor)).chain(mean)
+    /// A field of gradients at the points.
+    fn field(&self, at: impl Fn(&Point) -> Matrix3<f64>) -> Vec<Matrix3<f64>> {
+        self.points.iter().map(at).collect()
     }
 
-    fn moments(&self) -> impl Iterator<Item = (&Gradients, &ElasticTensor)> {
-        self.of_volume.as_deref().into_iter().flat_map(
-            |VolumeChange { tensor, moments, .. }| {
-                moments.iter().map(move |moment| (moment, tensor))
-            },
-        )
+    /// The mean of a field over the cell.
+    fn mean(&self, field: &[Matrix3<f64>]) -> Matrix3<f64> {
+        let pairs = self.points.iter().zip(field);
+        pairs.map(|(point, own)| own * (point.volume / self.volume)).sum()
     }
 
-    /// The equations of the inner modes where the corners are displaced. Modes have no mean.
-    fn mode_equations(&self, displacement: &[Vector]) -> ModeEquations {
+    /// The three moments of a field.
+    fn moments(&self, field: &[Matrix3<f64>]) -> [Matrix3<f64>; 3] {
+        let pairs = || self.points.iter().zip(field);
+        std::array::from_fn(|k| pairs().map(|(point, own)| own * point.moments[k]).sum())
+    }
+
+    /// The equations of the inner modes at a field of the corners and its moments. Modes have no mean.
+    fn mode_equations(&self, field: &[Matrix3<f64>], moments: &[Matrix3<f64>; 3]) -> ModeEquations {
         let mut equations = ModeEquations::new(self.shape);
-        for (place, tensor) in self.points.iter().map(|p| (p, &self.tensor)).chain(self.moments()) {
-            let stress = tensor.stress(&gradient_of(displacement, &place.corners)) * place.volume;
+        let of_moments: Option<[Matrix3<f64>; 3]> =
+            self.of_volume.as_ref().map(|tensor| moments.map(|moment| tensor.stress(&moment)));
+        for (point, own) in self.points.iter().zip(field) {
+            let mut stress = self.tensor.stress(own) * point.volume;
+            if let Some(of_moments) = &of_moments {
+                let pairs = of_moments.iter().zip(point.moments);
+                stress += pairs.map(|(moment, y)| moment * y).sum::<Matrix3<f64>>();
+            }
             for mode in equations.modes() {
-                equations.add_force(mode, &(-(stress * place.modes[mode])));
+                equations.add_force(mode, &-(stress * point.modes[mode]));
             }
         }
+        let of_modes: [[Vector; 3]; MAX_MODES] = std::array::from_fn(|mode| {
+            let of_point = |point: &Point, k: usize| point.modes[mode] * point.moments[k];
+            std::array::from_fn(|k| self.points.iter().map(|point| of_point(point, k)).sum())
+        });
         for (a, b) in equations.pairs() {
-            let of_points = products(&self.points, |point| [point.modes[a], point.modes[b]]);
+            let of_points = self.products(|point| [point.modes[a], point.modes[b]]);
             let mut block = self.tensor.block(&of_points);
-            if let Some(VolumeChange { tensor, moments, .. }) = self.of_volume.as_deref() {
-                let of_moments = products(moments, |moment| [moment.modes[a], moment.modes[b]]);
-                block += tensor.block(&of_moments);
+            if let Some(tensor) = &self.of_volume {
+                let pairs = of_modes[a].iter().zip(&of_modes[b]);
+                let products: Matrix3<f64> = pairs.map(|(g, h)| g * h.transpose()).sum();
+                block += tensor.block(&products);
             }
             equations.add_block((a, b), &block);
         }
@@ -127,18 +138,20 @@ impl EnrichedCell {
 
     /// The coefficients of the inner modes where the corners are displaced.
     pub fn modes(&self, displacement: &[Vector]) -> Modes {
-        self.mode_equations(displacement).solve()
+        let field = self.field(|point| point.of_corners(displacement));
+        self.mode_equations(&field, &self.moments(&field)).solve()
     }
 
     /// v . (K_i - K) v of displaced corners, in mN mm: what moments resist, less what modes give way.
     pub fn stiffening(&self, displacement: &[Vector]) -> f64 {
-        let moment = |(place, tensor): (&Gradients, &ElasticTensor)| {
-            let gradient = gradient_of(displacement, &place.corners);
-            tensor.stress(&gradient).dot(&gradient) * place.volume
-        };
-        let equations = self.mode_equations(displacement);
+        let field = self.field(|point| point.of_corners(displacement));
+        let moments = self.moments(&field);
+        let equations = self.mode_equations(&field, &moments);
         let modes = equations.solve();
-        self.moments().map(moment).sum::<f64>() - equations.work(&modes)
+        let resisted = self.of_volume.as_ref().map_or(0.0, |tensor| {
+            moments.iter().map(|moment| tensor.stress(moment).dot(moment)).sum()
+        });
+        resisted - equations.work(&modes)
     }
 
     /// r and D of each edge where the corners are displaced and the inner modes follow; `mean_stress` is that of the mean volume
@@ -150,18 +163,15 @@ impl EnrichedCell {
         mean_stress: &Option<Matrix3<f64>>,
     ) -> [EdgeEquation; MAX_EDGES] {
         let mut equations = [EdgeEquation::ZERO; MAX_EDGES];
-        for (place, (point, tensor)) in self.places().enumerate() {
-            let stress = match mean_stress {
-                Some(smooth) if place == self.points.len() => *smooth,
-                _ => {
-                    let of_corners = gradient_of(displacement, &point.corners);
-                    tensor.stress(&(of_corners + gradient_of(modes, &point.modes)))
-                }
-            } * point.volume;
-            for (equation, gradient) in equations[..self.edge_count()].iter_mut().zip(&point.edges)
-            {
-                equation.residual -= stress * gradient;
-            }
+        let field =
+            self.field(|point| point.of_corners(displacement) + gradient_of(modes, &point.modes));
+        let of_mean = self.of_volume.as_ref().map_or(Matrix3::zeros(), |tensor| {
+            mean_stress.unwrap_or_else(|| tensor.stress(&self.mean(&field)))
+        });
+        for (point, own) in self.points.iter().zip(&field) {
+            let stress = (self.tensor.stress(own) + of_mean) * point.to_cell * point.volume;
+            let pairs = equations[..self.edge_count()].iter_mut().zip(&point.edges.gradients);
+            pairs.for_each(|(equation, gradient)| equation.residual -= stress * gradient);
         }
         let share = self.share_of_mean();
         for (number, equation) in equations[..self.edge_count()].iter_mut().enumerate() {
@@ -180,35 +190,54 @@ impl EnrichedCell {
     /// of them do a third of what they do together; without it they overshoot the more the larger lambda is. It counts with
     /// the shear modulus in place of lambda.
     fn share_of_mean(&self) -> f64 {
-        match (self.shape, self.of_volume.as_deref()) {
-            (CellShape::Wedge6, Some(all)) => (self.tensor.mu / all.tensor.lambda).min(1.0),
+        match (self.shape, &self.of_volume) {
+            (CellShape::Wedge6, Some(all)) => (self.tensor.mu / all.lambda).min(1.0),
             (CellShape::Tet4 | CellShape::Hex8 | CellShape::Wedge6, _) => 1.0,
         }
     }
 
     fn block(&self, edge: usize, other: usize, share_of_mean: f64) -> Matrix3<f64> {
-        let of_edges = |place: &Gradients| [place.edges[edge], place.edges[other]];
-        let block = self.tensor.block(&products(&self.points, of_edges));
-        let of_mean = self.of_volume.as_deref().map(|VolumeChange { tensor, mean, .. }| {
-            tensor.block(&products(std::slice::from_ref(mean), of_edges)) * share_of_mean
-        });
-        block + of_mean.unwrap_or_default()
+        let of_edge = |point: &Point, edge: usize| point.to_cell * point.edges.gradients[edge];
+        let of_points = self.products(|point| [of_edge(point, edge), of_edge(point, other)]);
+        let block = self.tensor.block(&of_points);
+        let Some(tensor) = &self.of_volume else { return block };
+        let mean = |edge: usize| {
+            let of_point = |point: &Point| of_edge(point, edge) * point.volume;
+            self.points.iter().map(of_point).sum::<Vector>()
+        };
+        let of_mean = mean(edge) * (mean(other) / self.volume).transpose();
+        block + tensor.block(&of_mean) * share_of_mean
     }
 
     /// The forces on the corners of coefficients of the edges, and of the modes and moments that displaced corners ask for.
     pub fn forces(&self, displacement: &[Vector], of: &Coefficients) -> [Vector; MAX_NODES] {
-        let mut forces = [Vector::zeros(); MAX_NODES];
         let Coefficients { edges, modes } = of;
-        let mut add = |(place, tensor): (&Gradients, &ElasticTensor), gradient: Matrix3<f64>| {
-            let gradient = gradient + gradient_of(modes, &place.modes);
-            let stress = tensor.stress(&gradient) * place.volume;
-            for (force, slope) in forces.iter_mut().zip(&place.corners) {
-                *force += stress * slope;
-            }
-        };
-        self.places().for_each(|place| add(place, gradient_of(edges, &place.0.edges)));
-        self.moments().for_each(|place| add(place, gradient_of(displacement, &place.0.corners)));
+        let field = self.field(|point| point.of_edges(edges) + gradient_of(modes, &point.modes));
+        let (mut of_mean, mut of_moments) = (Matrix3::zeros(), [Matrix3::zeros(); 3]);
+        if let Some(tensor) = &self.of_volume {
+            of_mean = tensor.stress(&self.mean(&field));
+            let moments = self
+                .field(|point| point.of_corners(displacement) + gradient_of(modes, &point.modes));
+            of_moments = self.moments(&moments).map(|moment| tensor.stress(&moment));
+        }
+        let mut forces = [Vector::zeros(); MAX_NODES];
+        for (point, own) in self.points.iter().zip(&field) {
+            let pairs = of_moments.iter().zip(point.moments);
+            let linear: Matrix3<f64> = pairs.map(|(moment, y)| moment * y).sum();
+            let stress = (self.tensor.stress(own) + of_mean) * point.volume + linear;
+            let stress = stress * point.to_cell;
+            let pairs = forces.iter_mut().zip(&point.corners.gradients);
+            pairs.for_each(|(force, gradient)| *force += stress * gradient);
+        }
         forces
+    }
+
+    /// sum g_a g_b^T dV over the points of two gradients of each.
+    fn products(&self, pair: impl Fn(&Point) -> [Vector; 2]) -> Matrix3<f64> {
+        self.points.iter().fold(Matrix3::zeros(), |sum, point| {
+            let [a, b] = pair(point);
+            sum + a * (b * point.volume).transpose()
+        })
     }
 
     fn edge_count(&self) -> usize {
@@ -216,44 +245,19 @@ impl EnrichedCell {
     }
 }
 
-/// Gradients at the points of a cell; `None` where it is inverted.
-fn gradients_at_points(shape: CellShape, corners: &[Vector]) -> Option<Vec<Gradients>> {
-    let reference = &reference_cell(shape).points;
-    let mut points = Vec::with_capacity(reference.len());
-    for point in reference {
-        let physical = point.at(corners)?;
-        let (values, gradients) = (&point.values, &physical.gradients);
-        let edges = at_point(shape, &Corners { values, gradients }).gradients;
-        let (corners, volume) = (physical.gradients, physical.volume);
-        points.push(Gradients { corners, edges, modes: NO_MODES, volume });
+/// The points of a cell; `None` where it is inverted.
+fn points(shape: CellShape, corners: &[Vector]) -> Option<Vec<Point>> {
+    let at_points = reference_cell(shape).points.iter().zip(reference_edges(shape));
+    let mut points = Vec::with_capacity(8);
+    for (of_corners, edges) in at_points {
+        let (to_cell, volume) = of_corners.to_cell(corners)?;
+        let modes = sums_of_edges(shape, &edges.gradients).map(|mode| to_cell * mode);
+        let moments = [0.0; 3];
+        points.push(Point { corners: of_corners, edges, to_cell, volume, modes, moments });
     }
-    let modes = mode_gradients(shape, points.iter().map(|point| (&point.edges, point.volume)));
+    let modes = mode_gradients(points.iter().map(|point| (point.modes, point.volume)));
     points.iter_mut().zip(modes).for_each(|(point, modes)| point.modes = modes);
     Some(points)
-}
-
-/// sum g_a g_b^T dV over points of the two gradients of each.
-fn products(points: &[Gradients], pair: impl Fn(&Gradients) -> [Vector; 2]) -> Matrix3<f64> {
-    points.iter().fold(Matrix3::zeros(), |sum, point| {
-        let [a, b] = pair(point);
-        sum + a * (b * point.volume).transpose()
-    })
-}
-
-impl Gradients {
-    const ZERO: Gradients = Gradients {
-        corners: [Vector::new(0.0, 0.0, 0.0); MAX_NODES],
-        edges: [Vector::new(0.0, 0.0, 0.0); MAX_EDGES],
-        modes: NO_MODES,
-        volume: 0.0,
-    };
-
-    /// Adds those of corners and modes at a point.
-    fn add(&mut self, point: &Gradients, weight: f64) {
-        let own = point.corners.iter().chain(&point.modes);
-        let sums = self.corners.iter_mut().chain(&mut self.modes);
-        sums.zip(own).for_each(|(sum, gradient)| *sum += gradient * weight);
-    }
 }
 
 /// The values of the corners of a cell; zero beyond its last.

@@ -111,8 +111,8 @@ impl<C: EnrichedCells> TwoLevel<'_, C> {
     ) -> Result<Vec<Vector>, InvertedCell> {
         let has_pressure = |cell: usize| self.cells.pressure_numbers(cell).is_some();
         self.loads.add_to(self.tissue, edges, &has_pressure, &mut equations.residual)?;
-        let nodes = self.tissue.mesh.nodes.len();
-        Ok(equations.steps(&HeldEdges::new(self.boundary, self.constraints, nodes, edges)))
+        let mesh = self.tissue.mesh;
+        Ok(equations.steps(&HeldEdges::new(mesh, self.boundary, self.constraints, edges)))
     }
 
     /// The membrane, if there is one.

@@ -11,7 +11,7 @@ use crate::material::hyperelastic::point::{Corner, Point};
 use crate::mesh::{CellShape, Vector};
 use crate::model::fem::discretisation_error::{
     Coefficients, Corners, EdgeEquation, MAX_EDGES, MAX_MODES, ModeEquations, Modes, OfEdges,
-    at_point, gradient_of, mode_gradients, moment_weights,
+    at_point, gradient_of, mode_gradients, moment_weights, sums_of_edges,
 };
 use crate::model::reference_cell;
 
@@ -48,9 +48,9 @@ impl EnrichedBrick<'_> {
         let positions: Vec<Vector> = reference.iter().map(|p| p.position(&self.corners)).collect();
         let edges: Vec<_> =
             self.points().map(|(at_rest, _, point)| self.edges_at(at_rest, point)).collect();
-        let pairs = edges.iter().zip(volumes.iter().copied());
+        let sums = edges.iter().map(|edges| sums_of_edges(self.shape, edges));
         let mut inner = Inner {
-            gradients: mode_gradients(self.shape, pairs),
+            gradients: mode_gradients(sums.zip(volumes.iter().copied())),
             weights: moment_weights(&positions, &volumes),
             of_volume: [[Vector::zeros(); 3]; MAX_MODES],
             means: [Vector::zeros(); MAX_MODES],

@@ -40,15 +40,15 @@ pub(super) struct Pressures {
 }
 
 impl Pressures {
-    /// `volumes` are V/4 grad N of the corners at rest.
+    /// `gradients` are those of the corners at rest; there are as many `node_rows` as rows of nodes, of which the last may have no pressure.
     pub fn new(
         cells: Vec<PressureCell>,
+        node_rows: usize,
         axes: BTreeMap<u32, Matrix3<f64>>,
         gradients: &(dyn Fn(u32) -> [Vector; 4] + Sync),
     ) -> Self {
         let (numbers, count) = numbers(&cells);
         let rows: Vec<[u32; 4]> = cells.iter().map(|cell| cell.rows).collect();
-        let node_rows = rows.iter().flatten().max().map_or(0, |&last| last as usize + 1);
         let by_pressure = Couplings { rows: &numbers, columns: &rows };
         let by_node = Couplings { rows: &rows, columns: &numbers };
         let among = Couplings { rows: &numbers, columns: &numbers };

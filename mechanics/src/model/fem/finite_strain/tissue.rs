@@ -123,7 +123,8 @@ impl<'a> Tissue<'a> {
             })
             .collect();
         let at_rest = |simplex: u32| self.simplices.cells[simplex as usize].gradients;
-        (!cells.is_empty()).then(|| Pressures::new(cells, axes, &at_rest))
+        let rows = self.rest.len();
+        (!cells.is_empty()).then(|| Pressures::new(cells, rows, axes, &at_rest))
     }
 
     pub fn megabytes(&self) -> f64 {
