@@ -19,6 +19,8 @@
 //! Never of single cells: their strain at the edge of a bone grows without limit as cells shrink
 //! (docs/methods.md#error-estimates).
 
+use std::cell::LazyCell;
+
 use rayon::prelude::*;
 
 use super::Scene;
@@ -58,22 +60,23 @@ pub(super) fn left(
     let points = scene.skin.points();
     let parts = [("skin", &points)].into_iter();
     let named = scene.skin.regions.iter().map(|(name, points)| (name.as_str(), points));
-    let around = around_skin_nodes(scene, deformation);
+    let around = LazyCell::new(|| around_skin_nodes(scene, deformation));
+    let nodes_at = |points: &[u32]| measured(scene, points, &around);
     let left_out = estimated.as_ref().map(|known| scene.skin.lengths(&known.left_out));
     let estimates = parts.chain(named).filter_map(|(name, points)| {
-        let nodes = measured(scene, points, &around);
-        let by_rule = || p95(&nodes, |at| at.turned + at.stretched);
+        let by_rule = |nodes: &[AtNode]| p95(nodes, |at| at.turned + at.stretched);
         let estimate = match &left_out {
             Ok(_) if points.is_empty() => None,
             Ok(lengths) => Some(p95(points, |point| lengths[*point as usize])),
-            Err(_) => (!nodes.is_empty()).then(by_rule),
+            Err(_) => Some(nodes_at(points)).filter(|nodes| !nodes.is_empty()).map(|n| by_rule(&n)),
         };
-        estimate.map(|estimate| (estimate, name, nodes))
+        estimate.map(|estimate| (estimate, name, points))
     });
-    let (estimate, part, nodes) = estimates.max_by(|a, b| a.0.total_cmp(&b.0))?;
+    let (estimate, part, points) = estimates.max_by(|a, b| a.0.total_cmp(&b.0))?;
     if estimate <= SMALL_STRAIN_MM {
         return None;
     }
+    let nodes = nodes_at(points);
     let (turned, stretched) = (p95(&nodes, |at| at.turned), p95(&nodes, |at| at.stretched));
     let (code, what) = match turned > stretched {
         true => ("large-rotation", "turns"),
@@ -103,7 +106,10 @@ fn around_skin_nodes(scene: &Scene, deformation: &[CellDeformation]) -> Vec<[f64
     }
     let mut sums = vec![[0.0; 3]; scene.skin.nodes().len()];
     for ((_, nodes), cell) in scene.mesh.cells.iter().zip(deformation) {
-        let strain = cell.principal_strain.iter().map(|s| s.abs()).fold(0.0, f64::max);
+        if nodes.iter().all(|&node| point_of[node as usize] == u32::MAX) {
+            continue;
+        }
+        let strain = cell.principal_strain().iter().map(|s| s.abs()).fold(0.0, f64::max);
         for &node in nodes {
             if let Some(sum) = sums.get_mut(point_of[node as usize] as usize) {
                 *sum = [sum[0] + cell.rotation, sum[1] + strain, sum[2] + 1.0];

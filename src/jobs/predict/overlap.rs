@@ -242,21 +242,22 @@ impl PlannedBone<'_> {
     /// so the other stays where its search was prepared.
     fn reach_into(&self, other: &PlannedBone) -> Depth {
         let relative = self.movement.then(&other.movement.inverse());
-        let after: Vec<Vector> = self.probes.iter().map(|point| relative.apply(point)).collect();
         Depth {
             before: reach(&self.probes, Side::Inside, &other.search),
-            after: reach(&after, Side::Inside, &other.search),
+            after: reach(&self.moved_probes(&relative), Side::Inside, &other.search),
         }
     }
 
     /// The distance of this bone beyond the skin.
     fn through(&self, before: &SurfaceSearch, after: &SurfaceSearch) -> Depth {
-        let moved: Vec<Vector> =
-            self.probes.iter().map(|point| self.movement.apply(point)).collect();
         Depth {
             before: reach(&self.probes, Side::Outside, before),
-            after: reach(&moved, Side::Outside, after),
+            after: reach(&self.moved_probes(&self.movement), Side::Outside, after),
         }
+    }
+
+    fn moved_probes(&self, movement: &RigidMovement) -> Vec<Vector> {
+        self.probes.iter().map(|point| movement.apply(point)).collect()
     }
 
     fn moved_by(&self, movement: &RigidMovement) -> Vec<Vector> {

@@ -34,7 +34,7 @@ pub fn encode_volume(
     let region: Vec<i64> = scene.region_of_cell.iter().map(|&region| i64::from(region)).collect();
     let det_f: Vec<f64> = prediction.deformation.iter().map(|cell| cell.det_f).collect();
     let strain: Vec<Vector> =
-        prediction.deformation.iter().map(|cell| Vector::from(cell.principal_strain)).collect();
+        prediction.deformation.iter().map(|cell| Vector::from(cell.principal_strain())).collect();
     let imaged = scene.imaged.as_ref().map(|imaged| ImagedArrays::new(scene, imaged));
     let named = |name, values| NamedValues { name, values };
     let mut field_data = field_data.to_vec();

@@ -363,7 +363,7 @@ fn strain() -> Found {
     );
     let prediction = predict(&scene.unwrap(), &Unobserved).unwrap();
     let cells = prediction.deformation.iter();
-    let values = cells.flat_map(|cell| [&cell.principal_strain[..], &[cell.rotation]].concat());
+    let values = cells.flat_map(|cell| [&cell.principal_strain()[..], &[cell.rotation]].concat());
     let (name, solver) = ("strain".to_owned(), prediction.solver.method);
     Found { name, solver, constraints: Holds::Near, values: values.collect() }
 }

@@ -234,7 +234,7 @@ fn a_sheet_inside_tissue_and_forces_at_nodes_are_told_to_stay_points() {
     mesh.node_sets.insert("sheet".to_owned(), sheet);
     let base = Case { fixed: vec![set("z_min")], ..case_of(mesh, material(15.0, 0.3)) };
     let numbers = |case: &Case, plan: &Plan| {
-        let adapted = adapted(case, plan, &wanted(1e-3, 1000));
+        let adapted = adapted(case, plan, &wanted(1e-3, 8000));
         assert!(adapted.finest.is_some());
         let mut warnings = adapted.prediction.warnings.into_iter();
         let told = warnings.find(|warning| warning.code == "points-refined")?;
