@@ -118,8 +118,7 @@ impl Scene {
         check.support(&scene, &part_of_cell);
         check.problems.fail_on_problems()?;
         scene.warnings = scene.conditions.warnings.clone();
-        scene.warnings.extend(check.warnings);
-        scene.warnings.extend(far);
+        scene.warnings.extend(check.warnings.into_iter().chain(far));
         scene.warnings.extend(suspect_skin(&scene, case.skin.is_some()));
         scene.warnings.extend(cut::duplicate_nodes(&scene.mesh, &check.boundary_nodes));
         scene.warnings.extend(scene.doubts(case, plan));
