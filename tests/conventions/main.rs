@@ -51,7 +51,7 @@ const MECHANICS: [(&str, &[&str]); 30] = [
     ("muscle", &["mesh", "image", "domain", "material"]),
     ("format", &["mesh", "image"]),
     ("validation", &["mesh", "registration", "progress"]),
-    ("boundary", &["mesh", "plan"]),
+    ("boundary", &["mesh", "plan", "rows"]),
     ("model", &["mesh", "boundary", "material", "element", "solver", "progress", "rows"]),
     (
         "prediction",

@@ -10,6 +10,7 @@
 use nalgebra::{Matrix3, Matrix6, Rotation3, SMatrix, SVector, Vector6};
 
 use super::conditions::{Conditions, NodeClass};
+use super::constraint::Holder;
 use super::freedom::Freedom;
 use crate::mesh::connectivity::parts_by_nodes;
 use crate::mesh::{Vector, VolumeMesh};
@@ -36,17 +37,6 @@ const INDEPENDENT: f64 = 1e-12;
 
 pub type Form = SMatrix<f64, NUMBERS, NUMBERS>;
 type Numbers = SVector<f64, NUMBERS>;
-
-/// Constraints of nodes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Holder {
-    /// Fixed nodes and walls that stay.
-    Rest,
-    /// Nodes and walls of a segment, by its number.
-    Segment(u32),
-    /// Nodes with prescribed displacements.
-    Prescribed,
-}
 
 /// All that one holder holds of a part: the mean over its nodes of the sum of (n . ((R - I) x + t) - v)^2, with x from the
 /// centre of the part and lengths in units of its size.

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use nalgebra::Matrix3;
 
-use super::constraint::Constraint;
+use super::constraint::{Constraint, Holder};
 use crate::mesh::{Vector, Warning};
 use crate::plan::RigidMovement;
 
@@ -256,7 +256,18 @@ impl NodeConditions {
             }
         }
         add_walls(&mut constraint, &self.walls, carried);
-        (constraint.count() > 0).then_some(constraint)
+        (constraint.count() > 0).then(|| constraint.of_body(self.body()))
+    }
+
+    /// The body that the node belongs to altogether: prescribed components count for what stays where they are zero alone.
+    fn body(&self) -> Option<Holder> {
+        let mut prescribed = self.prescribed.iter().flatten();
+        match self.joined {
+            Some((segment, _)) => {
+                prescribed.next().is_none().then_some(Holder::Segment(segment as u32))
+            }
+            None => (self.fixed && prescribed.all(|value| *value == 0.0)).then_some(Holder::Rest),
+        }
     }
 
     /// The classes that claim this node.

@@ -7,6 +7,17 @@ use crate::mesh::Vector;
 /// A direction whose part across the earlier ones is shorter than this adds nothing.
 const INDEPENDENT: f64 = 1e-6;
 
+/// What holds nodes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Holder {
+    /// Fixed nodes and walls that stay.
+    Rest,
+    /// Nodes and walls of a segment, by its number.
+    Segment(u32),
+    /// Nodes with prescribed displacements.
+    Prescribed,
+}
+
 /// A node held at values u . e_k = v_k along the first `count` axes of an orthonormal frame,
 /// and free along the others.
 #[derive(Clone, Debug, PartialEq)]
@@ -15,17 +26,35 @@ pub struct Constraint {
     axes: Matrix3<f64>,
     values: Vector,
     count: usize,
+    /// What the node belongs to altogether, if that is one thing.
+    body: Option<Holder>,
 }
 
 impl Constraint {
     /// A node that nothing holds; among holds it says that the middle of an edge is free between held ends.
     pub fn free(node: u32) -> Self {
-        Constraint { node, axes: Matrix3::identity(), values: Vector::zeros(), count: 0 }
+        Constraint {
+            node,
+            axes: Matrix3::identity(),
+            values: Vector::zeros(),
+            count: 0,
+            body: None,
+        }
     }
 
     /// A node held in all directions at a displacement in mm.
     pub fn at(node: u32, displacement: Vector) -> Self {
-        Constraint { node, axes: Matrix3::identity(), values: displacement, count: 3 }
+        Constraint { node, axes: Matrix3::identity(), values: displacement, count: 3, body: None }
+    }
+
+    /// The same node as one of a body.
+    pub(in crate::boundary) fn of_body(self, body: Option<Holder>) -> Self {
+        Constraint { body, ..self }
+    }
+
+    /// The body whose node this is: what stays, or a segment.
+    pub fn body(&self) -> Option<Holder> {
+        self.body
     }
 
     /// The part of a vector along the directions in which the node is held.

@@ -1,6 +1,6 @@
 //! Boundary condition of the middle of an edge between two constrained nodes.
 
-use super::constraint::Constraint;
+use super::constraint::{Constraint, Holder};
 use crate::mesh::VolumeMesh;
 use crate::mesh::volume::BoundaryFace;
 
@@ -35,7 +35,7 @@ pub fn between(node: u32, first: &Constraint, second: &Constraint) -> Option<Con
 }
 
 /// The edges whose middles are held as their ends are: those of faces of the boundary all of whose nodes are constrained, and those
-/// of cells all of whose nodes are held altogether, as those of bone that is part of the mesh. Each as its two nodes with the
+/// of cells all of whose nodes belong to one body, as those of bone that is part of the mesh. Each as its two nodes with the
 /// places of their constraints; an edge may come several times.
 pub fn held_edges(
     mesh: &VolumeMesh,
@@ -56,14 +56,35 @@ pub fn held_edges(
         let Some(held) = held else { continue };
         edges.extend((0..held.len()).map(|side| [held[side], held[(side + 1) % held.len()]]));
     }
-    let wholly = |node: u32| of_node(node).filter(|(_, place)| constraints[*place].count() == 3);
-    for (shape, nodes) in mesh.cells.iter() {
-        if nodes.iter().all(|&node| wholly(node).is_some()) {
-            let ends = shape.edges().iter().map(|edge| edge.map(|corner| wholly(nodes[corner])));
-            edges.extend(ends.filter_map(|[a, b]| Some([a?, b?])));
-        }
+    let bodies = bodies_of_nodes(mesh, constraints);
+    for (shape, nodes) in mesh.cells.iter().filter(|(_, nodes)| body_of(&bodies, nodes).is_some()) {
+        let ends = shape.edges().iter().map(|edge| edge.map(|corner| of_node(nodes[corner])));
+        edges.extend(ends.filter_map(|[a, b]| Some([a?, b?])));
     }
     edges
+}
+
+/// For each node the body that it belongs to.
+fn bodies_of_nodes(mesh: &VolumeMesh, constraints: &[Constraint]) -> Vec<Option<Holder>> {
+    let mut bodies = vec![None; mesh.nodes.len()];
+    for constraint in constraints {
+        if let Some(own) = bodies.get_mut(constraint.node as usize) {
+            *own = constraint.body();
+        }
+    }
+    bodies
+}
+
+/// The body to which all of some nodes belong.
+fn body_of(bodies: &[Option<Holder>], nodes: &[u32]) -> Option<Holder> {
+    let first = bodies[*nodes.first()? as usize]?;
+    nodes.iter().all(|&node| bodies[node as usize] == Some(first)).then_some(first)
+}
+
+/// For each cell whether all its nodes belong to one body: it is bone that is part of the mesh.
+pub fn cells_of_bodies(mesh: &VolumeMesh, constraints: &[Constraint]) -> Vec<bool> {
+    let bodies = bodies_of_nodes(mesh, constraints);
+    mesh.cells.iter().map(|(_, nodes)| body_of(&bodies, nodes).is_some()).collect()
 }
 
 #[cfg(test)]

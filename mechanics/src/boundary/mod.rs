@@ -11,8 +11,8 @@ pub mod sliding;
 pub mod support;
 pub mod tearing;
 
-pub use carried::{ConnectedPart, Form, HeldRows, Holder, RigidPart, connected_parts};
+pub use carried::{ConnectedPart, Form, HeldRows, RigidPart, connected_parts};
 pub use conditions::{ConditionError, Conditions, HeldNodes, NodeClass, Wall, WallNode};
-pub use constraint::Constraint;
+pub use constraint::{Constraint, Holder};
 pub use freedom::Freedom;
 pub use selection::{NodeSelection, SelectionError, Selector};

@@ -10,7 +10,7 @@
 //! Source: Johnen, Weill, Remacle, Robust and efficient validation of the linear hexahedral element,
 //! Procedia Engineering 203 (2017) 271-283, section 3.
 
-use super::{CellShape, Vector};
+use super::{CellShape, Vector, VolumeMesh};
 
 /// Halvings after which a cell is left undecided: its side is then a thousandth.
 const MAX_HALVINGS: usize = 10;
@@ -60,6 +60,14 @@ pub fn smallest_jacobian(shape: CellShape, corners: &[Vector]) -> JacobianBounds
         CellShape::Wedge6 | CellShape::Tet4 => 0.0,
     };
     bounds(shape, corners, |bounds| bounds.upper - bounds.lower <= 1e-6 * scale)
+}
+
+impl VolumeMesh {
+    /// The volume of a cell in mm³, negative where it is inverted as a whole.
+    pub fn cell_volume(&self, cell: usize) -> f64 {
+        let corners: Vec<Vector> = self.corners(cell).collect();
+        signed_volume(self.cells.shape(cell), &corners)
+    }
 }
 
 /// Volume of a cell in mm³, negative where it is inverted as a whole: the integral of J.

@@ -4,9 +4,7 @@ use std::cmp::Ordering;
 use std::collections::BTreeMap;
 
 use super::IgnoredArrays;
-use super::jacobian::signed_volume;
 use super::{TriangleSurface, Vector};
-use crate::element::MAX_NODES;
 use crate::rows::Rows;
 
 /// The shape of a first-order cell. Local node order is that of VTK for tetrahedra and hexahedra;
@@ -207,13 +205,6 @@ impl VolumeMesh {
     /// The corner positions of a cell, as many as its shape has nodes.
     pub fn corners(&self, cell: usize) -> impl ExactSizeIterator<Item = Vector> + '_ {
         self.cells.nodes(cell).iter().map(|&node| self.nodes[node as usize])
-    }
-
-    /// The volume of a cell in mm³, negative where it is inside out.
-    pub fn cell_volume(&self, cell: usize) -> f64 {
-        let mut corners = [Vector::zeros(); MAX_NODES];
-        let count = corners.iter_mut().zip(self.corners(cell)).map(|(slot, at)| *slot = at).count();
-        signed_volume(self.cells.shape(cell), &corners[..count])
     }
 
     /// The node set asked for as `NAME` or `set_NAME`.

@@ -7,7 +7,7 @@ use super::far_segment::far_segments;
 use super::fibres::Tissues;
 use super::hounsfield::TissueOfCells;
 use super::muscle_field::{MuscleField, MuscleTissue};
-use super::pressure_kind::{part_held_cells, pressure_kinds};
+use super::pressure_kind::{part_cells_of_bone, pressure_kinds};
 use super::problem::SceneErrors;
 use super::scene::Scene;
 use super::skin_check::suspect_skin;
@@ -71,7 +71,7 @@ impl Scene {
         let (segments, held) = check.held_nodes(plan, settings);
         let conditions = check.conditions(&held);
         let is_sound = check.problems.count() == sound;
-        part_held_cells(&mut tissue.pressure_of_cell, &case.volume, &conditions.constraints);
+        part_cells_of_bone(&mut tissue.pressure_of_cell, &case.volume, &conditions.constraints);
         check.plan_size(plan, &segments, &held);
         let far = far_segments(case, &held);
 

@@ -4,14 +4,14 @@
 //! there fails the patch test: half of a column that pulls, nu .49, was shortened by three times what it is. Growth, uniform fibres
 //! and muscles may be stated by region, so that cells of two regions share none, whatever their constants; nor do a cell that is
 //! mostly inside a muscle with a surface and one that is mostly outside. The pull of a muscle around polylines fades smoothly, and
-//! parts nothing. Cells all of whose nodes are held altogether, as those of bone that is part of the mesh, share none with tissue: their
-//! volume is given, and a pressure that has to suit them as well lets a confined column shrink by a sixth. All this depends on the
+//! parts nothing. Cells all of whose nodes belong to one body, as those of bone that is part of the mesh, share none with tissue: they
+//! keep their volume, and a pressure that has to suit them as well lets a confined column shrink by a sixth. All this depends on the
 //! case and on what it holds alone: a response and each prediction of its plans have the same pressures.
 
 use std::collections::BTreeMap;
 
 use super::muscle_field::MuscleField;
-use crate::boundary::Constraint;
+use crate::boundary::{Constraint, midpoint};
 use crate::mesh::VolumeMesh;
 
 /// A cell with as large a share of a muscle, or a larger one, belongs to it.
@@ -38,15 +38,11 @@ pub(super) fn pressure_kinds(
     cells.map(kind).collect()
 }
 
-/// Parts the cells all of whose nodes are held altogether from the rest of their kinds of tissue.
-pub(super) fn part_held_cells(kinds: &mut [u16], mesh: &VolumeMesh, constraints: &[Constraint]) {
-    let mut is_held = vec![false; mesh.nodes.len()];
-    let whole = constraints.iter().filter(|constraint| constraint.count() == 3);
-    whole.for_each(|constraint| is_held[constraint.node as usize] = true);
+/// Parts the cells all of whose nodes belong to one body from the rest of their kinds of tissue.
+pub(super) fn part_cells_of_bone(kinds: &mut [u16], mesh: &VolumeMesh, constraints: &[Constraint]) {
     let own = kinds.iter().max().map_or(0, |last| last.saturating_add(1));
-    for (kind, (_, nodes)) in kinds.iter_mut().zip(mesh.cells.iter()) {
-        if nodes.iter().all(|&node| is_held[node as usize]) {
-            *kind = own;
-        }
+    let cells = midpoint::cells_of_bodies(mesh, constraints);
+    for (kind, _) in kinds.iter_mut().zip(cells).filter(|(_, is_bone)| *is_bone) {
+        *kind = own;
     }
 }

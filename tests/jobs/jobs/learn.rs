@@ -578,8 +578,8 @@ fn scans_of_before_the_operation_and_beside_the_case_are_suspected_with_their_pl
     sources.meshes.insert("after 3".to_owned(), volume(block([4, 4, 2])));
     let at = |code: &str, place: &str| (code.to_owned(), place.to_owned());
     let expected = [
-        at("unregistered-suspect", "/spec/cases/1"),
         at("before-operation-suspect", "/spec/cases/2"),
+        at("unregistered-suspect", "/spec/cases/1"),
     ];
     assert_eq!(told(&sources, input.clone()), expected);
 
