@@ -589,7 +589,7 @@ fn scans_of_before_the_operation_and_beside_the_case_are_suspected_with_their_pl
     let spec = json!({"method": "fem_linear", "correction": {"model": "of a ward"}});
     let (output, _out) = done(JobInput::Predict(prediction(2.5, spec)), &sources).unwrap();
     let suspect = output.result.warnings.iter().find(|own| own.code == "model-suspect").unwrap();
-    for word in ["\"of a ward\"", "/spec/cases/1 (2)", "before-operation-suspect, unregistered"] {
+    for word in ["\"of a ward\"", "/spec/cases/2 (3)", "before-operation-suspect, unregistered"] {
         assert!(suspect.detail.contains(word), "{suspect:?}");
     }
     assert_eq!(suspect.numbers["suspicions"], 2.0);
