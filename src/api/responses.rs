@@ -42,7 +42,7 @@ pub fn router() -> Resources {
 #[into_params(parameter_in = Query)]
 struct ResponseParameters {
     /// The job that built the response. Default: the newest for the present version of the case, with the materials of the
-    /// case if there is one, of any order, membrane and segments; the response to the request says which.
+    /// case, no membrane and the usual element if there is one, of any order and segments; the response to the request says which.
     #[param(format = Uuid)]
     job: Option<String>,
     /// 2: the columns of second order instead, little-endian i16 [column][node][xyz], which `second_order` of
@@ -70,7 +70,7 @@ impl ResponseParameters {
 #[into_params(parameter_in = Query)]
 struct ApplyParameters {
     /// The job that built the response. Default: the newest for the present version of the case, with the materials of the
-    /// case if there is one, of any order, membrane and segments; the response to the request says which.
+    /// case, no membrane and the usual element if there is one, of any order and segments; the response to the request says which.
     #[param(format = Uuid)]
     job: Option<String>,
     /// The displacement in mm at which the colours of `model/gltf-binary` end; they begin at 0. Default: 10.
@@ -221,8 +221,8 @@ async fn rest(service: &Service, found: &FoundResponse, headers: &HeaderMap) -> 
                 ("Facies-Order" = u8, description = "that of the response: 2 if the displacement includes the second-order term"),
                 ("Facies-Nonlinearity-Estimate-Mm" = f64, description = "the linearisation error: of order 1 the second-order term, of order 2 the third-order term, from samples; absent if tissue grows or muscles pull"),
                 ("Facies-Within-Linear-Range" = bool, description = "as `within_linear_range`"),
-                ("Facies-Warning" = Option<String>, description = "the codes of the warnings: outside-linear-range, outside-second-order-range, nonlinearity-unknown, nothing-moves, plan-units-suspect, sliding-normal-turned, skin-overlaps, and those of the case as the response was built"),
-                ("Facies-Not-Measured" = Option<String>, description = "codes of warnings that were not checked: numerical-error-large, and skin-overlaps without `check_skin`"),
+                ("Facies-Warning" = Option<String>, description = "the codes of the warnings: outside-linear-range, outside-second-order-range, nonlinearity-unknown, nothing-moves, plan-units-suspect, sliding-normal-turned, tearing, skin-overlaps, and those of the case as the response was built"),
+                ("Facies-Not-Measured" = Option<String>, description = "codes of warnings that were not checked, as `not_measured`"),
                 ("Server-Timing" = String, description = "milliseconds to find the response, to add up its columns, to check the skin, and to write the result"))),
         (status = 404, description = "there is no such case, or no response was built"),
         (status = 409, description = "the case or the program changed since the response was built"),
@@ -260,7 +260,7 @@ async fn apply(
         let mut applied = loaded.apply(&amounts);
         let applying = started.elapsed();
         if wanted.check_skin {
-            loaded.check_skin(&mut applied);
+            applied = loaded.check_skin(applied);
         }
         let checking = started.elapsed() - applying;
         let body = wanted.encoded(&loaded, &applied, &job);

@@ -42,10 +42,22 @@ pub struct Arguments {
     #[arg(long, help_heading = "Result")]
     corrected: bool,
     /// Take the cheapest model whose expected mean error over the skin is within so many mm [default: 0.1]
-    #[arg(long, value_name = "MM", conflicts_with = "corrected", help_heading = "Result")]
+    #[arg(
+        long,
+        allow_negative_numbers = true,
+        value_name = "MM",
+        conflicts_with = "corrected",
+        help_heading = "Result"
+    )]
     accept: Option<f64>,
     /// Refine the mesh until the estimated mean error over the skin is within so many mm
-    #[arg(long, value_name = "MM", conflicts_with = "accept", help_heading = "Result")]
+    #[arg(
+        long,
+        allow_negative_numbers = true,
+        value_name = "MM",
+        conflicts_with = "accept",
+        help_heading = "Result"
+    )]
     refine: Option<f64>,
     /// What keeps tissue from passing through itself and bone: none, sliding, unilateral or auto
     #[arg(long, value_name = "KIND", value_parser = word::<ContactName>, help_heading = "Result")]

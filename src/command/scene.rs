@@ -60,10 +60,10 @@ pub struct SceneArguments {
     #[arg(long, value_name = "NAME", value_parser = preset, conflicts_with = "case", help_heading = TISSUE)]
     preset: Option<PresetName>,
     /// Young's modulus of all tissue, in kPa; default 15
-    #[arg(long, value_name = "KPA", conflicts_with = "case", help_heading = TISSUE)]
+    #[arg(long, allow_negative_numbers = true, value_name = "KPA", conflicts_with = "case", help_heading = TISSUE)]
     young_modulus_kpa: Option<f64>,
     /// Poisson's ratio of all tissue; default 0.46
-    #[arg(long, value_name = "RATIO", conflicts_with = "case", help_heading = TISSUE)]
+    #[arg(long, allow_negative_numbers = true, value_name = "RATIO", conflicts_with = "case", help_heading = TISSUE)]
     poisson_ratio: Option<f64>,
     /// The treatment of cells
     #[arg(long, default_value = "auto", conflicts_with = "case", help_heading = TISSUE)]

@@ -1,5 +1,6 @@
 //! A plan applied to a response.
 
+use crate::jobs::result::warnings::rank;
 use crate::schema::WarningDocument;
 use crate::schema::applied::AppliedSummary;
 use mechanics::mesh::Vector;
@@ -13,13 +14,39 @@ pub struct Applied {
     pub warnings: Vec<WarningDocument>,
     /// Whether the moved skin was looked at.
     pub skin_checked: bool,
+    /// Whether edges between segments were looked at, which responses of earlier programs do not have.
+    pub tearing_checked: bool,
 }
 
+/// Codes that need the mesh inside the skin, or the surfaces of bones.
+const NEVER_MEASURED: [&str; 4] =
+    [NUMERICAL_ERROR_LARGE, "cells-inverted", "bones-overlap", "bone-through-skin"];
+
 impl Applied {
+    /// With the warnings of the case and the plan, and those of the summary.
+    pub fn new(
+        displacement: Vec<Vector>,
+        summary: AppliedSummary,
+        warnings: Vec<WarningDocument>,
+        tearing_checked: bool,
+    ) -> Self {
+        let skin_checked = false;
+        let applied = Applied { displacement, summary, warnings, skin_checked, tearing_checked };
+        applied.warned(summary.warnings())
+    }
+
+    /// With further warnings, the most serious first.
+    pub fn warned(mut self, further: Vec<WarningDocument>) -> Self {
+        self.warnings.extend(further);
+        self.warnings.sort_by_key(|warning| rank(&warning.code));
+        self
+    }
+
     /// The codes of warnings that nobody looked for: never what the mesh leaves out, which is of a plan and not of a response.
     pub fn not_measured(&self) -> Vec<String> {
         let skin = (!self.skin_checked).then_some(SKIN_OVERLAPS);
-        [NUMERICAL_ERROR_LARGE].into_iter().chain(skin).map(str::to_owned).collect()
+        let torn = (!self.tearing_checked).then_some("tearing");
+        NEVER_MEASURED.into_iter().chain(torn).chain(skin).map(str::to_owned).collect()
     }
 
     /// f32 little-endian, three a node.

@@ -80,22 +80,21 @@ impl LoadedResponse {
             is_unknown: is_turned || inner.iter().any(|amount| *amount != 0.0),
         };
         let summary = AppliedSummary::new(&displacement, beyond, &linear);
-        let mut warnings = summary.warnings();
-        warnings.extend(of_case);
-        Applied { displacement, summary, warnings, skin_checked: false }
+        let tearing_checked = self.description.edges_between.is_some();
+        Applied::new(displacement, summary, of_case, tearing_checked)
     }
 
     /// Whether the moved skin passes through itself where it did not at rest. Takes milliseconds for each ten thousand
     /// triangles, so that it is only done where it is asked for.
-    pub fn check_skin(&self, applied: &mut Applied) {
+    pub fn check_skin(&self, applied: Applied) -> Applied {
         let skin = Skin { surface: self.rest.clone(), regions: BTreeMap::new() };
         let mut moved = self.rest.clone();
         for (point, by) in moved.points.iter_mut().zip(&applied.displacement) {
             *point += by;
         }
         let overlap = skin_overlap(&skin, &moved);
-        applied.warnings.extend(overlap.iter().map(WarningDocument::from));
-        applied.skin_checked = true;
+        let overlap = overlap.iter().map(WarningDocument::from).collect();
+        Applied { skin_checked: true, ..applied.warned(overlap) }
     }
 
     /// The skin at rest as binary glTF, its vertices in the order of `node_ids`.
@@ -151,8 +150,8 @@ struct Verdict {
     version: i64,
     /// The blob of the description; `None` where the response is stale.
     description: Option<String>,
-    /// Whether its materials are those of the case.
-    has_materials_of_case: bool,
+    /// Whether it is of the tissue of the case, and of no other.
+    is_of_case_alone: bool,
 }
 
 impl Responses {
@@ -171,8 +170,8 @@ impl Responses {
         self.memory.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// The response of a job, or else the newest one, that was built for the case as it is now; one with the materials of the case
-    /// comes before all that were built to see what others would do.
+    /// The response of a job, or else the newest one, that was built for the case as it is now; one with the tissue of the case and the usual
+    /// element comes before all that were built to see what others would do.
     pub async fn find(
         &self,
         case: &str,
@@ -201,7 +200,7 @@ impl Responses {
             let verdict = self.verdict(case, built.version, built_by).await?;
             let Some(description) = verdict.description else { continue };
             let found = FoundResponse { job: built_by.clone(), description };
-            if verdict.has_materials_of_case {
+            if verdict.is_of_case_alone {
                 return Ok(found);
             }
             with_others.get_or_insert(found);
@@ -218,13 +217,13 @@ impl Responses {
         if let Some(verdict) = known.filter(|verdict| verdict.version == version) {
             return Ok(verdict);
         }
-        let mut verdict = Verdict { version, description: None, has_materials_of_case: false };
+        let mut verdict = Verdict { version, description: None, is_of_case_alone: false };
         let Some(row) = self.store.case(case).await? else { return Ok(verdict) };
         verdict.version = row.version;
         if let Some(spec) = self.current(&row.document, job).await? {
             let file = self.store.job_file(job, DESCRIPTION_FILE).await?;
             verdict.description = file.map(|file| file.blob);
-            verdict.has_materials_of_case = spec.materials.is_none();
+            verdict.is_of_case_alone = spec.is_of_case_alone();
         }
         let mut memory = self.memory();
         if memory.verdicts.len() >= MOST_VERDICTS {
@@ -369,6 +368,7 @@ mod tests {
             linearity: linearity.clone(),
             second_order: None,
             parts: Vec::new(),
+            edges_between: Vec::new(),
             carries_wall: vec![false],
             allow_unfixed: false,
             diagonal: 1.0,

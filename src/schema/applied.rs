@@ -29,8 +29,9 @@ pub struct AppliedDocument {
     #[serde(flatten)]
     pub summary: AppliedSummary,
     pub warnings: Vec<WarningDocument>,
-    /// Codes of warnings that were not checked: `numerical-error-large`, since a response does not estimate the mesh error of
-    /// a plan, and `skin-overlaps` without `check_skin`.
+    /// Codes of warnings that were not checked: those that need the mesh inside the skin or the surfaces of bones
+    /// (`numerical-error-large`, `cells-inverted`, `bones-overlap`, `bone-through-skin`), `skin-overlaps` without `check_skin`,
+    /// and `tearing` of a response of an earlier program.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub not_measured: Vec<String>,
 }

@@ -29,6 +29,7 @@ pub mod repair;
 pub mod reproduce;
 pub mod response;
 pub mod response_description;
+pub mod response_edges;
 pub mod response_part;
 pub mod second_order;
 pub mod study;

@@ -92,6 +92,12 @@ impl ResponseDocument {
         }
     }
 
+    /// Whether tissue is that of the case, without other materials, a membrane or an element of the spec's own.
+    pub fn is_of_case_alone(&self) -> bool {
+        let is_usual = self.element == ElementName::default();
+        is_usual && self.materials.is_none() && self.membrane.is_none()
+    }
+
     /// Everything that determines the numbers, for the key: no tags, segments unordered.
     pub fn content(&self) -> serde_json::Value {
         let mut plain = self.clone();

@@ -7,6 +7,7 @@ use utoipa::ToSchema;
 
 use super::code::ErrorCode;
 use super::inner_column::{InnerColumnDocument, inner_amounts};
+use super::response_edges::{ResponseEdgesDocument, torn};
 use super::response_part::ResponsePartDocument;
 use super::second_order::{ColumnsDocument, LinearityDocument, SecondOrderDocument};
 use super::{CornerPair, Triple, WarningDocument};
@@ -65,6 +66,10 @@ pub struct ResponseDescription {
     /// Connected parts of the mesh, and their constraints.
     #[serde(default)]
     pub parts: Vec<ResponsePartDocument>,
+    /// Where a plan may tear the tissue; absent in responses of earlier programs.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub edges_between: Option<Vec<ResponseEdgesDocument>>,
     /// Of the case and its mesh, independent of the plan: each applied plan repeats them.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub warnings: Vec<WarningDocument>,
@@ -150,6 +155,7 @@ impl ResponseDescription {
             mesh_diagonal_mm: columns.diagonal,
             allow_unfixed: columns.allow_unfixed,
             parts: parts.collect(),
+            edges_between: Some(ResponseEdgesDocument::all(&columns.edges_between, &names)),
             warnings: origin.warnings,
         }
     }
@@ -263,8 +269,14 @@ impl ResponseDescription {
         let warnings = warnings.chain(suspect_units(&self.moved(movements)));
         let warnings = warnings.chain(amounts.doubts.iter().cloned()).chain(turned);
         let warnings = warnings.chain(self.rigidly_carried(movements).told);
+        let warnings = warnings.chain(self.torn(movements));
         let of_plan = warnings.map(|warning| WarningDocument::from(&warning));
         of_plan.chain(self.warnings.iter().cloned()).collect()
+    }
+
+    fn torn(&self, movements: &[RigidMovement]) -> Option<Warning> {
+        let segments: Vec<&str> = self.segments.iter().map(|of| of.name.as_str()).collect();
+        torn(self.edges_between.as_ref()?, &segments, movements)
     }
 
     /// Whether a wall turns with its segment, so that what linearity leaves out is not known.

@@ -369,3 +369,14 @@ fn a_reader_who_goes_ends_a_command_without_a_panic() {
     let told = String::from_utf8_lossy(&output.stderr);
     assert_eq!((output.status.code(), told.as_ref()), (Some(141), ""));
 }
+
+#[test]
+fn a_negative_constant_is_refused_as_one_that_is_out_of_range() {
+    let mesh = block().join("block.vtu");
+    for (option, value) in [("--poisson-ratio", "-0.3"), ("--young-modulus-kpa", "-15")] {
+        let done = facies(&["check", "--mesh", path(&mesh), "--units", "mm", option, value]);
+        let error = text(&done.stderr);
+        assert_eq!(done.status.code(), Some(2), "{error}");
+        assert!(error.contains("has to be at least") && error.contains(value), "{error}");
+    }
+}

@@ -396,6 +396,7 @@ export class Scene {
   /** Where a point is seen, in pixels of the window. */
   seenAt(point_mm: Triple): [number, number] {
     const { left, top, width, height } = this.canvas.getBoundingClientRect();
+    this.camera.updateMatrixWorld();
     const { x, y } = this.head.localToWorld(new Vector3(...point_mm)).project(this.camera);
     return [left + ((x + 1) / 2) * width, top + ((1 - y) / 2) * height];
   }
@@ -537,6 +538,8 @@ export class Scene {
     const across = (((event.clientX - box.left) / box.width) * halves) % 1;
     const place = new Vector2(2 * across - 1, 1 - (2 * (event.clientY - box.top)) / box.height);
     const ray = new Raycaster();
+    // A camera that was turned since the last frame has its old place until the next.
+    this.camera.updateMatrixWorld();
     ray.setFromCamera(place, this.camera);
     return ray;
   }

@@ -63,6 +63,7 @@ export async function cuts(page, job) {
       const middle = () => page.evaluate(() => document.querySelector(".cuts .screen").scene.middle()?.point_mm);
       for (let turns = 0; turns < 48 && await middle() === undefined; turns += 1) await canvas.press("ArrowDown");
       const point = await middle();
+      assert(point !== undefined, `no bone in the middle of view ${keys} nor of any view down from it`);
       await canvas.press("Enter");
       return point;
     };

@@ -118,6 +118,8 @@ pub struct Level {
 pub enum Stop {
     /// The estimate is within what is accepted.
     Met,
+    /// It is, but leaves something out that a warning names: muscles, points, or more than is accepted of what linearity leaves out.
+    Incomplete,
     Cells,
     Time,
     Memory,
@@ -164,6 +166,7 @@ impl Stop {
     pub fn name(self) -> &'static str {
         match self {
             Stop::Met => "met",
+            Stop::Incomplete => "incomplete",
             Stop::Cells => "cells",
             Stop::Time => "time",
             Stop::Memory => "memory",
@@ -324,11 +327,15 @@ pub fn predict_adaptively(
         Finest { bisection, scene: on_it, displacement }
     });
     prediction.warnings.extend((stop != Stop::Met).then(|| not_met(&limits, &levels, stop)));
-    prediction.warnings.extend(linearisation_error_warning(scene, &prediction, wanted));
+    let mut left_out: Vec<Warning> = Vec::new();
+    left_out.extend(linearisation_error_warning(scene, &prediction, wanted));
     if finest.is_some() {
-        prediction.warnings.extend(muscles_stay(scene));
-        prediction.warnings.extend(points_stay(scene)?);
+        left_out.extend(muscles_stay(scene));
+        left_out.extend(points_stay(scene)?);
     }
+    let is_incomplete = stop == Stop::Met && !left_out.is_empty();
+    let stop = if is_incomplete { Stop::Incomplete } else { stop };
+    prediction.warnings.extend(left_out);
     Ok(AdaptivePrediction { prediction, finest, levels, stop })
 }
 
@@ -349,7 +356,7 @@ fn at_first_nodes(prediction: &mut Prediction, scene: &Scene) -> Vec<Vector> {
 
 fn not_met(limits: &[Limit], levels: &[Level], stop: Stop) -> Warning {
     let bound = match stop {
-        Stop::Met => "nothing",
+        Stop::Met | Stop::Incomplete => "nothing",
         Stop::Cells => "the bound on cells",
         Stop::Time => "the time that is left",
         Stop::Memory => "the memory that is allowed",

@@ -12,6 +12,7 @@ use super::rigid_numbers::SAMPLES;
 use super::second_order::Solutions;
 use super::superposition::{Amounts, InnerLoad};
 use super::{COLUMNS_PER_SEGMENT, Response, ResponseSegment, superposition};
+use crate::boundary::tearing::{EdgeBetween, edges_between};
 use crate::boundary::{ConnectedPart, Constraint, NodeClass};
 use crate::mesh::Vector;
 use crate::mesh::ignored::listed;
@@ -53,6 +54,8 @@ pub struct Columns {
     pub second_order: Option<QuadraticForm>,
     /// Connected parts with their constraints; segments by their place in `segments`, others stay.
     pub parts: Vec<ConnectedPart>,
+    /// Edges that a plan may tear, of nodes held by different segments, numbered as in `parts`, or by one and what stays.
+    pub edges_between: Vec<EdgeBetween>,
     /// For each segment whether tissue slides on it.
     pub carries_wall: Vec<bool>,
     /// Whether plans may carry the whole tissue away as one.
@@ -106,11 +109,29 @@ pub fn check_order(scene: &Scene, order: ResponseOrder) -> Result<(), ResponseEr
     }
 }
 
+/// The place of a segment in the list of those that may move.
+fn place_among(chosen: &[usize], segment: u32) -> Option<u32> {
+    let place = chosen.iter().position(|&other| other == segment as usize);
+    place.map(|place| place as u32)
+}
+
 /// The parts of a scene where only these segments may move, by their place in the list.
 fn parts_where(scene: &Scene, chosen: &[usize]) -> Vec<ConnectedPart> {
-    let place = |segment: u32| chosen.iter().position(|&other| other == segment as usize);
-    let number = |segment: u32| place(segment).map(|place| place as u32);
+    let number = |segment: u32| place_among(chosen, segment);
     scene.parts.iter().map(|part| part.clone().with_segments(number)).collect()
+}
+
+/// Edges between what may move and what else holds tissue, segments by their place in the list.
+fn edges_where(scene: &Scene, chosen: &[usize]) -> Vec<EdgeBetween> {
+    let holder = |class: NodeClass| match class {
+        NodeClass::Joined(segment) => {
+            place_among(chosen, segment).map_or(NodeClass::Fixed, NodeClass::Joined)
+        }
+        other => other,
+    };
+    let edges = edges_between(&scene.mesh, &scene.conditions).into_iter();
+    let edges = edges.map(|edge| EdgeBetween { held_by: edge.held_by.map(holder), ..edge });
+    edges.filter(|edge| edge.held_by[0] != edge.held_by[1]).collect()
 }
 
 /// A segment with which every part of the skin that may move goes along as one, whatever the plan: nothing else
@@ -216,6 +237,7 @@ pub fn build_of(
         linearity,
         second_order,
         parts,
+        edges_between: edges_where(scene, &chosen),
         carries_wall,
         allow_unfixed: scene.allow_unfixed,
         diagonal: (high - low).norm(),

@@ -7,6 +7,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use mechanics::boundary::NodeSelection;
 use mechanics::material::LinearElastic;
 use mechanics::mesh::half_head::half_head;
+use mechanics::mesh::sample::block;
 use mechanics::mesh::{CellShape, Vector, VolumeMesh};
 use mechanics::prediction::{
     Case, CaseSegment, Plan, Prediction, Prescribed, Scene, Settings, predict,
@@ -108,4 +109,50 @@ pub fn apart(scene: &Scene, a: &Prediction, b: &Prediction) -> [f64; 2] {
     distances.sort_by(f64::total_cmp);
     let mean = distances.iter().sum::<f64>() / distances.len() as f64;
     [mean, distances[distances.len() * 95 / 100]]
+}
+
+/// A column of cells that are askew but on its outside and where it is flat at a height.
+pub fn askew_column(
+    size: Vector,
+    cells: [usize; 3],
+    shape: CellShape,
+    is_flat: impl Fn(f64) -> bool,
+) -> VolumeMesh {
+    let mut mesh = block(size, cells, shape);
+    let is_inner = |x: &Vector| (0..3).all(|k| x[k] > 0.1 && x[k] < size[k] - 0.1);
+    for x in mesh.nodes.iter_mut().filter(|x| is_inner(x) && !is_flat(x.z)) {
+        *x += Vector::new((2.0 * x.y).sin(), (1.7 * x.z).cos(), (2.3 * x.x).sin()) * 0.4;
+    }
+    mesh
+}
+
+/// Smooth walls around a column, and a top that is moved.
+pub fn confined(top: f64) -> Vec<Prescribed> {
+    let zero = Some(0.0);
+    let walls = [
+        ("x_min", [zero, None, None]),
+        ("x_max", [zero, None, None]),
+        ("y_min", [None, zero, None]),
+        ("y_max", [None, zero, None]),
+        ("z_max", [None, None, Some(top)]),
+    ];
+    walls.map(|(set, held)| constraint(set, held)).to_vec()
+}
+
+/// Adds a mesh to another; nodes of both at one place are made one where that is wanted.
+pub fn join(mesh: &mut VolumeMesh, other: &VolumeMesh, is_one: impl Fn(&Vector) -> bool) {
+    let own = mesh.nodes.clone();
+    let number = |node: &Vector| {
+        let same = own.iter().position(|own| (own - node).norm() < 1e-9);
+        let added = || {
+            mesh.nodes.push(*node);
+            mesh.nodes.len() - 1
+        };
+        same.filter(|_| is_one(node)).unwrap_or_else(added) as u32
+    };
+    let numbers: Vec<u32> = other.nodes.iter().map(number).collect();
+    for (shape, nodes) in other.cells.iter() {
+        let nodes: Vec<u32> = nodes.iter().map(|&node| numbers[node as usize]).collect();
+        mesh.cells.push(shape, &nodes);
+    }
 }

@@ -54,9 +54,10 @@ pub struct RefinementDocument {
     pub accepted_regions_mm: BTreeMap<String, f64>,
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub accepted_landmarks_mm: BTreeMap<String, f64>,
-    /// Whether the estimates on the last mesh are accepted.
+    /// Whether the estimates on the last mesh are accepted and leave nothing out that a warning names.
     pub met: bool,
-    /// Why refinement stopped: `met`, or the bound `cells`, `time` or `memory`.
+    /// Why refinement stopped: `met`; `incomplete` if the estimates are accepted and leave out what a warning names
+    /// (`muscles-not-refined`, `points-refined`, or `tolerance-not-met` for linearity); or the bound `cells`, `time` or `memory`.
     pub stopped: String,
     /// The meshes, beginning with that of the case.
     pub levels: Vec<RefinementLevelDocument>,
@@ -126,9 +127,10 @@ impl RefinementDocument {
     /// In words.
     pub fn summary(&self) -> String {
         let Some(last) = self.levels.last() else { return "no mesh was solved".to_owned() };
-        let verdict = match self.met {
-            true => "within".to_owned(),
-            false => format!("short of (bound: {})", self.stopped),
+        let verdict = match self.stopped.as_str() {
+            _ if self.met => "within".to_owned(),
+            "incomplete" => "with more that it leaves out (see the warnings), within".to_owned(),
+            bound => format!("short of (bound: {bound})"),
         };
         format!(
             "{} meshes, the last of {} cells: an estimated {:.3} mm in the mean over the skin that moves, {verdict} {} mm",

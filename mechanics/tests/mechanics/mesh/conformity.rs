@@ -4,6 +4,8 @@ use mechanics::mesh::conformity::cells_do_not_match;
 use mechanics::mesh::sample::block;
 use mechanics::mesh::{CellShape, Vector, VolumeMesh};
 
+use crate::scenes::join;
+
 /// A block of 20 mm and one beside it, with the nodes of both at one place made one where that is wanted.
 fn beside(
     (shape, cells): (CellShape, [usize; 3]),
@@ -13,26 +15,7 @@ fn beside(
     let mut mesh = block(Vector::repeat(20.0), cells, shape);
     let mut other = block(Vector::repeat(20.0), other_cells, other_shape);
     other.nodes.iter_mut().for_each(|x| x.x += 20.0);
-    let first = mesh.nodes.clone();
-    let numbers: Vec<u32> = other
-        .nodes
-        .iter()
-        .map(|node| {
-            let same = first.iter().position(|own| (own - node).norm() < 1e-9);
-            match same.filter(|_| is_one(node)) {
-                Some(same) => same as u32,
-                None => {
-                    mesh.nodes.push(*node);
-                    mesh.nodes.len() as u32 - 1
-                }
-            }
-        })
-        .collect();
-    for (shape, nodes) in other.cells.iter() {
-        let nodes: Vec<u32> = nodes.iter().map(|&node| numbers[node as usize]).collect();
-        mesh.cells.push(shape, &nodes);
-    }
-    mesh.node_sets.clear();
+    join(&mut mesh, &other, is_one);
     mesh
 }
 

@@ -10,7 +10,7 @@ use mechanics::prediction::{
     Sliding, SlidingNormal,
 };
 
-use crate::scenes::{case_of, constraint, exact, material, set, solve};
+use crate::scenes::{case_of, constraint, exact, join, material, set, solve};
 
 fn with(element: ElementChoice) -> Settings {
     Settings { element, ..Settings::default() }
@@ -398,4 +398,30 @@ fn a_residual_nobody_can_reach_ends_with_the_history() {
     assert!(
         matches!(failed, mechanics::prediction::ModelError::Solver(mechanics::prediction::SolverError::NotConverged { history, .. }) if !history.is_empty())
     );
+}
+
+#[test]
+fn tetrahedra_between_hexahedra_are_solved_at_finite_strain() {
+    // The last free nodes have no pressure, and no node of a tetrahedron is held.
+    let mut mesh = VolumeMesh::default();
+    for (level, shape) in
+        [CellShape::Hex8, CellShape::Tet4, CellShape::Hex8].into_iter().enumerate()
+    {
+        let mut above = block(Vector::repeat(10.0), [2, 2, 2], shape);
+        above.nodes.iter_mut().for_each(|x| x.z += 10.0 * level as f64);
+        join(&mut mesh, &above, |_| true);
+    }
+    for (name, z) in [("bottom", 0.0), ("top", 30.0)] {
+        let at = (0_u32..).zip(&mesh.nodes).filter(|(_, x)| (x.z - z).abs() < 1e-9);
+        let nodes = at.map(|(node, _)| node).collect();
+        mesh.node_sets.insert(name.to_owned(), nodes);
+    }
+    let top = constraint("top", [Some(1.0), Some(0.0), Some(-1.5)]);
+    let case = Case { fixed: vec![set("bottom")], ..case_of(mesh, material(15.0, 0.46)) };
+    let plan = Plan { prescribed: vec![top], ..Plan::default() };
+    let settings = Settings { method: Method::FemNonlinear, ..Settings::default() };
+    let found = solve(&case, &plan, &settings);
+    let pairs = case.volume.nodes.iter().zip(&found.displacement);
+    let mut inside = pairs.filter(|(x, _)| x.z > 9.0 && x.z < 21.0);
+    assert!(inside.all(|(_, u)| u.x > 0.1 && u.x < 0.9 && u.z < -0.1 && u.z > -1.4));
 }

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use mechanics::material::{Fibre, FibreLaw};
-use mechanics::mesh::{CellShape, TriangleSurface, Vector, sample::block};
+use mechanics::mesh::{CellShape, TriangleSurface, Vector};
 use mechanics::muscle::strap::box_surface;
 use mechanics::prediction::{
     Activation, BodyFibres, Case, ElementChoice, FibreDirection, Growth, Method, Muscle,
@@ -11,20 +11,18 @@ use mechanics::prediction::{
 };
 
 use super::muscles::in_region;
-use crate::scenes::{case_of, constraint, exact, largest_error, material, solve};
+use crate::scenes::{
+    askew_column, case_of, confined, constraint, exact, largest_error, material, solve,
+};
 
 const HEIGHT: f64 = 15.0;
 const NU: f64 = 0.49;
 
 /// 10 x 10 x 30 mm of askew tetrahedra; the interface is flat.
 fn column() -> Case {
-    let mut mesh = block(Vector::new(10.0, 10.0, 2.0 * HEIGHT), [4, 4, 12], CellShape::Tet4);
-    let is_inner = |x: &Vector| [x.x, x.y].iter().all(|at| *at > 0.1 && *at < 9.9);
-    for x in mesh.nodes.iter_mut().filter(|x| is_inner(x) && (x.z - HEIGHT).abs() > 0.1) {
-        if x.z > 0.1 && x.z < 2.0 * HEIGHT - 0.1 {
-            *x += Vector::new((2.0 * x.y).sin(), (1.7 * x.z).cos(), (2.3 * x.x).sin()) * 0.4;
-        }
-    }
+    let size = Vector::new(10.0, 10.0, 2.0 * HEIGHT);
+    let is_interface = |z: f64| (z - HEIGHT).abs() < 0.1;
+    let mut mesh = askew_column(size, [4, 4, 12], CellShape::Tet4, is_interface);
     let upper = |cell: usize| mesh.corners(cell).map(|x| x.z).sum::<f64>() > 4.0 * HEIGHT;
     let labels = (0..mesh.cells.len()).map(|cell| u16::from(upper(cell)).into()).collect();
     mesh.cell_labels.insert("layer".to_owned(), labels);
@@ -36,18 +34,9 @@ fn column() -> Case {
 }
 
 /// Smooth walls all around, and a top that is moved.
-fn confined(top: f64) -> Plan {
-    let zero = Some(0.0);
-    let walls = [
-        ("x_min", [zero, None, None]),
-        ("x_max", [zero, None, None]),
-        ("y_min", [None, zero, None]),
-        ("y_max", [None, zero, None]),
-        ("z_min", [None, None, zero]),
-        ("z_max", [None, None, Some(top)]),
-    ];
-    let prescribed = walls.map(|(set, held)| constraint(set, held)).to_vec();
-    Plan { prescribed, ..Plan::default() }
+fn walled(top: f64) -> Plan {
+    let bottom = constraint("z_min", [None, None, Some(0.0)]);
+    Plan { prescribed: [vec![bottom], confined(top)].concat(), ..Plan::default() }
 }
 
 /// The displacement along z where the interface moves by so much.
@@ -83,7 +72,7 @@ fn a_layer_that_pulls_shortens_by_the_closed_form_whether_it_is_a_region_or_a_bo
     for muscle in [in_region("levator", "lower", Vector::z()), body] {
         let case = Case { muscles: vec![muscle.clone()], ..column() };
         let activations = vec![Activation { muscle: "levator".to_owned(), stress: 8.0 }];
-        let plan = Plan { activations, ..confined(0.0) };
+        let plan = Plan { activations, ..walled(0.0) };
         for element in elements() {
             let found = solve(&case, &plan, &Settings { element, ..exact() });
             let error = largest_error(&case.volume, &found.displacement, tent(exact_mm, 0.0));
@@ -106,7 +95,7 @@ fn a_layer_that_grows_and_one_with_other_fibres_move_by_the_closed_form() {
     let case = column();
     let volume_change = 0.15;
     let growth = vec![Growth { region: "lower".to_owned(), volume_change }];
-    let plan = Plan { growth, ..confined(0.0) };
+    let plan = Plan { growth, ..walled(0.0) };
     // 3 K eps_g H / (2 (lambda + 2 mu)).
     let tissue = material(15.0, NU);
     let stiffness = tissue.lambda() + 2.0 * tissue.shear_modulus();
@@ -126,9 +115,8 @@ fn a_layer_that_grows_and_one_with_other_fibres_move_by_the_closed_form() {
     let directions = [("lower", Vector::z()), ("upper", Vector::x())];
     let directions = directions.map(|(name, way)| (name.to_owned(), FibreDirection::Uniform(way)));
     case.fibres = directions.into();
-    let answers = elements().map(|element| {
-        solve(&case, &confined(-2.0), &Settings { element, ..exact() }).displacement
-    });
+    let answers = elements()
+        .map(|element| solve(&case, &walled(-2.0), &Settings { element, ..exact() }).displacement);
     let [stabilised, plain] = &answers;
     let apart = stabilised.iter().zip(plain).map(|(one, other)| (one - other).norm());
     let farthest = apart.fold(0.0, f64::max);
