@@ -5,6 +5,8 @@
 //! SIAM J. Matrix Anal. 21, 2000; Gould, Hribar, Nocedal, SIAM J. Sci. Comput. 23, 2001). The equations hold to rounding in
 //! every iteration, A and its hierarchy stay as they are, and the columns Z of equations are made once, one cycle for eight.
 
+use rayon::prelude::*;
+
 use super::independent::Independent;
 use super::lanes::MOST_LANES;
 use super::preconditioned::{Equation, Preconditioned};
@@ -17,6 +19,9 @@ const MOST_ITERATIONS: usize = 2000;
 
 /// Directions to which a new one is made conjugate.
 const KEPT: usize = 60;
+
+/// Unknowns to which columns are added in one go.
+const STRETCH: usize = 2048;
 
 /// How often a true residual above the recursive one restarts the iteration.
 const MOST_RESTARTS: usize = 8;
@@ -292,12 +297,17 @@ impl Run<'_, '_> {
     }
 }
 
-/// x += factor Z n.
+/// x += factor Z n, a stretch of x at a time: it stays in the first cache while columns stream past.
 fn add_columns(equations: &Equations, rows: &[usize], n: &[f64], factor: f64, x: &mut [[f64; 1]]) {
-    for (&row, n) in rows.iter().zip(n).filter(|(_, n)| **n != 0.0) {
-        let by = factor * n;
-        x.iter_mut().zip(equations.column(row)).for_each(|([x], z)| *x += by * f64::from(*z));
-    }
+    let terms = rows.iter().zip(n).filter(|(_, n)| **n != 0.0);
+    let terms: Vec<(f64, &[f32])> =
+        terms.map(|(&row, n)| (factor * n, equations.column(row))).collect();
+    x.par_chunks_mut(STRETCH).enumerate().for_each(|(place, x)| {
+        for (by, column) in &terms {
+            let column = &column[place * STRETCH..];
+            x.iter_mut().zip(column).for_each(|([x], z)| *x += by * f64::from(*z));
+        }
+    });
 }
 
 /// y += G^T n.
