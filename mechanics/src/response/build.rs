@@ -121,17 +121,22 @@ fn parts_where(scene: &Scene, chosen: &[usize]) -> Vec<ConnectedPart> {
     scene.parts.iter().map(|part| part.clone().with_segments(number)).collect()
 }
 
-/// Edges between what may move and what else holds tissue, segments by their place in the list.
+/// Edges between what may move and what else holds tissue, segments by their place in the list; not those to nodes that
+/// slide, which may go along with a wall.
 fn edges_where(scene: &Scene, chosen: &[usize]) -> Vec<EdgeBetween> {
     let holder = |class: NodeClass| match class {
         NodeClass::Joined(segment) => {
-            place_among(chosen, segment).map_or(NodeClass::Fixed, NodeClass::Joined)
+            Some(place_among(chosen, segment).map_or(NodeClass::Fixed, NodeClass::Joined))
         }
-        other => other,
+        NodeClass::Fixed => Some(NodeClass::Fixed),
+        NodeClass::Prescribed | NodeClass::Sliding | NodeClass::Free => None,
     };
-    let edges = edges_between(&scene.mesh, &scene.conditions).into_iter();
-    let edges = edges.map(|edge| EdgeBetween { held_by: edge.held_by.map(holder), ..edge });
-    edges.filter(|edge| edge.held_by[0] != edge.held_by[1]).collect()
+    let held = |edge: EdgeBetween| {
+        let [a, b] = edge.held_by.map(holder);
+        let held_by = [a?, b?];
+        (held_by[0] != held_by[1]).then_some(EdgeBetween { held_by, ..edge })
+    };
+    edges_between(&scene.mesh, &scene.conditions).into_iter().filter_map(held).collect()
 }
 
 /// A segment with which every part of the skin that may move goes along as one, whatever the plan: nothing else
