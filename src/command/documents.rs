@@ -43,6 +43,12 @@ pub fn read<T: DeserializeOwned>(path: &Path) -> Result<T, CommandError> {
         .map_err(|problem| CommandError::Document { path: path.to_owned(), problem })
 }
 
+/// The document in a JSON value read from a file.
+pub fn document<T: DeserializeOwned>(value: Value, path: &Path) -> Result<T, CommandError> {
+    strict::from_value(value)
+        .map_err(|problem| CommandError::Document { path: path.to_owned(), problem })
+}
+
 /// What the spec of a case file says of how tissue is computed, and every kind of job of one case may say.
 const OF_TISSUE: [&str; 6] = ["method", "element", "materials", "membrane", "tolerance", "budget"];
 
@@ -69,9 +75,7 @@ pub fn spec_beside<T: DeserializeOwned>(
             members.entry(name).or_insert(stated);
         }
     }
-    let path = path.unwrap_or(&asked.path);
-    strict::from_value(value)
-        .map_err(|problem| CommandError::Document { path: path.to_owned(), problem })
+    document(value, path.unwrap_or(&asked.path))
 }
 
 /// Why a member that decides numbers of a prediction is refused by another kind of job of the same tissue.

@@ -4,8 +4,9 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use serde_json::Value;
 
-use super::documents::{CaseFile, read, write};
+use super::documents::{CaseFile, document, read, write};
 use super::failure::CommandError;
 use super::files::{FileSource, ScaleArguments, UnitArgument};
 use super::screen::{print_files, print_warnings, run_with_progress};
@@ -32,6 +33,7 @@ const NO_SCAN: &str =
     "give what is to be meshed: --scan FILE, --labels FILE, or --skin FILE and --bone FILE";
 const NO_CLASSES: &str =
     "--labels needs what its labels are: `labels.classes` in the file of --mesh-spec";
+const NO_LABELS: &str = "`labels` of --mesh-spec says what the labels of a label map are: give its file as --labels FILE";
 const NO_SKIN_SCAN: &str = "`skin_scan` of --mesh-spec says how a surface scan goes onto the CT: give its file as --skin-scan FILE";
 const NO_SKIN: &str = "--bone needs the skin around it: --skin FILE";
 const SKIN_OF_SCAN: &str = "--skin has no meaning with --scan or --labels: the skin is found in the scan, and is the node set `skin` of the \
@@ -88,7 +90,8 @@ pub struct ScanArguments {
     /// times, for bones that are segments already
     #[arg(long, value_name = "FILE|NAME=FILE", conflicts_with_all = ["scan", "labels"], group = "meshed", help_heading = SCAN)]
     bone: Vec<String>,
-    /// The JSON body of the REST job, without `scan`, `surfaces` and `osteotomy`; --labels replaces `labels.image`, which may be any text
+    /// The JSON body of the REST job, without the files that other options give (`scan`, `surfaces`, `labels.image`, `skin_scan.mesh`); cuts
+    /// of --plan come first
     #[arg(long, value_name = "FILE", requires = "meshed", help_heading = SCAN)]
     mesh_spec: Option<PathBuf>,
     /// About how many tetrahedra; default 300000
@@ -171,6 +174,17 @@ impl ScanArguments {
         Err(CommandError::Usage(why.to_owned()))
     }
 
+    /// The file of --mesh-spec, whose `skin_scan` and `labels` need not name the files that other options give.
+    fn read_spec(&self, path: &Path) -> Result<MeshingDocument, CommandError> {
+        let mut value = read::<Value>(path)?;
+        for (whole, member) in [("skin_scan", "mesh"), ("labels", "image")] {
+            if let Some(whole) = value.get_mut(whole).and_then(Value::as_object_mut) {
+                whole.entry(member).or_insert_with(|| "".into());
+            }
+        }
+        document(value, path)
+    }
+
     /// The document of the meshing, and the plan without its cuts.
     fn spec(
         &self,
@@ -178,7 +192,7 @@ impl ScanArguments {
         mut plan: Option<PlanDocument>,
     ) -> Result<(MeshingDocument, Option<PlanDocument>), CommandError> {
         let mut spec = match &self.mesh_spec {
-            Some(path) => read::<MeshingDocument>(path)?,
+            Some(path) => self.read_spec(path)?,
             None => MeshingDocument::default(),
         };
         spec.scan = self.scan.as_ref().map(|scan| scan.to_string_lossy().into_owned());
@@ -193,18 +207,18 @@ impl ScanArguments {
         match (&self.labels, &mut spec.labels) {
             (Some(file), Some(labels)) => labels.image = file.to_string_lossy().into_owned(),
             (Some(_), None) => return Err(CommandError::Usage(NO_CLASSES.to_owned())),
-            (None, labels) => *labels = None,
+            (None, Some(_)) => return Err(CommandError::Usage(NO_LABELS.to_owned())),
+            (None, None) => {}
         }
-        spec.surfaces = match self.bone.is_empty() {
-            true => None,
-            false => Some(surfaces(skin, &self.bone)?),
-        };
+        if !self.bone.is_empty() {
+            spec.surfaces = Some(surfaces(skin, &self.bone)?);
+        }
         if let Some(tetrahedra) = self.tetrahedra {
             spec.size.tetrahedra = Some(tetrahedra);
         }
         if let Some(plan) = &mut plan {
-            spec.frame = plan.frame;
-            spec.osteotomy = plan.osteotomy.take();
+            spec.frame = plan.frame.or(spec.frame);
+            spec.osteotomy = plan.osteotomy.take().or(spec.osteotomy);
         }
         if let Some(plan) = &plan {
             check_segments(plan, &spec)?;

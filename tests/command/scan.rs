@@ -116,8 +116,7 @@ fn a_label_map_is_meshed_in_its_regions_and_says_which_labels_it_was_not_told_of
     let (labels, spec, out) = (file("labels.nrrd"), file("spec.json"), file("out"));
     let asked = ["mesh", "--labels", path(&labels), "--mesh-spec", path(&spec)];
     let asked = [&asked[..], &["--out", path(&out)]].concat();
-    let document =
-        json!({"labels": {"image": "", "classes": classes}, "size": {"tetrahedra": 20_000}});
+    let document = json!({"labels": {"classes": classes}, "size": {"tetrahedra": 20_000}});
     let mut short = document.clone();
     short["labels"]["classes"].as_array_mut().unwrap().remove(1);
     fs::write(&spec, short.to_string()).unwrap();
@@ -126,6 +125,10 @@ fn a_label_map_is_meshed_in_its_regions_and_says_which_labels_it_was_not_told_of
     assert_eq!(refused.status.code(), Some(2), "{told}");
     assert!(told.contains("/spec/labels/classes") && told.contains("2 ("), "{told}");
     fs::write(&spec, document.to_string()).unwrap();
+    let of_a_ct =
+        ["mesh", "--scan", path(&labels), "--mesh-spec", path(&spec), "--out", path(&out)];
+    let told = text(&facies(&of_a_ct).stderr);
+    assert!(told.contains("--labels FILE"), "{told}");
     let done = facies(&asked);
     assert_eq!(done.status.code(), Some(0), "{}", text(&done.stderr));
     let case: Value = serde_json::from_slice(&fs::read(out.join("case.json")).unwrap()).unwrap();

@@ -164,7 +164,7 @@ fn a_face_that_is_not_that_of_the_scan_is_refused_by_name() {
     // Without a scan it has no meaning, and with one of a document alone no file.
     let refused = facies(&["mesh", "--skin-scan", path(&face), "--out", path(&out)]);
     assert_eq!(refused.status.code(), Some(2));
-    let few = json!({"skin_scan": {"mesh": "x", "landmarks": {
+    let few = json!({"skin_scan": {"landmarks": {
         "nose": {"scan_mm": [0, 0, 0], "ct_mm": [1, 1, 1]}}}});
     fs::write(file("spec.json"), few.to_string()).unwrap();
     let (face, spec) = (file("face.stl"), file("spec.json"));

@@ -9,7 +9,9 @@ use super::skin_overlap::{Deepest, deepest_overlap};
 use crate::boundary::NodeClass;
 use crate::boundary::contact::{BoneInside, FacingSurfaces, bones_inside};
 use crate::mesh::{Vector, Warning};
-use crate::model::fem::contact::{Contact, ContactProblem, Effort, PressingRow, forces_of};
+use crate::model::fem::contact::{
+    Contact, ContactProblem, Effort, PressingRow, SETTLED_MM, forces_of,
+};
 use crate::model::fem::finite_strain;
 use crate::model::fem::linear_system::{LinearSystem, Solved};
 use crate::model::problem::{Equilibrium, ModelError};
@@ -18,9 +20,6 @@ use crate::solver::SolverError;
 
 /// Parts of the boundary that lie in each other deeper than this, in mm, are reported.
 const DEEP_MM: f64 = 0.05;
-
-/// Closest points that still moved by more than this in the last round, in mm, are reported.
-const MOVED_MM: f64 = 1e-3;
 
 /// Contact of an answer.
 #[derive(Clone, Debug, PartialEq)]
@@ -267,7 +266,7 @@ impl Touch {
             warnings.push(warning.with("x_mm", at.x).with("y_mm", at.y).with("z_mm", at.z));
         }
         warnings.extend(self.bones_inside.iter().map(|inside| bone_inside(scene, inside)));
-        if *last_moved_mm > MOVED_MM {
+        if *last_moved_mm > SETTLED_MM {
             let detail = format!(
                 "closest points of contact still move the answer by {last_moved_mm:.1e} mm when they are looked for the {rounds}th time"
             );

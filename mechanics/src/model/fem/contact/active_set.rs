@@ -5,7 +5,7 @@ use crate::solver::SolverError;
 use crate::solver::constrained::{ConstrainedSolution, ConstraintTarget, Equations, Point};
 
 /// Passes after which no set is expected to repeat.
-const MOST_PASSES: usize = 30;
+pub const MOST_PASSES: usize = 30;
 
 /// A row that has changed this often presses until the end.
 const MOST_FLIPS: usize = 3;
@@ -49,6 +49,8 @@ pub(in crate::model::fem) struct Task<'a> {
     pub relative_residual: f64,
     /// That of the first passes, until the set repeats.
     pub first_residual: f64,
+    /// After which a set need not repeat.
+    pub most_passes: usize,
     /// For each row the force in mN with which it pressed when the answer without contact was found; nothing where none did.
     pub before: &'a [f64],
     /// Forces in mN that the answer without contact leaves, by unknown; nothing where it balances all.
@@ -92,7 +94,7 @@ impl ActiveSet {
             taken_away.iter_mut().zip(task.left).for_each(|([away], [left])| *away -= left);
         }
         let mut wanted = task.first_residual.max(task.relative_residual);
-        while settled.passes < MOST_PASSES {
+        while settled.passes < task.most_passes {
             settled.passes += 1;
             let rows: Vec<usize> =
                 (0..self.presses.len()).filter(|&row| self.presses[row]).collect();

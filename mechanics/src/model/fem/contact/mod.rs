@@ -11,8 +11,8 @@ mod kept_rows;
 mod pressing;
 mod touch;
 
-pub(super) use active_set::{ActiveSet, Task};
+pub(super) use active_set::{ActiveSet, MOST_PASSES, Task};
 pub(super) use equations::FreeUnknowns;
 pub(super) use kept_rows::KeptRows;
-pub use pressing::{ContactProblem, InContact, Pressing};
+pub use pressing::{ContactProblem, InContact, Pressing, SETTLED_MM};
 pub use touch::{Contact, Effort, PressingRow, forces_of};

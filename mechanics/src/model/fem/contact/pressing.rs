@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 
-use super::active_set::{ActiveSet, SettledSet, Task};
+use super::active_set::{ActiveSet, MOST_PASSES, SettledSet, Task};
 use super::equations::FreeUnknowns;
 use super::kept_rows::{KeptRows, Round};
 use super::touch::{Contact, Effort};
@@ -24,9 +24,16 @@ const MOST_ROUNDS: usize = 15;
 /// What moves goes by at most this part of its longest edges in a step; the second where the first does not settle.
 const STEPS: [f64; 2] = [0.5, 0.125];
 
-/// Relative residual on the way, and where closest points may still change.
+/// Relative residual and passes of the active set as long as closest points change: the next ones say more than a set that repeats.
 const ON_THE_WAY: f64 = 0.01;
+const FEW_PASSES: usize = 3;
+
+/// Relative residual where the last closest points moved the answer by less than this, in mm.
 const NEARLY: f64 = 1e-3;
+const NEAR_MM: f64 = 0.05;
+
+/// Closest points that move the answer by less than this, in mm, are not looked for again; by more in the end, they are reported.
+pub const SETTLED_MM: f64 = 0.005;
 
 /// A linear system, its answer without contact, and what may touch.
 pub struct ContactProblem<'a> {
@@ -74,8 +81,7 @@ impl<'a> ContactProblem<'a> {
             rounds.share = step as f64 / steps as f64;
             rounds.look();
             if rounds.touches() {
-                let at_end = rounds.share >= 1.0;
-                rounds.settle(if at_end { NEARLY } else { ON_THE_WAY }, progress)?;
+                rounds.settle(ON_THE_WAY, FEW_PASSES, progress)?;
             } else {
                 rounds.displacement = self.free_part(rounds.share);
                 rounds.reached = rounds.share;
@@ -86,24 +92,30 @@ impl<'a> ContactProblem<'a> {
             if !rounds.touches() {
                 return Ok(None);
             }
-            rounds.settle(NEARLY, progress)?;
+            rounds.settle(ON_THE_WAY, FEW_PASSES, progress)?;
         }
-        let mut last_moved_mm = 0.0;
+        let mut last_moved_mm = f64::INFINITY;
         for _ in 0..MOST_ROUNDS {
-            last_moved_mm = match rounds.look() {
-                0 => 0.0,
-                _ => rounds.settle(NEARLY, progress)?,
-            };
-            if last_moved_mm == 0.0 {
+            if rounds.look() == 0 && rounds.repeats {
+                last_moved_mm = 0.0;
+                break;
+            }
+            let is_near = last_moved_mm < NEAR_MM;
+            let residual = if is_near { NEARLY } else { ON_THE_WAY };
+            last_moved_mm = rounds.settle(residual, FEW_PASSES, progress)?;
+            if is_near && rounds.repeats && last_moved_mm < SETTLED_MM {
                 break;
             }
         }
         if last_moved_mm > UNSETTLED_MM {
-            let passes = rounds.effort.passes;
-            return Err(ModelError::ContactUnsettled { passes, moved_mm: last_moved_mm });
+            return Err(rounds.unsettled(last_moved_mm));
         }
-        rounds.settle(self.relative_residual, progress)?;
-        Ok(Some(rounds.answer(last_moved_mm)))
+        last_moved_mm =
+            last_moved_mm.max(rounds.settle(self.relative_residual, MOST_PASSES, progress)?);
+        match rounds.repeats {
+            true => Ok(Some(rounds.answer(last_moved_mm))),
+            false => Err(rounds.unsettled(f64::INFINITY)),
+        }
     }
 
     fn free(&self) -> &[Vector] {
@@ -152,6 +164,8 @@ struct Rounds<'a, 'b> {
     pressed: BTreeMap<u32, f64>,
     effort: Effort,
     relative_residual: f64,
+    /// Whether the last set repeated.
+    repeats: bool,
 }
 
 impl<'a, 'b> Rounds<'a, 'b> {
@@ -170,7 +184,12 @@ impl<'a, 'b> Rounds<'a, 'b> {
             pressed: BTreeMap::new(),
             effort: Effort::default(),
             relative_residual: 0.0,
+            repeats: false,
         })
+    }
+
+    fn unsettled(&self, moved_mm: f64) -> ModelError {
+        ModelError::ContactUnsettled { passes: self.effort.passes, moved_mm }
     }
 
     /// Looks for closest points with the answer so far; how many rows say something new.
@@ -194,10 +213,12 @@ impl<'a, 'b> Rounds<'a, 'b> {
         self.has_touched() || self.kept_rows.rows.iter().any(closes)
     }
 
-    /// The set that presses, for rows that stay as they are, and the answer with it; how far the answer moved, in mm.
+    /// The set that presses after at most so many passes, for rows that stay as they are, and the answer with it; how far the
+    /// answer moved, in mm.
     fn settle(
         &mut self,
         relative_residual: f64,
+        most_passes: usize,
         progress: &dyn Progress,
     ) -> Result<f64, ModelError> {
         let free = self.problem.free();
@@ -219,6 +240,7 @@ impl<'a, 'b> Rounds<'a, 'b> {
             movement,
             relative_residual,
             first_residual: ON_THE_WAY,
+            most_passes,
             before: &[],
             left: &[],
             progress,
@@ -229,10 +251,7 @@ impl<'a, 'b> Rounds<'a, 'b> {
         let settled = set.settle(&mut self.equations, &task, start)?;
         self.effort.count(&settled);
         self.relative_residual = settled.relative_residual;
-        if !settled.repeats {
-            let (passes, moved_mm) = (self.effort.passes, f64::INFINITY);
-            return Err(ModelError::ContactUnsettled { passes, moved_mm });
-        }
+        self.repeats = settled.repeats;
         let SettledSet { point, rows: active, .. } = settled;
         (self.added, self.active) = (point, active);
         let forces = self.pressing().map(|(row, force)| (self.kept_rows.rows[row].node, force));

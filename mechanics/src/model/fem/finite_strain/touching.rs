@@ -12,7 +12,7 @@ use crate::boundary::contact::{CLOSED_MM, FacingSurfaces, with_pressing};
 use crate::mesh::Vector;
 use crate::model::dofs::DofMap;
 use crate::model::fem::contact::{
-    ActiveSet, Contact, Effort, FreeUnknowns, KeptRows, PressingRow, Task,
+    ActiveSet, Contact, Effort, FreeUnknowns, KeptRows, MOST_PASSES, PressingRow, Task,
 };
 use crate::model::problem::ModelError;
 use crate::progress::Progress;
@@ -172,6 +172,7 @@ impl<'a> Touching<'a> {
             movement,
             relative_residual,
             first_residual,
+            most_passes: MOST_PASSES,
             before,
             left: ahead.left,
             progress,
