@@ -14,6 +14,9 @@ use crate::schema::Limits;
 use crate::schema::predict::planned::MovementReportDocument;
 use crate::schema::wire::canonical;
 
+/// The document of a check.
+const CHECK: &str = "check.json";
+
 #[derive(Debug, Args)]
 pub struct Arguments {
     #[command(flatten)]
@@ -32,13 +35,15 @@ pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
     let report = check(&asked.file.to_input(), &asked.sources, &Limits::default())?;
     print_check(&report.document);
     if let Some(out) = &arguments.out {
+        remove_earlier_movements(out);
         let document = canonical::to_value(&report.document);
-        write(&out.join("check.json"), format!("{document:#}\n"))?;
+        write(&out.join(CHECK), format!("{document:#}\n"))?;
         write(&out.join("classes.svg"), &report.picture()?)?;
-        println!("wrote      {}", out.join("check.json").display());
-        let mut taken = BTreeSet::new();
-        for movement in &report.document.movements {
-            write_movement(movement, out, &mut taken)?;
+        println!("wrote      {}", out.join(CHECK).display());
+        let movements = &report.document.movements;
+        let names = files_of(movements.iter().map(|movement| &*movement.segment));
+        for (movement, name) in movements.iter().zip(names) {
+            write_movement(movement, out, &name)?;
         }
         println!("wrote      {}", out.join("classes.svg").display());
     }
@@ -49,12 +54,8 @@ pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
 fn write_movement(
     movement: &MovementReportDocument,
     out: &Path,
-    taken: &mut BTreeSet<String>,
+    name: &str,
 ) -> Result<(), CommandError> {
-    // A name may hold what leads to another folder.
-    let is_plain = |letter: char| letter.is_alphanumeric() || "-_ ".contains(letter);
-    let plain = |letter: char| if is_plain(letter) { letter } else { '_' };
-    let name = free_name(movement.segment.chars().map(plain).collect(), taken);
     let mut files = vec![(format!("{name}.txt"), &movement.matrix_text)];
     files.extend(movement.itk_transform.iter().map(|text| (format!("{name}.tfm"), text)));
     for (file, text) in files {
@@ -62,6 +63,27 @@ fn write_movement(
         println!("wrote      {}", out.join(&file).display());
     }
     Ok(())
+}
+
+/// Removes the movements of an earlier check of a folder: those of segments that this one does not move would be taken for its own.
+fn remove_earlier_movements(out: &Path) {
+    let Ok(bytes) = std::fs::read(out.join(CHECK)) else { return };
+    let Ok(check) = serde_json::from_slice::<serde_json::Value>(&bytes) else { return };
+    let movements = check["movements"].as_array().into_iter().flatten();
+    for name in files_of(movements.filter_map(|movement| movement["segment"].as_str())) {
+        for end in ["txt", "tfm"] {
+            // One that is not there need not go.
+            let _ = std::fs::remove_file(out.join(format!("{name}.{end}")));
+        }
+    }
+}
+
+/// The names of files of segments, without their ends: a segment's may hold what leads to another folder.
+fn files_of<'a>(segments: impl Iterator<Item = &'a str>) -> Vec<String> {
+    let is_plain = |letter: char| letter.is_alphanumeric() || "-_ ".contains(letter);
+    let plain = |letter: char| if is_plain(letter) { letter } else { '_' };
+    let mut taken = BTreeSet::new();
+    segments.map(|name| free_name(name.chars().map(plain).collect(), &mut taken)).collect()
 }
 
 /// A name of files, or the same with a number where another segment has it: on some disks large and small letters are the same.

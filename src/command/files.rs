@@ -137,6 +137,11 @@ impl MeshSource for FileSource {
     fn predicted_skin(&self, job: &str) -> Result<StoredMesh, SourceError> {
         Err(SourceError::Unknown { id: job.to_owned() })
     }
+
+    fn files(&self) -> Vec<PathBuf> {
+        let read = self.read.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        read.keys().map(|id| self.folder.join(id)).collect()
+    }
 }
 
 /// A path that leads from a folder to a file, for documents that may move together with their meshes.

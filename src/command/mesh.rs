@@ -90,8 +90,8 @@ pub struct ScanArguments {
     /// times, for bones that are segments already
     #[arg(long, value_name = "FILE|NAME=FILE", conflicts_with_all = ["scan", "labels"], group = "meshed", help_heading = SCAN)]
     bone: Vec<String>,
-    /// The JSON body of the REST job, without the files that other options give (`scan`, `surfaces`, `labels.image`, `skin_scan.mesh`); cuts
-    /// of --plan come first
+    /// The JSON body of the REST job, without the files that other options give (`scan`, `surfaces`, `labels.image`,
+    /// `skin_scan.mesh`); `frame` and `osteotomy` may stand there or in --plan
     #[arg(long, value_name = "FILE", requires = "meshed", help_heading = SCAN)]
     mesh_spec: Option<PathBuf>,
     /// About how many tetrahedra; default 300000
@@ -217,13 +217,28 @@ impl ScanArguments {
             spec.size.tetrahedra = Some(tetrahedra);
         }
         if let Some(plan) = &mut plan {
-            spec.frame = plan.frame.or(spec.frame);
-            spec.osteotomy = plan.osteotomy.take().or(spec.osteotomy);
+            spec.frame = stated_once("frame", plan.frame, spec.frame)?;
+            plan.frame = spec.frame;
+            spec.osteotomy = stated_once("osteotomy", plan.osteotomy.take(), spec.osteotomy)?;
         }
         if let Some(plan) = &plan {
             check_segments(plan, &spec)?;
         }
         Ok((spec, plan))
+    }
+}
+
+/// A member of the plan or of the file of --mesh-spec, or of both if they agree.
+fn stated_once<T: PartialEq>(
+    member: &str,
+    plan: Option<T>,
+    spec: Option<T>,
+) -> Result<Option<T>, CommandError> {
+    match (plan, spec) {
+        (Some(plan), Some(spec)) if plan != spec => Err(CommandError::Usage(format!(
+            "`{member}` of --mesh-spec differs from that of --plan: state it in one of them"
+        ))),
+        (plan, spec) => Ok(plan.or(spec)),
     }
 }
 

@@ -7,6 +7,7 @@ use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
 
+use crate::jobs::result::folder;
 use crate::jobs::{JobContext, JobError, JobInput, JobOutput, work};
 use crate::schema::WarningDocument;
 use crate::schema::case::muscle_mixing::MusclesDocument;
@@ -65,6 +66,7 @@ pub fn run_with_progress(input: &JobInput, place: &JobContext) -> Result<JobOutp
         let source = std::io::ErrorKind::NotADirectory.into();
         return Err(JobError::Write { file: place.out.display().to_string(), source });
     }
+    folder::check(place)?;
     let progress = TerminalProgress::start();
     let done = work(input, place, &progress);
     progress.finish();

@@ -138,7 +138,7 @@ pub fn response_job(
         queue_s: input.queue_s,
     };
     let solver = solver_document(&columns.solver, &columns.elements);
-    let mut folder = ResultFolder::open(place.out)?;
+    let mut folder = ResultFolder::open(place)?;
     write_columns(&origin, input, &prepared, &columns, &mut folder)?;
     let mut rest = SurfaceOutput::plain(&prepared.scene.skin.surface, origin.frame);
     rest.field_data = origin.field_data(input.spec.method, None, &solver);

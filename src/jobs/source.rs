@@ -1,5 +1,6 @@
 //! Source of the meshes of a job: content-addressed in the service, files on the command line.
 
+use std::path::PathBuf;
 use std::sync::Arc;
 
 use crate::schema::ErrorCode;
@@ -19,6 +20,11 @@ pub trait MeshSource {
     /// The bytes of the learned model of an earlier job; a source without jobs has none.
     fn model(&self, job: &str) -> Result<Vec<u8>, SourceError> {
         Err(SourceError::Unknown { id: job.to_owned() })
+    }
+
+    /// The files that were read, which no result may take the place of; a store has none.
+    fn files(&self) -> Vec<PathBuf> {
+        Vec::new()
     }
 }
 

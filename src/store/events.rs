@@ -27,7 +27,8 @@ const RECORD: &str = "INSERT INTO job_events \
        AND last.number = (SELECT MAX(number) FROM job_events WHERE job_id = $1) \
      WHERE jobs.id = $1 AND (last.number IS NULL OR last.status <> jobs.status \
        OR COALESCE(last.phase, '') <> COALESCE(jobs.phase, '') \
-       OR last.progress <> jobs.progress OR last.attempt <> jobs.attempt)";
+       OR last.progress <> jobs.progress OR last.attempt <> jobs.attempt \
+       OR COALESCE(last.iteration, 0) <> COALESCE(jobs.iteration, 0))";
 /// A study of many rows changes its phase thousands of times; the last thousand are enough to come back to.
 const FORGET: &str = "DELETE FROM job_events WHERE job_id = $1 AND number <= \
      (SELECT MAX(number) FROM job_events WHERE job_id = $1) - 1000";

@@ -69,6 +69,24 @@ fn a_scan_and_a_plan_and_a_face_give_a_predicted_skin_in_one_command() {
     let roles: Vec<String> =
         result(&out.join("mesh")).provenance.inputs.into_iter().map(|input| input.role).collect();
     assert_eq!(roles, ["scan", "skin scan"]);
+
+    // Inside out it is turned, and told.
+    let face_text = fs::read_to_string(file("face.stl")).unwrap();
+    let lines: Vec<&str> = face_text.lines().collect();
+    let is_last = |at: usize| lines.get(at + 1).is_some_and(|next| next.contains("endloop"));
+    let is_second = |at: usize| lines.get(at + 2).is_some_and(|next| next.contains("endloop"));
+    let turned = (0..lines.len()).map(|at| match at {
+        at if is_last(at) => lines[at - 1],
+        at if is_second(at) => lines[at + 1],
+        at => lines[at],
+    });
+    fs::write(file("face.stl"), turned.collect::<Vec<_>>().join("\n")).unwrap();
+    let done = facies(&[&["mesh"], &asked[..], &rest[..]].concat());
+    assert_eq!(done.status.code(), Some(0), "{}", text(&done.stderr));
+    let again = result(&out);
+    let volumes = [again.meshing.unwrap().volume_ml, made.volume_ml];
+    assert!((volumes[0] / volumes[1] - 1.0).abs() < 1e-3, "{volumes:?}");
+    assert!(again.warnings.iter().any(|warning| warning.code == "surface-turned"));
 }
 
 #[test]
@@ -115,6 +133,14 @@ fn a_jaw_is_closed_before_the_tissue_on_it_is_meshed() {
         open.volume_ml
     );
     assert_eq!(closed.cuts, open.cuts, "cuts are where the scan has them");
+
+    // Turned about the axis of its ball a jaw lies where it did, and all of the tissue on it goes with it.
+    let turn = json!({"segment": "jaw", "movement": {"rotation_deg": [0, 0, 5], "pivot_mm": [60, 55, 60]}});
+    let (done, turned) = meshed(spec(turn), "turned");
+    assert_eq!(done.status.code(), Some(0), "{}", text(&done.stderr));
+    let turned = result(&turned).meshing.unwrap();
+    let on_jaw = [&open, &turned].map(|found| found.node_sets["jaw"] as f64);
+    assert!((on_jaw[1] / on_jaw[0] - 1.0).abs() < 0.1, "{on_jaw:?}");
 
     let mut unknown = spec(close);
     unknown["skin_scan"]["jaw"]["segment"] = json!("chin");

@@ -55,9 +55,11 @@ pub fn close(
         let emptied = if near[voxel] { values[voxel].min(soft) } else { values[voxel] };
         let arrived = own.at(&place).unwrap_or(f64::from(soft)) as f32;
         moved[voxel] = if arrived > soft { emptied.max(arrived) } else { emptied };
-        let owned = owners.at(&place).is_some_and(|share| share >= 0.5);
-        is_moved[voxel] = owned && f64::from(arrived) > rules.image.bone_threshold;
+        let share = owners.at(&place).unwrap_or_default();
         let is_other = old.owner(voxel).is_some() && !is_own(voxel);
+        // Its rim, of less than half a voxel, is its own too where no other bone is: it would be bone of nobody, which stays.
+        let is_claimed = if is_other { share >= 0.5 } else { share > 0.0 };
+        is_moved[voxel] = is_claimed && f64::from(arrived) > rules.image.bone_threshold;
         overlap += usize::from(is_moved[voxel] && is_other);
     }
     let image = beside(scan, moved)?;

@@ -52,6 +52,8 @@ pub struct FittedScan {
     pub transform: RigidTransform,
     pub iterations: usize,
     pub left: ScanDeviation,
+    /// Whether its triangles faced into the head, and were turned.
+    pub was_inside_out: bool,
 }
 
 /// Distances from the scan to the skin of the CT, in mm, and areas in mm².
@@ -99,9 +101,28 @@ pub fn fit(
     let found = register(scan, &skin, rules, progress)?;
     let mut surface = scan.clone();
     surface.points.iter_mut().for_each(|point| *point = found.0.apply(point));
-    let left = measure(&surface, &skin, (image, rules.mask.as_ref()))?;
+    let search = SurfaceSearch::new(&skin).map_err(AlignmentError::from);
+    let search = search.map_err(SkinScanError::from)?;
+    let left = measure(&surface, &search, (image, rules.mask.as_ref()));
     refuse(&left)?;
-    Ok(FittedScan { surface, transform: found.0, iterations: found.1, left })
+    let was_inside_out = faces_inwards(&surface, &search);
+    if was_inside_out {
+        surface.triangles.iter_mut().for_each(|corners| corners.swap(1, 2));
+    }
+    Ok(FittedScan { surface, transform: found.0, iterations: found.1, left, was_inside_out })
+}
+
+/// Whether most of a scan faces against the skin of the CT that is nearest to it.
+fn faces_inwards(scan: &TriangleSurface, skin: &SurfaceSearch) -> bool {
+    let along = |sample: &area_sampling::AreaSample| {
+        let closest = skin.closest(&sample.point);
+        let normal = scan.area_vector(sample.triangle as usize).try_normalize(0.0);
+        match closest.distance > OUTLIER_MM {
+            true => 0.0,
+            false => normal.unwrap_or_default().dot(&skin.pseudo_normal(&closest)),
+        }
+    };
+    area_sampling::equal_areas(scan, POINTS).iter().map(along).sum::<f64>() < 0.0
 }
 
 /// The movement of the scan, and after how many iterations it was found.
@@ -134,29 +155,27 @@ fn register(
 
 fn measure(
     scan: &TriangleSurface,
-    skin: &TriangleSurface,
+    skin: &SurfaceSearch,
     (image, mask): (&ImageVolume, Option<&SphereOrBox>),
-) -> Result<ScanDeviation, SkinScanError> {
-    let search = SurfaceSearch::new(skin).map_err(AlignmentError::from)?;
+) -> ScanDeviation {
     let samples = area_sampling::equal_areas(scan, POINTS);
     let counts = |point: &Vector| mask.is_none_or(|mask| mask.holds(point));
     let inside = samples.iter().filter(|x| image.at(&x.point).is_some() && counts(&x.point));
     let points: Vec<Vector> = inside.map(|sample| sample.point).collect();
-    let mut distances: Vec<f64> =
-        points.iter().map(|point| search.closest(point).distance).collect();
+    let mut distances: Vec<f64> = points.iter().map(|point| skin.closest(point).distance).collect();
     distances.sort_unstable_by(f64::total_cmp);
     let whole = scan.area();
     let area = whole * distances.len() as f64 / samples.len().max(1) as f64;
     let count = distances.len().max(1) as f64;
     let at = |share: f64| distances.get((share * count) as usize).copied().unwrap_or(f64::INFINITY);
-    Ok(ScanDeviation {
+    ScanDeviation {
         mean: distances.iter().sum::<f64>() / count,
         median: at(0.5),
         p95: at(0.95),
         outliers: distances.iter().filter(|&&far| far > OUTLIER_MM).count() as f64 / count,
         area,
         whole,
-    })
+    }
 }
 
 fn refuse(left: &ScanDeviation) -> Result<(), SkinScanError> {
@@ -195,5 +214,11 @@ pub fn told(found: &FittedScan, bone_outside: f64) -> Vec<Warning> {
         );
         Warning::new("bone-outside-skin", detail).with("volume_ml", ml)
     });
-    apart.into_iter().chain(bare).collect()
+    let turned = found.was_inside_out.then(|| {
+        let all = found.surface.triangles.len();
+        let detail =
+            format!("{all} triangles of the surface scan faced into the head, and were turned");
+        Warning::new("surface-turned", detail).with("count", all as f64)
+    });
+    turned.into_iter().chain(apart).chain(bare).collect()
 }

@@ -64,7 +64,7 @@ pub fn cohort_job(
         frame: Frame::Unspecified,
         queue_s: input.queue_s,
     };
-    let mut folder = ResultFolder::open(place.out)?;
+    let mut folder = ResultFolder::open(place)?;
     let files = [(PICTURE, picture(&cohort)), (TABLE, table(&cohort))];
     for ((name, media_type), text) in &files {
         folder.add_file(name, media_type, text.as_bytes())?;

@@ -48,7 +48,7 @@ pub fn compare_job(
         frame: frame.unwrap_or_default(),
         queue_s: input.queue_s,
     };
-    let mut folder = ResultFolder::open(place.out)?;
+    let mut folder = ResultFolder::open(place)?;
     let shown = (origin.frame, input.spec.range_mm);
     write_maps(&mut folder, &surface, &compared, shown)?;
     let distances = &compared.signed_distance;

@@ -64,7 +64,7 @@ pub fn conform_job(
         frame: prepared.frame,
         queue_s: input.queue_s,
     };
-    let mut folder = ResultFolder::open(place.out)?;
+    let mut folder = ResultFolder::open(place)?;
     let volume = vtu::write(&VolumeOutput::plain(&found.mesh, prepared.frame))?;
     folder.add(OutputName::VolumeVtu, &volume)?;
     for MuscleSurface { file, surface, .. } in &surfaces {

@@ -72,7 +72,7 @@ pub fn learn_job(
         frame: gathered.frame,
         queue_s: input.queue_s,
     };
-    let mut folder = ResultFolder::open(place.out)?;
+    let mut folder = ResultFolder::open(place)?;
     let model = kept(input, &gathered, &found);
     let bytes = serde_json::to_vec(&model)
         .map_err(|error| JobError::NotFinite { what: error.to_string() })?;

@@ -140,7 +140,7 @@ impl MeshingOutput<'_> {
             frame,
             queue_s: input.queue_s,
         };
-        let mut folder = ResultFolder::open(place.out)?;
+        let mut folder = ResultFolder::open(place)?;
         let volume = vtu::write(&VolumeOutput::plain(&anatomy.volume, frame))?;
         folder.add(OutputName::VolumeVtu, &volume)?;
         for (number, bone) in anatomy.bones.iter().enumerate() {

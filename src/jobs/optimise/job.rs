@@ -93,7 +93,7 @@ pub fn optimise_job(
         adequacy: None,
         refinement: None,
     }
-    .publish(&prediction, &clock, place.out)
+    .publish(&prediction, &clock, place)
 }
 
 impl OptimiseInput {
@@ -214,7 +214,7 @@ impl OptimisedPlan {
             queue_s: input.queue_s,
         };
         let field_data = origin.field_data(input.spec.method, None, &self.solver);
-        let mut folder = ResultFolder::open(place.out)?;
+        let mut folder = ResultFolder::open(place)?;
         for name in input.files() {
             let bytes = planned.encode(name, (&skin, &statistics.skin.nodes), &field_data)?;
             if let Some(bytes) = bytes {

@@ -41,7 +41,7 @@ pub fn predict_job(
             Predicted::of(prepared, prediction)
         }
     };
-    predicted.publish(input, &clock, place.out)
+    predicted.publish(input, &clock, place)
 }
 
 /// Predicts by the cheapest model whose estimated error is accepted.

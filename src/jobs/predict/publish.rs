@@ -1,7 +1,6 @@
 //! Publication of a prediction: measured, compared and written as files.
 
 use std::collections::BTreeMap;
-use std::path::Path;
 use std::sync::Arc;
 
 use super::comparison::compare_skin;
@@ -12,7 +11,7 @@ use super::overlap::{Collision, collisions, through_skin};
 use super::planned::{in_numbers, suspect_landmarks};
 use crate::jobs::clock::Observed;
 use crate::jobs::failure::JobError;
-use crate::jobs::output::{JobOutput, MadeMesh};
+use crate::jobs::output::{JobContext, JobOutput, MadeMesh};
 use crate::jobs::report::{PredictionFacts, write_reports};
 use crate::jobs::result::folder::ResultFolder;
 use crate::jobs::result::provenance::{
@@ -66,7 +65,7 @@ impl Predicted {
         self,
         input: &PredictInput,
         clock: &Observed,
-        out: &Path,
+        place: &JobContext,
     ) -> Result<JobOutput, JobError> {
         let Predicted { prepared, prediction, optimisation, adequacy, refinement } = self;
 
@@ -128,7 +127,7 @@ impl Predicted {
             correction,
             warnings,
         };
-        let mut folder = ResultFolder::open(out)?;
+        let mut folder = ResultFolder::open(place)?;
         finished.write_files(input, clock, &mut folder)?;
 
         // 5. The manifest.

@@ -70,7 +70,7 @@ pub fn reproduce_job(
         frame: frame.unwrap_or_default(),
         queue_s: input.queue_s,
     };
-    let mut folder = ResultFolder::open(place.out)?;
+    let mut folder = ResultFolder::open(place)?;
     let told = stored.values().flat_map(|mesh| &mesh.warnings).chain(&warnings);
     let head = head(input, &planned, &reproduction);
     let result = ResultDocument {

@@ -1,12 +1,14 @@
 //! The folder of a result: each file with its size and hash.
 
 use std::io::ErrorKind;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use crate::jobs::failure::JobError;
+use crate::jobs::output::JobContext;
 use crate::schema::predict::document::OutputName;
 use crate::schema::predict::result::FileDocument;
 use crate::schema::wire::canonical;
+use crate::schema::{ErrorCode, Problem};
 
 /// The manifest of a result.
 const MANIFEST: &str = "result.json";
@@ -28,11 +30,39 @@ fn earlier(folder: &Path) -> Vec<String> {
 pub struct ResultFolder<'a> {
     folder: &'a Path,
     pub files: Vec<FileDocument>,
+    /// What the job read.
+    inputs: Vec<PathBuf>,
+}
+
+/// Refuses to remove or replace what was read.
+fn keep(inputs: &[PathBuf], file: &Path) -> Result<(), JobError> {
+    match file.canonicalize() {
+        Ok(whole) if inputs.contains(&whole) => {
+            let detail = format!(
+                "{} is read, and would be removed or replaced by the result: give another folder",
+                file.display()
+            );
+            Err(JobError::Refused(Problem::new(ErrorCode::ValidationFailed, detail)))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Refuses a folder in which an earlier result is what the job has read so far.
+pub fn check(place: &JobContext) -> Result<(), JobError> {
+    let inputs = inputs(place);
+    earlier(place.out).iter().try_for_each(|file| keep(&inputs, &place.out.join(file)))
+}
+
+fn inputs(place: &JobContext) -> Vec<PathBuf> {
+    place.sources.files().iter().filter_map(|file| file.canonicalize().ok()).collect()
 }
 
 impl<'a> ResultFolder<'a> {
     /// Creates the folder if missing, and removes the files of an earlier result in it, which could be mistaken for this one's.
-    pub fn open(folder: &'a Path) -> Result<Self, JobError> {
+    pub fn open(place: &'a JobContext) -> Result<Self, JobError> {
+        let folder = place.out;
+        check(place)?;
         let failed = |source| JobError::Write { file: folder.display().to_string(), source };
         std::fs::create_dir_all(folder).map_err(failed)?;
         for file in earlier(folder) {
@@ -42,7 +72,7 @@ impl<'a> ResultFolder<'a> {
                 Ok(()) | Err(_) => {}
             }
         }
-        Ok(ResultFolder { folder, files: Vec::new() })
+        Ok(ResultFolder { folder, files: Vec::new(), inputs: inputs(place) })
     }
 
     pub fn add(&mut self, name: OutputName, bytes: &[u8]) -> Result<(), JobError> {
@@ -51,6 +81,7 @@ impl<'a> ResultFolder<'a> {
 
     /// A file that no spec names.
     pub fn add_file(&mut self, file: &str, media_type: &str, bytes: &[u8]) -> Result<(), JobError> {
+        keep(&self.inputs, &self.folder.join(file))?;
         std::fs::write(self.folder.join(file), bytes)
             .map_err(|source| JobError::Write { file: file.to_owned(), source })?;
         self.files.push(FileDocument {

@@ -104,7 +104,7 @@ pub fn study_job(
 
     // 4. Files.
     clock.phase(Phase::Write);
-    let mut folder = ResultFolder::open(place.out)?;
+    let mut folder = ResultFolder::open(place)?;
     write_report(&report, &mut folder)?;
     let origin = Origin {
         spec_hash: prepared.spec_hash,

@@ -26,6 +26,9 @@ async fn every_change_of_a_job_that_can_be_seen_is_one_event(on: Deployment) {
         // A sign of life that tells nothing else is none.
         assert!(store.renew(&lease, LEASE, &solving).await.unwrap());
     }
+    // A solver that goes on is heard, however little its residual falls.
+    let going_on = Point { iteration: Some(7), ..solving };
+    assert!(store.renew(&lease, LEASE, &going_on).await.unwrap());
     assert!(store.release(&lease).await.unwrap());
     let lease = store.claim(LEASE).await.unwrap().unwrap().lease;
     assert!(store.lose(&lease, 3, "{}").await.unwrap());
@@ -47,6 +50,7 @@ async fn every_change_of_a_job_that_can_be_seen_is_one_event(on: Deployment) {
             (Accepted, 0),
             (Running, 1),
             (Running, 1),
+            (Running, 1),
             (Accepted, 1),
             (Running, 2),
             (Accepted, 2),
@@ -57,12 +61,13 @@ async fn every_change_of_a_job_that_can_be_seen_is_one_event(on: Deployment) {
         ]
     );
     assert_eq!((events[2].phase.as_deref(), events[2].progress), (Some("solve"), 30));
+    assert_eq!((events[3].progress, events[3].iteration), (30, Some(7)));
     assert!(events.iter().zip(1..).all(|(event, number)| event.number == number));
     assert_eq!(store.job_events(&id, 7).await.unwrap().unwrap(), events[7..]);
-    assert_eq!(store.job_events(&id, 10).await.unwrap().unwrap(), []);
+    assert_eq!(store.job_events(&id, 11).await.unwrap().unwrap(), []);
     // Written down once more, the same state is no event.
     store.record_job(&id).await.unwrap();
-    assert_eq!(store.job_events(&id, 10).await.unwrap().unwrap(), []);
+    assert_eq!(store.job_events(&id, 11).await.unwrap().unwrap(), []);
     let nobody = uuid::Uuid::now_v7().to_string();
     assert!(store.job_events(&nobody, 0).await.unwrap().is_none());
 }
