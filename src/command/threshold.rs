@@ -42,8 +42,8 @@ pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
     let found = equal_volume(first, arguments.bone_hu, second).ok_or_else(|| {
         let (hu, place) = (arguments.bone_hu, arguments.before.display());
         CommandError::Usage(format!(
-            "no threshold of the second box has the volume of {place} above {hu} HU: there is nothing above it in the first box, or the \
-             second box is no larger than that"
+            "no threshold of the second box has the volume of {place} above {hu} HU: there is nothing above it in the first box, the \
+             second box is no larger than that, or does not hold the whole bone"
         ))
     })?;
     for (name, ThresholdVolume { threshold, volume }) in ["before", "after"].into_iter().zip(found)

@@ -57,7 +57,7 @@ pub enum StoredShape {
 
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SourceError {
-    #[error("there is no mesh {id:?}")]
+    #[error("there is no mesh or result {id:?}")]
     Unknown { id: String },
     #[error("mesh {id:?} is refused: {detail}")]
     Refused { id: String, code: ErrorCode, detail: String },

@@ -19,8 +19,13 @@ pub struct Applied {
 }
 
 /// Codes that need the mesh inside the skin, or the surfaces of bones.
-const NEVER_MEASURED: [&str; 4] =
-    [NUMERICAL_ERROR_LARGE, "cells-inverted", "bones-overlap", "bone-through-skin"];
+const NEVER_MEASURED: [&str; 5] = [
+    NUMERICAL_ERROR_LARGE,
+    "cells-inverted",
+    "bones-overlap",
+    "bone-in-tissue",
+    "bone-through-skin",
+];
 
 impl Applied {
     /// With the warnings of the case and the plan, and those of the summary.

@@ -337,6 +337,49 @@ fn a_surface_has_no_distance_from_itself() {
 }
 
 #[test]
+fn a_result_takes_no_place_of_what_it_is_made_of() {
+    let folder = plan_folder(FORWARD);
+    let out = folder.path().join("out");
+    assert_eq!(predict_block(folder.path(), &out).status.code(), Some(0));
+    let skin = out.join("skin.vtp");
+    let before = fs::read(&skin).unwrap();
+    let asked =
+        ["compare", "--prediction", path(&skin), "--actual", path(&skin), "--out", path(&out)];
+    let done = facies(&asked);
+    let told = text(&done.stderr);
+    assert_eq!(done.status.code(), Some(2), "{told}");
+    assert!(told.contains("skin.vtp") && told.contains("give another folder"), "{told}");
+    assert!(out.join("result.json").is_file());
+    assert_eq!(fs::read(&skin).unwrap(), before);
+}
+
+#[test]
+fn movements_of_an_earlier_check_do_not_stay() {
+    let folder = plan_folder(FORWARD);
+    let out = folder.path().join("check");
+    let head = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/head");
+    let case = head.join("case.json");
+    let check = |plan: &serde_json::Value| {
+        let file = folder.path().join("moves.json");
+        fs::write(&file, plan.to_string()).unwrap();
+        let done =
+            facies(&["check", "--case", path(&case), "--plan", path(&file), "--out", path(&out)]);
+        assert_eq!(done.status.code(), Some(0), "{}", text(&done.stderr));
+        ["mandible.txt", "mandible.tfm", "maxilla.txt", "maxilla.tfm"]
+            .map(|file| out.join(file).exists())
+    };
+    let moved = |name: &str| serde_json::json!({"name": name, "translation_mm": [0, -2, 0]});
+    assert_eq!(
+        check(&serde_json::json!({"segments": [moved("mandible"), moved("maxilla")]})),
+        [true; 4]
+    );
+    assert_eq!(
+        check(&serde_json::json!({"segments": [moved("mandible")]})),
+        [true, true, false, false]
+    );
+}
+
+#[test]
 fn alignment_takes_back_a_rigid_movement() {
     let folder = tempfile::tempdir().unwrap();
     let lifted = fs::read_to_string(block().join("mandible.stl")).unwrap().replace(" 0\n", " 2\n");

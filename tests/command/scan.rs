@@ -137,6 +137,30 @@ fn a_label_map_is_meshed_in_its_regions_and_says_which_labels_it_was_not_told_of
     assert_eq!(case["case"]["segments"][0]["name"], "jaw");
 }
 
+#[test]
+fn a_frame_or_cuts_that_two_documents_state_differently_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = |name: &str| folder.path().join(name);
+    fs::write(file("ct.nrrd"), ball_ct()).unwrap();
+    let cut = |z: f64| {
+        json!({"cuts": [{"name": "middle", "point_mm": [60, 55, z], "normal": [0, 0, 1]}],
+        "segments": [{"name": "jaw", "below": ["middle"]}]})
+    };
+    let plan = json!({"frame": "LPS", "osteotomy": cut(60.0), "segments": [{"name": "jaw"}]});
+    fs::write(file("plan.json"), plan.to_string()).unwrap();
+    let (ct, plan, spec, out) =
+        (file("ct.nrrd"), file("plan.json"), file("spec.json"), file("out"));
+    for (member, stated) in [("frame", json!("RAS")), ("osteotomy", cut(50.0))] {
+        fs::write(&spec, json!({member: stated}).to_string()).unwrap();
+        let asked =
+            ["mesh", "--scan", path(&ct), "--plan", path(&plan), "--mesh-spec", path(&spec)];
+        let refused = facies(&[&asked[..], &["--out", path(&out)]].concat());
+        let told = text(&refused.stderr);
+        assert_eq!(refused.status.code(), Some(2), "{told}");
+        assert!(told.contains(&format!("`{member}` of --mesh-spec differs")), "{told}");
+    }
+}
+
 /// The same ball in m.
 fn in_metres(ball: SampleBall) -> SampleBall {
     SampleBall { centre: ball.centre.map(|x| x * 1e-3), radius: ball.radius * 1e-3 }

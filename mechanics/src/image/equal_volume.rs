@@ -6,6 +6,9 @@
 use super::mask::Mask;
 use super::volume::{ImageVolume, Voxels};
 
+/// Volumes that differ by more than this part are not equal.
+const MOST_APART: f64 = 0.05;
+
 /// A threshold and the volume above it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ThresholdVolume {
@@ -22,7 +25,8 @@ pub struct BoneRegion<'a> {
 }
 
 /// The threshold of the second image, within its region, above which there is as much as above the first threshold within
-/// the region of the first: to half a voxel. Both with their volumes; `None` where the second region is too small for it.
+/// the region of the first: to half a voxel but for voxels of one value, which go together. Both with their volumes; `None` where the
+/// second region is too small for it, or so many of its voxels have one value that the volumes differ by more than a twentieth.
 pub fn equal_volume(
     first: BoneRegion<'_>,
     threshold: f64,
@@ -38,6 +42,9 @@ pub fn equal_volume(
     let next = values.get(wanted).copied()?;
     let found = 0.5 * (last + next);
     let count = values.iter().filter(|value| **value >= found).count();
+    if count.abs_diff(wanted) as f64 > 1.0 + MOST_APART * wanted as f64 {
+        return None;
+    }
     let other =
         ThresholdVolume { threshold: found, volume: count as f64 * second.image.voxel_volume() };
     Some([ThresholdVolume { threshold, volume }, other])

@@ -10,7 +10,7 @@ use crate::boundary::NodeClass;
 use crate::boundary::contact::{BoneInside, FacingSurfaces, bones_inside};
 use crate::mesh::{Vector, Warning};
 use crate::model::fem::contact::{
-    Contact, ContactProblem, Effort, PressingRow, SETTLED_MM, forces_of,
+    Contact, ContactProblem, Effort, PressedStep, PressingRow, SETTLED_MM, forces_of,
 };
 use crate::model::fem::finite_strain;
 use crate::model::fem::linear_system::{LinearSystem, Solved};
@@ -194,20 +194,25 @@ fn pressed(
     if nothing_presses && overlap.is_none() && bones_inside.is_empty() {
         return Ok(None);
     }
-    let of_step = |pressed: &Vec<PressingRow>| {
+    let of_step = |PressedStep { pressed, areas }: &PressedStep| {
         let forces = forces_of(pressed, scene.mesh.nodes.len());
         let contact = Contact { pressed: pressed.clone(), forces, ..Contact::default() };
-        StepTouch::of(&Touch::new(scene, surfaces, contact))
+        StepTouch::of(&Touch::new(scene, areas, contact))
     };
     let at_load_steps = contact.at_load_steps.iter().map(of_step).collect();
-    let touch = Touch::new(scene, surfaces, contact);
+    // Stress of linear elasticity is force on the area at rest.
+    let areas = match scene.settings.method.properties().is_small_strain {
+        true => surfaces.areas(&contact.forces, surfaces.rest_positions()),
+        false => surfaces.areas(&contact.forces, &surfaces.positions(&equilibrium.displacement)),
+    };
+    let touch = Touch::new(scene, &areas, contact);
     let touch = Touch { overlap, bones_inside, at_load_steps, ..touch };
     Ok(Some(InTouch { equilibrium, touch, numerical_error }))
 }
 
 impl Touch {
-    fn new(scene: &Scene, surfaces: &FacingSurfaces, contact: Contact) -> Self {
-        let areas = &surfaces.areas(&contact.forces);
+    /// `areas` on which each node presses, in mm².
+    fn new(scene: &Scene, areas: &BTreeMap<u32, f64>, contact: Contact) -> Self {
         let mut pressure = vec![0.0; scene.mesh.nodes.len()];
         for (node, area) in areas.iter().filter(|(_, area)| **area > 0.0) {
             pressure[*node as usize] = contact.forces[*node as usize].norm() / area;

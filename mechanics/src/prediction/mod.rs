@@ -3,6 +3,7 @@
 mod adaptive;
 mod adequate;
 mod answer;
+mod bone_in_tissue;
 mod build;
 pub mod case;
 mod check;
@@ -82,6 +83,7 @@ pub use adequate::{
 };
 use answer::Answer;
 pub use answer::{equilibrium, estimates};
+use bone_in_tissue::bones_in_tissue;
 pub use refinement_goal::{LimitError, RefinementGoal};
 
 pub use crate::boundary::NodeClass;
@@ -151,10 +153,10 @@ fn load_steps(
     touch: Option<&Touch>,
 ) -> Vec<PredictedStep> {
     let at = |step: usize| {
-        let (touch, pressed) = touch.and_then(|touch| {
+        let (touch, step) = touch.and_then(|touch| {
             Some((touch.at_load_steps.get(step)?, touch.contact.at_load_steps.get(step)?))
         })?;
-        (!pressed.is_empty()).then_some((*touch, &**pressed))
+        (!step.pressed.is_empty()).then_some((*touch, &*step.pressed))
     };
     let predicted = |(step, own): (usize, LoadStep)| {
         let LoadStep { rest, relative_residual, is_stable, reactions } = own;
@@ -208,6 +210,7 @@ fn described(scene: &Scene, answer: Answer, progress: &dyn Progress) -> Predicti
     warnings.extend(off_wall::left_wall(scene, &equilibrium.displacement));
     let moved = scene.skin.moved(&equilibrium.displacement);
     warnings.extend(skin_overlap(&scene.skin, &moved));
+    warnings.extend(bones_in_tissue(scene, &equilibrium.displacement));
     warnings.extend(far_landmarks(&landmarks));
     warnings.extend(numerical_error::warnings(scene, &numerical_error));
     let at_landmarks =

@@ -244,25 +244,29 @@ impl PlannedBone<'_> {
         let relative = self.movement.then(&other.movement.inverse());
         Depth {
             before: reach(&self.probes, Side::Inside, &other.search),
-            after: reach(&self.moved_probes(&relative), Side::Inside, &other.search),
+            after: reach(&moved(&self.probes, &relative), Side::Inside, &other.search),
         }
     }
 
-    /// The distance of this bone beyond the skin.
+    /// The distance beyond the skin of what of this bone is behind it before.
     fn through(&self, before: &SurfaceSearch, after: &SurfaceSearch) -> Depth {
+        let is_behind = |point: &&Vector| {
+            reach(std::slice::from_ref(*point), Side::Outside, before) <= NOTICEABLE
+        };
+        let probes: Vec<Vector> = self.probes.iter().filter(is_behind).copied().collect();
         Depth {
-            before: reach(&self.probes, Side::Outside, before),
-            after: reach(&self.moved_probes(&self.movement), Side::Outside, after),
+            before: reach(&probes, Side::Outside, before),
+            after: reach(&moved(&probes, &self.movement), Side::Outside, after),
         }
-    }
-
-    fn moved_probes(&self, movement: &RigidMovement) -> Vec<Vector> {
-        self.probes.iter().map(|point| movement.apply(point)).collect()
     }
 
     fn moved_by(&self, movement: &RigidMovement) -> Vec<Vector> {
-        self.surface.points.iter().map(|point| movement.apply(point)).collect()
+        moved(&self.surface.points, movement)
     }
+}
+
+fn moved(points: &[Vector], movement: &RigidMovement) -> Vec<Vector> {
+    points.iter().map(|point| movement.apply(point)).collect()
 }
 
 impl Depth {

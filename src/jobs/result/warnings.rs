@@ -5,7 +5,7 @@ use mechanics::mesh::Warning;
 
 /// Codes that precede all others, in this order: those of doubtful input or measurements, those of a result that
 /// has larger errors than reported elsewhere, and those of an impossible one.
-const GRAVE: [&str; 56] = [
+const GRAVE: [&str; 58] = [
     "nothing-moves",
     "nothing-performed",
     "units-suspect",
@@ -46,10 +46,12 @@ const GRAVE: [&str; 56] = [
     "outside-linear-range",
     "outside-second-order-range",
     "nonlinearity-unknown",
+    "hexahedra-crease",
     "another-equilibrium",
     "bulk-in-all-cells",
     "skin-outruns-plan",
     "skin-overlaps",
+    "bone-in-tissue",
     "bone-through-skin",
     "bones-overlap",
     "contact-overlap",

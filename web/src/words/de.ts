@@ -232,7 +232,7 @@ export const de: Words = {
     "surfaces-overlap": "Knochen überschneiden sich, wie sie gegeben sind", "fold-shallow": "die Grenze von Kinn und Lippen ist zweifelhaft",
     "bone-hollow": "Knochen umschließt Hohlräume, in denen kein Gewebe ist",
     "bone-made-whole": "Knochen wurde geschlossen, wo die Aufnahme Lücken zeigt", "bone-outside-skin": "Knochen liegt außerhalb der Haut",
-    "bone-through-skin": "Knochen tritt durch die Haut", "bones-overlap": "der Plan schiebt Knochen ineinander",
+    "hexahedra-crease": "Hexaeder knicken, wo Gewebe es nicht täte", "bone-in-tissue": "Knochen liegt tiefer im Gewebe als zuvor", "bone-through-skin": "Knochen tritt durch die Haut", "bones-overlap": "der Plan schiebt Knochen ineinander",
     "bones-touch": "Knochen berühren sich, wo nichts geschnitten ist", "built-in-poisson-ratio": "Federn haben eine eigene Querkontraktionszahl",
     "bulk-in-all-cells": "in allen Zellen steifer gegen Volumenänderung",
     "cells-do-not-match": "Zellen passen nicht Fläche auf Fläche", "cells-inverted": "Zellen sind umgestülpt: zu groß für eine lineare Antwort", "cells-reordered": "Zellen waren andersherum nummeriert",

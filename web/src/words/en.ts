@@ -230,7 +230,7 @@ export const en = {
     "surfaces-overlap": "bones overlap as they were given", "fold-shallow": "the border of chin and lips is doubtful",
     "bone-hollow": "bone encloses hollows, which hold no tissue",
     "bone-loose": "loose bone is meshed as tissue", "bone-made-whole": "bone was closed where the scan shows gaps",
-    "bone-outside-skin": "bone lies outside the skin", "bone-through-skin": "bone comes through the skin",
+    "bone-outside-skin": "bone lies outside the skin", "hexahedra-crease": "hexahedra crease where tissue would not", "bone-in-tissue": "bone lies deeper in tissue than before", "bone-through-skin": "bone comes through the skin",
     "bones-overlap": "the plan pushes bones into each other", "bones-touch": "bones touch where nothing is cut",
     "built-in-poisson-ratio": "springs have a Poisson's ratio of their own", "bulk-in-all-cells": "stiffer against changes of volume in all cells",
     "cells-do-not-match": "cells do not match face to face", "cells-inverted": "cells are turned inside out: too large for a linear answer", "cells-reordered": "cells were numbered the other way round",

@@ -44,8 +44,8 @@ pub struct FacingSurfaces<'a> {
     rest_normals: Vec<Vector>,
     /// For each point, whether its node is held in every direction.
     is_held: Vec<bool>,
-    /// Of each face for each of its nodes: an equal part of its area, along its normal, in mm².
-    shares: Vec<(u32, Vector)>,
+    /// Those of the boundary.
+    faces: Vec<BoundaryFace>,
     folds: Folds<'a>,
     /// For each point, how far it is looked for what it faces, in mm: the longest edge around it.
     reach: Vec<f64>,
@@ -91,7 +91,7 @@ impl<'a> FacingSurfaces<'a> {
             mesh,
             rest_normals: rest.point_normals(),
             is_held: nodes.iter().map(|&node| held[node as usize]).collect(),
-            shares: shares(mesh, boundary),
+            faces: boundary.to_vec(),
             folds: Folds::new(mesh),
             reach: longest_edges(&rest),
             at_rest: vec![0.0; rest.points.len()],
@@ -103,15 +103,29 @@ impl<'a> FacingSurfaces<'a> {
         surfaces
     }
 
-    /// For each node the area in mm² that a force on it presses on: its share of the faces around it, seen along the force.
-    pub fn areas(&self, forces: &[Vector]) -> BTreeMap<u32, f64> {
+    /// For each node the area in mm² that a force on it presses on: its share of the faces around it, at positions of all nodes, seen
+    /// along the force.
+    pub fn areas(&self, forces: &[Vector], positions: &[Vector]) -> BTreeMap<u32, f64> {
         let mut areas = BTreeMap::new();
-        for (node, share) in &self.shares {
-            if let Some(along) = forces[*node as usize].try_normalize(f64::MIN_POSITIVE) {
-                *areas.entry(*node).or_default() += (-share.dot(&along)).max(0.0);
+        for face in &self.faces {
+            let share = face.area_vector(positions) / face.nodes().len() as f64;
+            for node in face.nodes() {
+                if let Some(along) = forces[*node as usize].try_normalize(f64::MIN_POSITIVE) {
+                    *areas.entry(*node).or_default() += (-share.dot(&along)).max(0.0);
+                }
             }
         }
         areas
+    }
+
+    /// Positions of all nodes after a displacement.
+    pub fn positions(&self, displacement: &[Vector]) -> Vec<Vector> {
+        self.mesh.nodes.iter().zip(displacement).map(|(node, u)| node + u).collect()
+    }
+
+    /// Positions of all nodes at rest.
+    pub fn rest_positions(&self) -> &[Vector] {
+        &self.mesh.nodes
     }
 
     /// The largest movement of nodes and bones, and the median of the longest edges around nodes that move much, in mm.
@@ -352,14 +366,6 @@ fn beside(bones: &[BoneSurface], points: usize) -> Vec<BesideTissue> {
 fn partly_constrained(constraints: &[Constraint]) -> BTreeMap<u32, Constraint> {
     let partly = constraints.iter().filter(|constraint| (1..3).contains(&constraint.count()));
     partly.map(|constraint| (constraint.node, constraint.clone())).collect()
-}
-
-fn shares(mesh: &VolumeMesh, boundary: &[BoundaryFace]) -> Vec<(u32, Vector)> {
-    let of_face = |face: &BoundaryFace| {
-        let share = face.area_vector(&mesh.nodes) / face.nodes().len() as f64;
-        face.nodes().iter().map(|&node| (node, share)).collect::<Vec<_>>()
-    };
-    boundary.iter().flat_map(of_face).collect()
 }
 
 /// Of the triangles around each point.

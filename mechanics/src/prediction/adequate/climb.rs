@@ -20,6 +20,9 @@ use crate::progress::Progress;
 /// the best if its error is at most so many times as large.
 const WORTHWHILE: f64 = 0.8;
 
+/// Where forces act or tissue grows, what coarse meshes leave out was up to three times its estimate: so much of it is expected.
+const LOADED: f64 = 2.0;
+
 /// The third order of a plan is about this much times the square of the second over the first.
 const THIRD: f64 = 1.5;
 
@@ -166,7 +169,7 @@ impl Climb<'_> {
                 if self.moving.is_empty() {
                     self.moving = scene.skin.moving_points(&own.equilibrium.displacement);
                 }
-                self.errors.mesh_at_rest = own.missing.map(|missing| self.means(missing));
+                self.errors.mesh_at_rest = own.missing.map(|missing| self.mesh_means(missing));
                 self.note(Rung::FiniteStrain, self.elapsed() - begun, &own);
                 Ok(Some((scene, found)))
             }
@@ -208,7 +211,7 @@ impl Climb<'_> {
         let displacement = &first.equilibrium.displacement;
         self.moving = self.scene.skin.moving_points(displacement);
         self.newton_relative_time = newton_relative_time(least_det_f(self.scene, displacement));
-        self.errors.mesh = first.missing.map(|missing| self.means(missing));
+        self.errors.mesh = first.missing.map(|missing| self.mesh_means(missing));
         self.errors.linearity = linearity.as_ref().ok().map(|left| self.means(&left.left_out));
     }
 
@@ -241,6 +244,12 @@ impl Climb<'_> {
 
     fn means(&self, values: &[Vector]) -> MeanErrors {
         MeanErrors::of(&self.scene.skin, &self.moving, self.accepted, values)
+    }
+
+    /// Of what a mesh leaves out.
+    fn mesh_means(&self, missing: &[Vector]) -> MeanErrors {
+        let times = if self.scene.is_loaded() { LOADED } else { 1.0 };
+        self.means(missing).map(|error| times * error)
     }
 
     fn elapsed(&self) -> f64 {

@@ -188,6 +188,21 @@ fn bone_that_goes_in_between_the_nodes_of_tissue_is_reported() {
     }
 }
 
+#[test]
+fn bone_that_goes_into_tissue_without_contact_is_reported() {
+    let case = under(needle(), [15.0, 15.0], CellShape::Hex8);
+    let told = |by: f64| -> Vec<Warning> {
+        let found = solve(&case, &lowered(by), &Settings::default());
+        found.warnings.into_iter().filter(|warning| warning.code == "bone-in-tissue").collect()
+    };
+    assert_eq!(told(ABOVE), []);
+    assert_eq!(told(ABOVE + 0.4), []);
+    let [warning] = &told(ABOVE + 2.0)[..] else { panic!("one bone") };
+    let numbers: BTreeMap<&str, f64> = warning.numbers.iter().copied().collect();
+    assert!((numbers["depth_mm"] - 2.0).abs() < 0.02, "{warning:?}");
+    assert!((numbers["z_mm"] - (HEIGHT - 2.0)).abs() < 1e-9, "{warning:?}");
+}
+
 /// Bone that lies in tissue at rest, as scans have it, and hardly moves is not told.
 #[test]
 fn bone_that_lies_in_tissue_at_rest_is_reported_by_what_it_moves() {

@@ -12,6 +12,7 @@ mod contact_hertz;
 mod contact_numbering;
 mod contact_of_simple_bones;
 pub(crate) mod contact_on_bone;
+mod creased_hexahedra;
 pub mod elements;
 mod fibres;
 mod generic_face;

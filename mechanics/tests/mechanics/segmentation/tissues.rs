@@ -86,6 +86,12 @@ fn the_second_threshold_makes_both_volumes_equal() {
     assert!((other.threshold - 480.0).abs() < 2.0, "{other:?}");
     let small = mask([55, 55, 25], [0.44, 0.44, 1.0], |x| x.norm() < 2.0);
     assert!(equal_volume(first, 600.0, BoneRegion { image: &after, region: &small }).is_none());
+    // Half of the ball is cut off: what lies around it has one value, and goes with it or not.
+    let middle = Vector::new(12.0, 12.0, 12.0);
+    let half = mask([55, 55, 25], [0.44, 0.44, 1.0], |x| x.z > middle.z);
+    let ball = |x: Vector| if (x - middle).norm() < 8.0 { 900.0 } else { 0.0 };
+    let even = image([55, 55, 25], [0.44, 0.44, 1.0], ball);
+    assert!(equal_volume(first, 600.0, BoneRegion { image: &even, region: &half }).is_none());
 }
 
 #[test]

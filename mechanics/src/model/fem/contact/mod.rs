@@ -15,4 +15,4 @@ pub(super) use active_set::{ActiveSet, MOST_PASSES, Task};
 pub(super) use equations::FreeUnknowns;
 pub(super) use kept_rows::KeptRows;
 pub use pressing::{ContactProblem, InContact, Pressing, SETTLED_MM};
-pub use touch::{Contact, Effort, PressingRow, forces_of};
+pub use touch::{Contact, Effort, PressedStep, PressingRow, forces_of};

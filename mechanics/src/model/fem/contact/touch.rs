@@ -27,7 +27,15 @@ pub struct Contact {
     pub last_moved_mm: f64,
     pub relative_residual: f64,
     /// What pressed at the end of each load step; empty where none were asked for.
-    pub at_load_steps: Vec<Vec<PressingRow>>,
+    pub at_load_steps: Vec<PressedStep>,
+}
+
+/// What presses at the end of a load step.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct PressedStep {
+    pub pressed: Vec<PressingRow>,
+    /// For each node in mm², as tissue is deformed then.
+    pub areas: BTreeMap<u32, f64>,
 }
 
 /// Nodal forces in mN of rows that press, for so many nodes.

@@ -27,7 +27,10 @@ impl<'a> FiniteStrain<'a> {
             let (tissue, mut rest) = self.rest_at_share(own, reached)?;
             rests.extend(load_step(own, &rest, begun));
             if let Some(touching) = &mut rest.touching {
-                touching.keep_load_step();
+                let rows = own.constrained.dof_map.ordering.place.iter();
+                let positions: Vec<Vector> =
+                    rows.map(|&row| rest.positions[row as usize]).collect();
+                touching.keep_load_step(&positions);
             }
             let newton = rest.report.newton.as_mut();
             parts.extend(newton.into_iter().flat_map(|newton| newton.parts.drain(..)));

@@ -12,7 +12,7 @@ use crate::boundary::contact::{CLOSED_MM, FacingSurfaces, with_pressing};
 use crate::mesh::Vector;
 use crate::model::dofs::DofMap;
 use crate::model::fem::contact::{
-    ActiveSet, Contact, Effort, FreeUnknowns, KeptRows, MOST_PASSES, PressingRow, Task,
+    ActiveSet, Contact, Effort, FreeUnknowns, KeptRows, MOST_PASSES, PressedStep, Task, forces_of,
 };
 use crate::model::problem::ModelError;
 use crate::progress::Progress;
@@ -47,7 +47,7 @@ pub(super) struct Touching<'a> {
     repeats: bool,
     effort: Effort,
     /// What pressed at the end of each load step.
-    at_load_steps: Vec<Vec<PressingRow>>,
+    at_load_steps: Vec<PressedStep>,
 }
 
 /// What contact changes of a step.
@@ -193,9 +193,11 @@ impl<'a> Touching<'a> {
         self.multipliers = multipliers;
     }
 
-    /// Keeps what presses at the end of a load step.
-    pub fn keep_load_step(&mut self) {
-        self.at_load_steps.push(self.kept_rows.pressed(self.pressing()));
+    /// Keeps what presses at the end of a load step, and on which area at these positions of all nodes.
+    pub fn keep_load_step(&mut self, positions: &[Vector]) {
+        let pressed = self.kept_rows.pressed(self.pressing());
+        let areas = self.surfaces.areas(&forces_of(&pressed, positions.len()), positions);
+        self.at_load_steps.push(PressedStep { pressed, areas });
     }
 
     /// How deep points lie behind what they face after a displacement and a share of the movement of bones, in mm.
@@ -225,7 +227,8 @@ impl<'a> Touching<'a> {
         }
         let Touching { effort, kept_rows, at_load_steps, .. } = self;
         let gaps = kept_rows.gaps(displacement, 1.0);
-        let has_pressed = at_load_steps.iter().chain([&found.pressed]).any(|rows| !rows.is_empty());
+        let rows = at_load_steps.iter().map(|step| &step.pressed).chain([&found.pressed]);
+        let has_pressed = rows.into_iter().any(|rows| !rows.is_empty());
         let contact =
             Contact { gaps, effort, last_moved_mm, relative_residual, at_load_steps, ..found };
         Ok(has_pressed.then_some(contact))
