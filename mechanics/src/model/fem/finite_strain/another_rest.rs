@@ -30,7 +30,7 @@ const BUCKLES: f64 = 0.2;
 /// The tension from which on a cell may crease, as a share of its shear modulus, and how much lower det F then is at one of its
 /// points than in the mean.
 const PULLED: f64 = 1.0;
-const UNEVEN: f64 = 0.1;
+const UNEVEN: f64 = 0.03;
 
 /// Whether the way to rest, or rest itself, gives reason to ask.
 pub(super) fn is_doubtful(newton: &NewtonReport) -> bool {
