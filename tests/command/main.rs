@@ -358,23 +358,27 @@ fn movements_of_an_earlier_check_do_not_stay() {
     let folder = plan_folder(FORWARD);
     let out = folder.path().join("check");
     let head = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/head");
-    let case = head.join("case.json");
-    let check = |plan: &serde_json::Value| {
-        let file = folder.path().join("moves.json");
-        fs::write(&file, plan.to_string()).unwrap();
-        let done =
-            facies(&["check", "--case", path(&case), "--plan", path(&file), "--out", path(&out)]);
+    for file in ["case.json", "face.vtu", "mandible.vtp", "maxilla.vtp"] {
+        fs::copy(head.join(file), folder.path().join(file)).unwrap();
+    }
+    let case = folder.path().join("case.json");
+    let read = fs::read_to_string(&case).unwrap();
+    let mut documents: serde_json::Value = serde_json::from_str(&read).unwrap();
+    let mut check = |plan: serde_json::Value| {
+        documents["plan"] = plan;
+        fs::write(&case, documents.to_string()).unwrap();
+        let done = facies(&["check", "--case", path(&case), "--out", path(&out)]);
         assert_eq!(done.status.code(), Some(0), "{}", text(&done.stderr));
         ["mandible.txt", "mandible.tfm", "maxilla.txt", "maxilla.tfm"]
             .map(|file| out.join(file).exists())
     };
     let moved = |name: &str| serde_json::json!({"name": name, "translation_mm": [0, -2, 0]});
     assert_eq!(
-        check(&serde_json::json!({"segments": [moved("mandible"), moved("maxilla")]})),
+        check(serde_json::json!({"segments": [moved("mandible"), moved("maxilla")]})),
         [true; 4]
     );
     assert_eq!(
-        check(&serde_json::json!({"segments": [moved("mandible")]})),
+        check(serde_json::json!({"segments": [moved("mandible")]})),
         [true, true, false, false]
     );
 }

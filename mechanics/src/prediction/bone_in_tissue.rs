@@ -27,5 +27,5 @@ pub(super) fn bones_in_tissue(scene: &Scene, displacement: &[Vector]) -> Vec<War
         let warning = warning.with("points", points as f64);
         warning.with("x_mm", at.x).with("y_mm", at.y).with("z_mm", at.z)
     };
-    bones_inside([&rest, &moved], &scene.bones, IN_TISSUE_MM).into_iter().map(told).collect()
+    bones_inside([&rest, &moved], &scene.bones, IN_TISSUE_MM, false).into_iter().map(told).collect()
 }

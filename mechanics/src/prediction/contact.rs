@@ -190,7 +190,7 @@ fn pressed(
     let moved = surfaces.after(&equilibrium.displacement);
     let overlap = deepest_overlap(&moved).filter(|deepest| deepest.depth > at_rest + DEEP_MM);
     // What of bone lies between the nodes of tissue may enter: edges, narrow parts, roundings that cells span as chords.
-    let bones_inside = bones_inside([surfaces.rest(), &moved], &scene.bones, DEEP_MM);
+    let bones_inside = bones_inside([surfaces.rest(), &moved], &scene.bones, DEEP_MM, true);
     if nothing_presses && overlap.is_none() && bones_inside.is_empty() {
         return Ok(None);
     }

@@ -154,12 +154,6 @@ impl Scene {
         LoadCase { held, forces: self.forces.clone(), grown }
     }
 
-    /// Whether forces act or tissue grows.
-    pub(super) fn is_loaded(&self) -> bool {
-        let LoadCase { forces, grown, .. } = self.load_case();
-        forces.iter().any(|force| *force != Vector::zeros()) || grown.iter().any(|by| *by != 0.0)
-    }
-
     /// Whether nothing is held away from its place and nothing acts.
     pub(super) fn is_at_rest(&self) -> bool {
         let moves = |vector: &Vector| *vector != Vector::zeros();

@@ -524,7 +524,7 @@ async fn skin_that_passes_through_itself_is_reported_by_predictions_and_where_a_
     let without_skin = of_mesh.join(", ");
     assert_eq!(
         unasked["not_measured"],
-        json!([of_mesh[0], of_mesh[1], of_mesh[2], of_mesh[3], overlaps])
+        json!([of_mesh[0], of_mesh[1], of_mesh[2], of_mesh[3], of_mesh[4], overlaps])
     );
     assert!(!codes(&unasked).contains(&overlaps));
     let asked = ask_for("?check_skin=true", "application/json").await;

@@ -26,12 +26,13 @@ pub struct BoneInside {
 }
 
 /// The bones that lie more than so many mm deeper in tissue after all movement than at rest, of the boundary of the tissue then
-/// and at rest; of points that lie in tissue at rest those that have moved as much themselves. Corners are looked at, and
-/// points between them where edges of bone are longer than those of tissue.
+/// and at rest; of points that lie in tissue at rest those that have moved as much themselves, or none where bone that meshes of tissue
+/// contain is not meant. Corners are looked at, and points between them where edges of bone are longer than those of tissue.
 pub fn bones_inside(
     [rest, moved]: [&TriangleSurface; 2],
     bones: &[BoneSurface],
     deeper_mm: f64,
+    with_embedded: bool,
 ) -> Vec<BoneInside> {
     let searches = [rest, moved].map(SurfaceSearch::new);
     let [Ok(at_rest), Ok(after)] = &searches else { return Vec::new() };
@@ -50,7 +51,7 @@ pub fn bones_inside(
             }
             let before = depth(at_rest, x);
             // Where bone lies in tissue that bulges, it has not gone in.
-            let has_gone = before <= deeper_mm || by.norm() >= deep - before;
+            let has_gone = before <= deeper_mm || with_embedded && by.norm() >= deep - before;
             (has_gone && deep > before + deeper_mm).then_some((deep, at))
         };
         let points = points_of(&bone.surface, spacing);

@@ -9,7 +9,7 @@ use super::objection::{CandidateAnswer, Objection};
 use super::rung::{Considered, Errors, Rung};
 use crate::mesh::Vector;
 use crate::model::fem::strain::determinants;
-use crate::model::problem::ModelError;
+use crate::model::problem::{LoadCase, ModelError};
 use crate::prediction::answer::{self, Answer, Linear};
 use crate::prediction::case::{Case, Plan};
 use crate::prediction::scene::Scene;
@@ -248,7 +248,10 @@ impl Climb<'_> {
 
     /// Of what a mesh leaves out.
     fn mesh_means(&self, missing: &[Vector]) -> MeanErrors {
-        let times = if self.scene.is_loaded() { LOADED } else { 1.0 };
+        let LoadCase { forces, grown, .. } = self.scene.load_case();
+        let acts = forces.iter().any(|force| *force != Vector::zeros());
+        let grows = grown.iter().any(|by| *by != 0.0);
+        let times = if acts || grows { LOADED } else { 1.0 };
         self.means(missing).map(|error| times * error)
     }
 
