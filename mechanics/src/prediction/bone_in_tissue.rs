@@ -20,7 +20,7 @@ pub(super) fn bones_in_tissue(scene: &Scene, displacement: &[Vector]) -> Vec<War
     }
     let told = |BoneInside { bone, depth, at, points }: BoneInside| {
         let detail = format!(
-            "bone {:?} lies in tissue, up to {depth:.2} mm deeper than before the movement, with {points} of the points of its corners and edges: nothing holds them apart where tissue is not joined to bone, and no error estimate includes that; request `contact` to prevent it",
+            "bone {:?} lies in tissue, up to {depth:.2} mm deep and deeper than before the movement, with {points} of the points of its corners and edges: nothing holds them apart where tissue is not joined to bone, and no error estimate includes that; request `contact` to prevent it",
             scene.bones[bone].name
         );
         let warning = Warning::new("bone-in-tissue", detail).with("depth_mm", depth);
