@@ -27,6 +27,12 @@ pub fn second_log_volume(g: &Matrix3<f64>, h: &Matrix3<f64>) -> f64 {
     -0.5 * g.dot(&h.transpose())
 }
 
+/// The bilinear form of the second order of J: (tr G tr H - tr (G H)) / 2.
+#[inline]
+pub fn second_volume(g: &Matrix3<f64>, h: &Matrix3<f64>) -> f64 {
+    0.5 * g.trace() * h.trace() + second_log_volume(g, h)
+}
+
 /// The third order of ln J: tr H^3 / 3.
 #[inline]
 pub fn third_log_volume(h: &Matrix3<f64>) -> f64 {

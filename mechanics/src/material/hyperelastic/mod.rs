@@ -31,7 +31,7 @@ pub use polyconvex_barrier::PolyconvexBarrier;
 pub use rubin_bodner::RubinBodner;
 pub use saint_venant_kirchhoff::SaintVenantKirchhoff;
 pub use veronda_westmann::VerondaWestmann;
-pub use volumetric::Volumetric;
+pub use volumetric::{OfVolume, VolumeEnergy, Volumetric};
 
 /// Law of the tissue between fibres.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -11,7 +11,7 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::principal::Principal;
-use super::{Derivatives, Fibres, Invariants, Law};
+use super::{Derivatives, Fibres, Invariants, Law, VolumeEnergy};
 
 /// Fibres at a point: their law and their direction at rest, of length 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,6 +27,15 @@ pub struct PressureShare {
     pub pressure: f64,
     /// c in kPa.
     pub modulus: f64,
+}
+
+/// A part U(J) of the energy of volume that the mean of J over a cell carries: W - U(J) + p J instead of W at its points, U at
+/// the mean.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MeanShare {
+    /// p = U' of the mean in kPa.
+    pub pressure: f64,
+    pub energy: VolumeEnergy,
 }
 
 /// A deformed material point.
@@ -114,6 +123,17 @@ impl Point {
         self.w.energy += (by.pressure - 0.5 * by.modulus * log) * log;
         self.w.by_j += left / j;
         self.w.by_j_j -= (by.modulus + left) / (j * j);
+        self
+    }
+
+    /// The same point with a part of its energy of volume taken at the mean of its cell.
+    #[inline]
+    pub fn of_mean(mut self, by: MeanShare) -> Point {
+        let j = self.invariants.j;
+        let own = by.energy.at(j);
+        self.w.energy += by.pressure * j - own.energy;
+        self.w.by_j += by.pressure - own.first;
+        self.w.by_j_j -= own.second;
         self
     }
 
@@ -230,6 +250,12 @@ impl Point {
 }
 
 impl Corner {
+    /// dJ / du.
+    #[inline]
+    pub fn of_volume(&self) -> Vector3<f64> {
+        self.volume
+    }
+
     /// d(ln J) / du at a point with that det F.
     #[inline]
     pub fn of_log_volume(&self, j: f64) -> Vector3<f64> {

@@ -2,7 +2,7 @@
 //!
 //! sigma = P F^T / J; its mean over the deformed cell is (1/v) sum_q V_q P F^T with v = sum_q V_q J. Green's strain
 //! E = (F^T F - 1) / 2, its mean is that over the cell at rest. What a pressure or a mean dilatation carries of the law is
-//! what it carries in the forces: at second order (`force_series`) c ln J of the law is replaced by p, or by c times the mean of ln J, and
+//! what it carries in the forces: at second order (`force_series`) c ln J of the law is replaced by p, or by that of the mean of J, and
 //! linear fibres add F (C_f : E) F^T. Where tissue grows and muscles pull, F is F_e of the stress, in the grown cell, and S is one more
 //! second Piola-Kirchhoff stress (`finite_strain::inner`); strain is that of F with its growth.
 //!
@@ -14,8 +14,8 @@ use rayon::prelude::*;
 use super::assembly::Tissue;
 use super::cell_stiffness::Dilatation;
 use crate::material::ElasticTensor;
-use crate::material::hyperelastic::point::{Point, PressureShare};
-use crate::material::hyperelastic::{Law, NeoHookean};
+use crate::material::hyperelastic::point::{MeanShare, Point, PressureShare};
+use crate::material::hyperelastic::{Law, NeoHookean, VolumeEnergy};
 use crate::mesh::Vector;
 use crate::model::cell_state::CellState;
 use crate::model::fem::inner_stress::{Grown, InnerStress};
@@ -96,30 +96,31 @@ fn of_cell(
         }
         points.push((Point::new(&law, None, f).pulled(inner.pulls(cell)), at.volume));
     }
-    let carried = match (pressure, (tissue.dilatation)(shape)) {
-        (Some(pressure), _) => {
-            Some(PressureShare { pressure, modulus: tensor.pressure_part().lambda })
-        }
-        (None, Dilatation::Mean) => Some(of_mean(&points, tensor.split_volume().1.lambda)),
-        (None, Dilatation::Pointwise) => None,
+    let modulus = tensor.pressure_part().lambda;
+    let mean = match (pressure, (tissue.dilatation)(shape)) {
+        (None, Dilatation::Mean) => Some(of_mean(&points, &tensor)),
+        (Some(_), _) | (None, Dilatation::Pointwise) => None,
     };
     let along_fibres = ElasticTensor { lambda: 0.0, mu: 0.0, ..tensor };
     let mut sums = CellSums::default();
     for (point, volume) in points {
         let fibres = point.pushed(&along_fibres.stress(&point.green_strain()));
         sums.stress += fibres * volume;
-        let point = match carried {
-            Some(by) => point.carried(by),
-            None => point,
+        let point = match (pressure, mean) {
+            (Some(pressure), _) => point.carried(PressureShare { pressure, modulus }),
+            (None, Some(by)) => point.of_mean(by),
+            (None, None) => point,
         };
         sums.add(&point, volume);
     }
     Some(sums.means(&grown))
 }
 
-/// c times the mean of ln J.
-fn of_mean(points: &[(Point, f64)], modulus: f64) -> PressureShare {
+/// What is taken at the mean of J: lambda, and what its points have less.
+fn of_mean(points: &[(Point, f64)], tensor: &ElasticTensor) -> MeanShare {
     let volume: f64 = points.iter().map(|(_, volume)| volume).sum();
-    let log: f64 = points.iter().map(|(point, volume)| point.log_volume() * volume).sum();
-    PressureShare { pressure: modulus * log / volume, modulus }
+    let deformed: f64 = points.iter().map(|(point, volume)| point.volume() * volume).sum();
+    let bounded = -tensor.split_volume().0.lambda;
+    let energy = VolumeEnergy { logarithmic: tensor.lambda, bounded };
+    MeanShare { pressure: energy.at(deformed / volume).first, energy }
 }

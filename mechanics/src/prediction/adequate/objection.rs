@@ -5,7 +5,6 @@
 //! | `cells-inverted` | always: estimates hold near states that tissue can have | yes, finite strain keeps every cell as it is turned |
 //! | `skin-outruns-plan` | of small strain | yes, finite strain confirms it or not |
 //! | `another-equilibrium` | where the state that was found is not stable | no |
-//! | `hexahedra-crease` | always | no |
 //! | `skin-overlaps` | without contact, where it is deeper than at rest by more than is accepted, or nobody knows how deep | no |
 //! | `contact-overlap`, `contact-points-move` | by more than is accepted | no |
 //! | `contact-chatter` | always: there contact may pull | no |
@@ -15,7 +14,6 @@
 
 use super::accepted::Accepted;
 use crate::mesh::{Vector, Warning};
-use crate::model::fem::finite_strain::HEXAHEDRA_CREASE;
 use crate::model::fem::strain::{determinants, inverted_cells};
 use crate::model::problem::Equilibrium;
 use crate::prediction::answer::{Answer, Linear};
@@ -79,9 +77,8 @@ impl<'a> CandidateAnswer<'a> {
         let of_model = inverted.into_iter().chain(outruns);
         let newton = equilibrium.solver.newton.as_ref();
         let is_unstable = newton.is_some_and(|newton| newton.is_stable == Some(false));
-        let unstable = equilibrium.warnings.iter().filter(|own| {
-            own.code == HEXAHEDRA_CREASE || is_unstable && own.code == "another-equilibrium"
-        });
+        let another = |own: &&Warning| is_unstable && own.code == "another-equilibrium";
+        let unstable = equilibrium.warnings.iter().filter(another);
         // In contact edges may cross by less than is measured; what is measured is `contact-overlap`.
         let without_contact = contact.is_none();
         let touches = contact.into_iter().flat_map(|touch| touch.warnings(scene));

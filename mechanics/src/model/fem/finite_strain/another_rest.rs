@@ -5,12 +5,6 @@
 //! much of the energy at rest is in cells whose smallest principal Cauchy stress is below a tenth of their shear modulus: .12 at
 //! most in bars of 100 x 10 x 10 mm held at their ends and pulled to 1.1 to 3 times their length, .5 and more in those that were
 //! pressed by a tenth to a half and buckled (nu .3 and .45, tetrahedra and hexahedra).
-//!
-//! Hexahedra and wedges that take volume as a mean crease where they are pulled on all sides, though tissue would not: what their
-//! corners move by then takes no energy of volume, and tension along it gives more than shear takes. A cube between smooth walls
-//! pulled by a twentieth at nu .49, where the tension is 2.4 shear moduli, is off by a tenth of its cells.
-
-use std::collections::BTreeSet;
 
 use super::problem::FiniteStrain;
 use super::tissue::Deformed;
@@ -18,19 +12,11 @@ use crate::mesh::Warning;
 use crate::model::cell_state::CellStates;
 use crate::solver::NewtonReport;
 
-/// The code of the warning of hexahedra that crease.
-pub const HEXAHEDRA_CREASE: &str = "hexahedra-crease";
-
 /// The pressure along an axis from which on a cell is pressed, as a share of its shear modulus.
 const PRESSED: f64 = 0.1;
 
 /// The share of the energy that pressed cells have where tissue may buckle.
 const BUCKLES: f64 = 0.2;
-
-/// The tension from which on a cell may crease, as a share of its shear modulus, and how much lower det F then is at one of its
-/// points than in the mean.
-const PULLED: f64 = 1.0;
-const UNEVEN: f64 = 0.03;
 
 /// Whether the way to rest, or rest itself, gives reason to ask.
 pub(super) fn is_doubtful(newton: &NewtonReport) -> bool {
@@ -64,32 +50,6 @@ pub(super) fn another_rest(
     let warning = warning.with("indefinite_steps", newton.indefinite_steps as f64);
     let warning = warning.with("pressed_energy_share", pressed);
     Some(warning.with("energy_mn_mm", newton.energy))
-}
-
-/// The warning of hexahedra and wedges that crease because they take volume as a mean.
-pub(super) fn creased_bricks(problem: &FiniteStrain, deformed: &Deformed) -> Option<Warning> {
-    let (mut creased, mut cells, mut all) = (0.0, 0, 0.0);
-    let shared: BTreeSet<usize> = deformed.cells_that_share().collect();
-    for (cell, energy) in deformed.passive_energies() {
-        all += energy;
-        let is_creased = || {
-            let (tension, least) = deformed.tension_and_evenness(cell);
-            let shear_modulus = problem.laws[usize::from(problem.law_of_cell[cell])].at_rest().1;
-            tension > PULLED * shear_modulus && least < 1.0 - UNEVEN
-        };
-        if shared.contains(&cell) && is_creased() {
-            creased += energy;
-            cells += 1;
-        }
-    }
-    let share = if all > 0.0 { creased / all } else { 0.0 };
-    let detail = format!(
-        "{:.0} % of the energy is in {cells} hexahedra and wedges that are pulled on all sides by more than their shear modulus and have \
-         creased: with one pressure a cell they do where tissue would not; take tetrahedra, or `\"element\": \"plain\"`",
-        100.0 * share
-    );
-    let warning = Warning::new(HEXAHEDRA_CREASE, detail).with("cells", f64::from(cells));
-    (share > BUCKLES).then(|| warning.with("energy_share", share))
 }
 
 /// The share of the energy that is in pressed cells, by their mean stress: that of the elements with their pressures, and without

@@ -11,8 +11,8 @@ use super::fibres::FibreField;
 use super::problem::FiniteStrain;
 use super::step_length::Volume;
 use crate::element::tetrahedron10;
-use crate::material::hyperelastic::Law;
-use crate::material::hyperelastic::point::{Corner, Point, PressureShare};
+use crate::material::hyperelastic::point::{Corner, MeanShare, Point};
+use crate::material::hyperelastic::{Law, OfVolume, VolumeEnergy};
 use crate::mesh::{CellShape, Vector, VolumeMesh};
 use crate::model::dofs::DofMap;
 use crate::model::fem::cell_stiffness::tetrahedron;
@@ -38,8 +38,10 @@ pub(super) struct BrickAt<'a> {
     pub at_rest: &'a [PointAtRest],
     pub points: &'a [Point],
     pub law: u16,
-    /// c/V of the mean of ln J; 0 where volume is taken at each point.
-    pub of_mean: f64,
+    /// What acts on the mean of J; none where volume is taken at each point.
+    pub mean: Option<OfVolume>,
+    /// In kPa, of what is taken as a mean at rest; 0 where nothing is.
+    pub bulk_modulus: f64,
 }
 
 impl BrickAt<'_> {
@@ -48,20 +50,28 @@ impl BrickAt<'_> {
         self.at_rest.iter().map(|point| point.volume).sum()
     }
 
-    /// p = c/V int ln J in kPa.
+    /// p of the mean of J in kPa.
     pub fn pressure(&self) -> f64 {
-        let pairs = self.at_rest.iter().zip(self.points);
-        self.of_mean * pairs.map(|(rest, point)| point.log_volume() * rest.volume).sum::<f64>()
+        self.mean.map_or(0.0, |mean| mean.first)
     }
 
-    /// In mN mm, without what muscles pull. W - c/2 ln² J + p ln J stands for the points, c/2 of the mean squared is asked for: half of p ln J.
+    /// What resists the integral of J over the cell, in kPa/mm^3.
+    pub fn of_mean(&self) -> f64 {
+        self.mean.map_or(0.0, |mean| mean.second.max(0.0) / self.volume())
+    }
+
+    /// In mN mm, without what muscles pull.
     pub fn passive_energy(&self) -> f64 {
-        let pairs = self.at_rest.iter().zip(self.points);
-        let points: f64 = pairs.map(|(rest, point)| rest.volume * point.passive_energy()).sum();
-        match self.of_mean == 0.0 {
-            true => points,
-            false => points - 0.5 * self.pressure().powi(2) / self.of_mean,
-        }
+        self.energy(Point::passive_energy)
+    }
+
+    /// In mN mm. W - U(J) + p J stands for the points, U of the mean is asked for.
+    fn energy(&self, of_point: impl Fn(&Point) -> f64) -> f64 {
+        let energy = |(rest, point): (&PointAtRest, &Point)| {
+            let pressed = self.mean.map_or(0.0, |mean| mean.energy - mean.first * point.volume());
+            rest.volume * (of_point(point) + pressed)
+        };
+        self.at_rest.iter().zip(self.points).map(energy).sum()
     }
 }
 
@@ -72,8 +82,8 @@ struct Brick {
     volume: f64,
     law: u16,
     cell: usize,
-    /// The bulk modulus in kPa that acts on the mean of ln J; 0 where volume is taken at each point.
-    carried: f64,
+    /// The energy of the mean of J; none where volume is taken at each point.
+    of_mean: Option<VolumeEnergy>,
 }
 
 /// The hexahedra and wedges of a mesh.
@@ -90,8 +100,7 @@ pub(super) struct Bricks<'a> {
 /// A brick at positions.
 struct DeformedBrick {
     points: Vec<Point>,
-    /// In kPa.
-    pressure: f64,
+    mean: Option<OfVolume>,
 }
 
 pub(super) struct DeformedBricks<'a> {
@@ -118,7 +127,7 @@ impl<'a> Bricks<'a> {
             let law = law_of_cell[cell];
             let mut brick = Brick::new(mesh, cell, rows, law)?;
             if elements.mean_dilatation {
-                brick.carried = kept.of_brick(&laws[usize::from(law)], cell).max(0.0);
+                brick.of_mean = kept.of_brick(&laws[usize::from(law)], cell);
             }
             Ok(brick.grown(inner.grown(cell)))
         };
@@ -141,7 +150,7 @@ impl<'a> Bricks<'a> {
 
     /// Those that take volume as a mean.
     pub fn cells_that_share(&self) -> impl Iterator<Item = usize> {
-        self.bricks.iter().filter(|brick| brick.carried > 0.0).map(|brick| brick.cell)
+        self.bricks.iter().filter(|brick| brick.of_mean.is_some()).map(|brick| brick.cell)
     }
 
     pub fn megabytes(&self) -> f64 {
@@ -166,15 +175,13 @@ impl<'a> Bricks<'a> {
         let pulls = self.inner.pulls(brick.cell);
         let point = |at: &PointAtRest| Point::new(law, fibres, at.gradient(&of_cell)).pulled(pulls);
         let points: Vec<Point> = brick.points.iter().map(point).collect();
-        if brick.carried == 0.0 {
-            return DeformedBrick { points, pressure: 0.0 };
-        }
-        let logs = brick.points.iter().zip(&points);
-        let mean: f64 = logs.map(|(at, point)| at.volume * point.log_volume()).sum();
-        let pressure = brick.carried * mean / brick.volume;
-        let by = PressureShare { pressure, modulus: brick.carried };
-        let points = points.into_iter().map(|point| point.carried(by)).collect();
-        DeformedBrick { points, pressure }
+        let Some(energy) = brick.of_mean else { return DeformedBrick { points, mean: None } };
+        let pairs = brick.points.iter().zip(&points);
+        let volume: f64 = pairs.map(|(at, point)| at.volume * point.volume()).sum();
+        let mean = energy.at(volume / brick.volume);
+        let by = MeanShare { pressure: mean.first, energy };
+        let points = points.into_iter().map(|point| point.of_mean(by)).collect();
+        DeformedBrick { points, mean: Some(mean) }
     }
 
     pub fn at(&self, x: &[Vector]) -> DeformedBricks<'_> {
@@ -184,16 +191,7 @@ impl<'a> Bricks<'a> {
 
     /// In mN mm.
     pub fn energy(&self, x: &[Vector]) -> f64 {
-        let energy = |brick: &Brick| -> f64 {
-            let DeformedBrick { points, pressure } = self.at_brick(brick, x);
-            let points: f64 =
-                brick.points.iter().zip(&points).map(|(at, p)| at.volume * p.energy()).sum();
-            // W - c/2 ln^2 J + p ln J stands for the points, c/2 of the mean squared is asked for: half of p ln J.
-            match pressure == 0.0 {
-                true => points,
-                false => points - 0.5 * brick.volume * pressure * pressure / brick.carried,
-            }
-        };
+        let energy = |brick: &Brick| self.at_brick(brick, x).of(brick).energy(Point::energy);
         let sums: Vec<f64> =
             self.bricks.par_chunks(CHUNK).map(|bricks| bricks.iter().map(energy).sum()).collect();
         sums.iter().sum()
@@ -223,7 +221,7 @@ impl Brick {
             CellShape::Hex8 | CellShape::Wedge6 => points(mesh, cell)?,
         };
         let volume = points.iter().map(|point| point.volume).sum();
-        Ok(Brick { rows, points, volume, law, cell, carried: 0.0 })
+        Ok(Brick { rows, points, volume, law, cell, of_mean: None })
     }
 
     fn grown(mut self, grown: Grown) -> Brick {
@@ -257,6 +255,14 @@ fn quadratic_points(mesh: &VolumeMesh, cell: usize) -> Result<Vec<PointAtRest>, 
         volume: 0.25 * volume,
     };
     Ok(tetrahedron10::points().iter().map(point).collect())
+}
+
+impl DeformedBrick {
+    fn of<'a>(&'a self, at_rest: &'a Brick) -> BrickAt<'a> {
+        let DeformedBrick { points, mean } = self;
+        let bulk_modulus = at_rest.of_mean.map_or(0.0, VolumeEnergy::bulk_modulus);
+        BrickAt { at_rest: &at_rest.points, points, law: at_rest.law, mean: *mean, bulk_modulus }
+    }
 }
 
 impl PointAtRest {
@@ -304,12 +310,7 @@ impl DeformedBricks<'_> {
     pub fn at_cell(&self, cell: usize) -> BrickAt<'_> {
         let brick = self.bricks.of_cell[cell] as usize;
         let (own, deformed) = (&self.bricks.bricks[brick], &self.deformed[brick]);
-        BrickAt {
-            at_rest: &own.points,
-            points: &deformed.points,
-            law: own.law,
-            of_mean: own.carried / own.volume,
-        }
+        deformed.of(own)
     }
 
     fn tangent_of(&self, brick: usize) -> Vec<Block> {
@@ -324,11 +325,11 @@ impl DeformedBricks<'_> {
                 *sum += point.block(a, b) * at.volume;
             }
             for (mean, corner) in mean.iter_mut().zip(&corners) {
-                *mean += corner.of_log_volume(point.volume()) * at.volume;
+                *mean += corner.of_volume() * at.volume;
             }
         }
-        if at_rest.carried > 0.0 {
-            let factor = at_rest.carried / at_rest.volume;
+        if let Some(of_mean) = &deformed.mean {
+            let factor = of_mean.second / at_rest.volume;
             for (entry, sum) in sums.iter_mut().enumerate() {
                 *sum += mean[entry / count] * mean[entry % count].transpose() * factor;
             }

@@ -4,14 +4,16 @@
 //! the law at rest:
 //! * stabilised tetrahedra: p is linear and continuous, Pi = int W - c/2 ln^2 J + p ln J - p^2 / (2c) - (p - Pi p)^2 / (2 mu)
 //!   (the perturbed Lagrangian of `displacement_pressure`, docs/methods.md#newton);
-//! * hexahedra and wedges with mean dilatation: p = c/V int ln J, one for each cell.
+//! * hexahedra and wedges with mean dilatation: c/2 ln^2 of the mean of J over the cell, p = c ln(Jm) / Jm. A mean of ln J would agree
+//!   with it near rest, but takes volume from cells that are pulled on all sides: the second order of their J then counts
+//!   against their corners, and they crease.
 //!
 //! The share kappa of the bulk modulus that stays in each point keeps single cells from collapsing on the way; near rest it goes into
 //! the pressures too, but in cells that are pressed to a small part of their volume. Only the neo-Hookean law
 //! whose energy of volume is that of ln J shares it: what another law leaves in the points would no longer be convex, and no
 //! barrier against collapse (steps of Mooney-Rivlin's and of exponential laws then wander without end). The others take volume at each point.
 
-use crate::material::hyperelastic::Law;
+use crate::material::hyperelastic::{Law, VolumeEnergy};
 use crate::mesh::Vector;
 
 /// Elements for tetrahedra, and for the other cells.
@@ -67,13 +69,14 @@ impl CellBulkModulus {
         Exchange { carried, mu }
     }
 
-    /// c of a cell with mean dilatation. Linear ones take all of the bulk modulus lambda + 2/3 mu as a mean.
-    pub fn of_brick(&self, law: &Law, cell: usize) -> f64 {
-        let Exchange { carried, mu } = self.of(law, cell);
-        match self.share(cell) == 0.0 && law.shares_volume() {
-            true => carried + 2.0 / 3.0 * mu,
-            false => carried,
-        }
+    /// What a cell with mean dilatation takes as a mean; none where that is nothing. Linear ones take all of the bulk modulus
+    /// lambda + 2/3 mu so.
+    pub fn of_brick(&self, law: &Law, cell: usize) -> Option<VolumeEnergy> {
+        let Exchange { carried: logarithmic, mu } = self.of(law, cell);
+        let takes_all = self.share(cell) == 0.0 && law.shares_volume();
+        let bounded = if takes_all { 2.0 / 3.0 * mu } else { 0.0 };
+        let energy = VolumeEnergy { logarithmic, bounded };
+        (energy.bulk_modulus() > 0.0).then_some(energy)
     }
 }
 

@@ -91,7 +91,7 @@ fn smooth_pressures(linear: &assembly::Tissue, deformed: &Deformed) -> Vec<Optio
             return None;
         }
         let brick = deformed.bricks.at_cell(cell);
-        (brick.of_mean > 0.0).then(|| Weighted { value: brick.pressure(), volume: brick.volume() })
+        brick.mean.map(|mean| Weighted { value: mean.first, volume: brick.volume() })
     };
     let own: Vec<Option<Weighted<f64>>> = cells.iter().enumerate().map(of_cell).collect();
     smooth_in_wedges(linear, &own)

@@ -1,6 +1,7 @@
 //! A hexahedron or wedge at rest at finite strain with functions on its edges, integrated at its points.
 //!
-//! Its inner modes come first, as in `discretisation_error::points`, at the tangent moduli of its state.
+//! Its inner modes come first, as in `discretisation_error::points`, at the tangent moduli of its state. Volume is resisted as the mean of J and
+//! in the three moments of ln J: moments of J would resist cells too much some points of which are pressed.
 
 use nalgebra::Matrix3;
 
@@ -54,16 +55,17 @@ impl EnrichedBrick<'_> {
             weights: moment_weights(&positions, &volumes),
             of_volume: [[Vector::zeros(); 3]; MAX_MODES],
             means: [Vector::zeros(); MAX_MODES],
-            bulk: self.brick.of_mean * self.brick.volume(),
-            of_mean: self.brick.of_mean,
+            bulk: self.brick.bulk_modulus,
+            of_mean: self.brick.of_mean(),
             edges,
         };
         for (place, (at_rest, point, _)) in self.points().enumerate() {
             let (modes, y) = (inner.gradients[place], inner.weights[place]);
             for (mode, g) in modes.iter().enumerate() {
-                let of_log_volume = point.corner(g).of_log_volume(point.volume());
+                let corner = point.corner(g);
+                let of_log_volume = corner.of_log_volume(point.volume());
                 (0..3).for_each(|k| inner.of_volume[mode][k] += of_log_volume * y[k]);
-                inner.means[mode] += of_log_volume * at_rest.volume;
+                inner.means[mode] += corner.of_volume() * at_rest.volume;
             }
         }
         inner
@@ -125,9 +127,9 @@ impl EnrichedBrick<'_> {
                 let force = force_on(point, &own, &rows) * at_rest.volume;
                 softest.equations.add_force(mode, &-force);
             }
-            let change: f64 = (0..3).map(|k| rows[k].of_log_volume(point.volume())[k]).sum();
+            let change: f64 = (0..3).map(|k| rows[k].of_volume()[k]).sum();
             let y = inner.weights[place];
-            (0..3).for_each(|k| moments[k] += change * y[k]);
+            (0..3).for_each(|k| moments[k] += change / point.volume() * y[k]);
             mean += change * at_rest.volume;
         }
         let coefficients = softest.solved(&inner, moments, mean);
@@ -152,15 +154,15 @@ impl EnrichedBrick<'_> {
                 let own = point.corner(g);
                 equation.residual -= (stress * g + force_on(point, &own, &rows)) * volume;
                 equation.stiffness += point.block(&own, &own) * volume;
-                let of_log_volume = own.of_log_volume(point.volume()) * volume;
-                equation.residual -= of_log_volume * more;
-                means[edge] += of_log_volume;
+                let of_volume = own.of_volume() * volume;
+                equation.residual -= of_volume * more;
+                means[edge] += of_volume;
                 shears[edge] += self.mu * volume * g.norm_squared();
             }
         }
         let of_mean = match self.shape {
-            CellShape::Wedge6 => self.brick.of_mean.min(self.mu / self.brick.volume()),
-            CellShape::Hex8 | CellShape::Tet4 => self.brick.of_mean,
+            CellShape::Wedge6 => self.brick.of_mean().min(self.mu / self.brick.volume()),
+            CellShape::Hex8 | CellShape::Tet4 => self.brick.of_mean(),
         };
         for (edge, equation) in equations[..self.edge_count()].iter_mut().enumerate() {
             let block = equation.stiffness + means[edge] * means[edge].transpose() * of_mean;
@@ -180,18 +182,18 @@ impl EnrichedBrick<'_> {
                 + gradient_of(&of.modes, &inner.gradients[place]);
             let rows = rows(point, &along);
             for (k, row) in rows.iter().enumerate() {
-                change += row.of_log_volume(point.volume())[k] * volume;
+                change += row.of_volume()[k] * volume;
             }
             let y = &inner.weights[place];
             let linear: f64 = changes.iter().zip(y).map(|(change, y)| change * y).sum();
             for (a, g) in at_rest.gradients.iter().enumerate() {
                 let corner = point.corner(g);
                 let of_log_volume = corner.of_log_volume(point.volume());
-                means[a] += of_log_volume * volume;
+                means[a] += corner.of_volume() * volume;
                 forces[a] += force_on(point, &corner, &rows) * volume + of_log_volume * linear;
             }
         }
-        let pressure = self.brick.of_mean * change;
+        let pressure = self.brick.of_mean() * change;
         forces.iter_mut().zip(&means).for_each(|(force, mean)| *force += mean * pressure);
         forces
     }
@@ -208,7 +210,7 @@ struct Inner {
     gradients: Vec<Modes>,
     /// y_k dV of each point.
     weights: Vec<[f64; 3]>,
-    /// d(ln J) of each mode, in the three moments and in the integral over the cell.
+    /// d(ln J) of each mode in the three moments, and dJ in the integral over the cell.
     of_volume: [[Vector; 3]; MAX_MODES],
     means: [Vector; MAX_MODES],
     /// What resists the moments in kPa, and the integral.

@@ -46,8 +46,7 @@ use crate::model::problem::{Equilibrium, LoadCase, ModelError};
 use crate::progress::{Phase, Progress};
 use crate::solver::SolverError;
 use crate::solver::element_connectivity::ElementConnectivity;
-pub use another_rest::HEXAHEDRA_CREASE;
-use another_rest::{another_rest, creased_bricks, is_doubtful};
+use another_rest::{another_rest, is_doubtful};
 use direction::Directions;
 use elements::CellBulkModulus;
 pub use elements::Elements;
@@ -221,20 +220,19 @@ impl<'a> FiniteStrain<'a> {
             report.newton.as_ref().is_some_and(|way| way.least_det_f < 1.0 - ROUNDING);
         let pressed = tissue.bulk_warning().filter(|_| is_strained);
         let doubtful = report.newton.as_ref().filter(|newton| is_doubtful(newton));
-        let (mut doubt, mut states) = ([None, None], CellStates::default());
+        let (mut doubt, mut states) = (None, CellStates::default());
         if self.with_states || doubtful.is_some() {
             let deformed = tissue.at(&positions, &pressures, directions.pressures.as_ref());
             let of_cells = cell_states(self.mesh, &self.inner, &deformed);
             if let Some(newton) = doubtful {
-                let creased = creased_bricks(self, &deformed);
-                doubt = [another_rest(self, &deformed, &of_cells, newton), creased];
+                doubt = another_rest(self, &deformed, &of_cells, newton);
             }
             states = if self.with_states { of_cells } else { states };
         }
         let equilibrium = Equilibrium {
             displacement,
             reactions: reactions(question.constrained, &forces, acting),
-            warnings: doubt.into_iter().flatten().chain(pressed).collect(),
+            warnings: doubt.into_iter().chain(pressed).collect(),
             solver: report,
             states,
         };

@@ -221,20 +221,6 @@ impl Deformed<'_> {
         of_simplices.chain(of_bricks.map(|cell| (cell, self.bricks.at_cell(cell).passive_energy())))
     }
 
-    /// Hexahedra and wedges that take volume as a mean.
-    pub fn cells_that_share(&self) -> impl Iterator<Item = usize> {
-        self.tissue.bricks.cells_that_share()
-    }
-
-    /// Of a hexahedron or wedge its tension in kPa, and its least det F over the mean of its points.
-    pub fn tension_and_evenness(&self, cell: usize) -> (f64, f64) {
-        let brick = self.bricks.at_cell(cell);
-        let pairs = brick.at_rest.iter().zip(brick.points);
-        let mean = pairs.map(|(rest, point)| point.volume() * rest.volume).sum::<f64>();
-        let least = brick.points.iter().map(|point| point.volume()).fold(f64::INFINITY, f64::min);
-        (brick.pressure(), least * brick.volume() / mean)
-    }
-
     /// In mN mm, at these pressures.
     pub fn energy(&self, x: &[Vector]) -> f64 {
         self.simplices.energy() + self.tissue.bricks.energy(x) + self.sheet.energy()

@@ -7,8 +7,8 @@ use crate::element::{MAX_NODES, PhysicalPoint};
 use crate::material::ElasticTensor;
 use crate::material::law_series::LawSeries;
 use crate::material::stress_series::{
-    Stretch, second_green_stress, second_log_volume, second_stress, third_green_stress,
-    third_log_volume, third_stress,
+    Stretch, second_green_stress, second_log_volume, second_stress, second_volume,
+    third_green_stress, third_log_volume, third_stress,
 };
 use crate::mesh::Vector;
 use crate::model::fem::assembly::Tissue;
@@ -66,8 +66,11 @@ pub(super) struct CellTerms {
     pub volume: f64,
 }
 
-/// Orders of ln J at the points of a cell, and their mean.
-struct LogVolumes {
+/// An order of ln J and of J at the points of a cell, and their means.
+#[derive(Default)]
+struct Volumes {
+    logs: [f64; MAX_NODES],
+    log_mean: f64,
     at: [f64; MAX_NODES],
     mean: f64,
 }
@@ -197,28 +200,61 @@ impl Cell {
         self.of_mean.as_ref().map_or(0.0, |parts| parts.lambda)
     }
 
-    fn log_volumes(&self, of: impl Fn(usize) -> f64) -> LogVolumes {
-        let mut logs = LogVolumes { at: [0.0; MAX_NODES], mean: 0.0 };
+    /// Of an order of ln J and of J at each point.
+    fn volumes(&self, of: impl Fn(usize) -> [f64; 2]) -> Volumes {
+        let mut volumes = Volumes::default();
         for (place, point) in self.points.iter().enumerate() {
-            logs.at[place] = of(place);
-            logs.mean += logs.at[place] * point.volume / self.volume;
+            let [log, at] = of(place);
+            (volumes.logs[place], volumes.at[place]) = (log, at);
+            volumes.log_mean += log * point.volume / self.volume;
+            volumes.mean += at * point.volume / self.volume;
         }
-        logs
+        volumes
     }
 
-    /// tau of an order at a point in kPa.
-    fn tension(&self, logs: &LogVolumes, place: usize) -> f64 {
-        self.at_points.lambda * logs.at[place] + self.mean_lambda() * logs.mean
+    /// tau2 of a pair of states at each point in kPa: of the mean the second order of K J ln(Jm) / Jm.
+    fn second_tensions(&self, strained: &CellStrains, pair: [usize; 2]) -> ([f64; MAX_NODES], Volumes) {
+        let [a, b] = pair.map(|state| strained.of(state));
+        let second = self.volumes(|q| {
+            let (g, h) = (&a[q].gradient, &b[q].gradient);
+            [second_log_volume(g, h), second_volume(g, h)]
+        });
+        let [m, n] = pair.map(|state| strained.means[state].trace());
+        let mean = second.mean - 1.5 * m * n;
+        let tension = |q: usize| {
+            let first = 0.5 * (m * b[q].gradient.trace() + n * a[q].gradient.trace());
+            self.at_points.lambda * second.logs[q] + self.mean_lambda() * (mean + first)
+        };
+        (self.at_each(tension), second)
+    }
+
+    /// tau3 of the first state at each point in kPa.
+    fn third_tensions(&self, strained: &CellStrains, second: &Volumes) -> ([f64; MAX_NODES], Volumes) {
+        let a = strained.of(0);
+        let third =
+            self.volumes(|q| [third_log_volume(&a[q].gradient), a[q].gradient.determinant()]);
+        let m = strained.means[0].trace();
+        let of_second = second.mean - 1.5 * m * m;
+        let mean = third.mean - 3.0 * m * second.mean + 11.0 / 6.0 * m * m * m;
+        let tension = |q: usize| {
+            let more = of_second * a[q].gradient.trace() + m * second.at[q];
+            self.at_points.lambda * third.logs[q] + self.mean_lambda() * (mean + more)
+        };
+        (self.at_each(tension), third)
+    }
+
+    fn at_each(&self, of: impl Fn(usize) -> f64) -> [f64; MAX_NODES] {
+        std::array::from_fn(|q| if q < self.points.len() { of(q) } else { 0.0 })
     }
 
     /// N2 of a pair of states.
     pub fn second(&self, strained: &CellStrains, pair: [usize; 2]) -> CellTerms {
         let [a, b] = pair.map(|state| strained.of(state));
-        let logs = self.log_volumes(|q| second_log_volume(&a[q].gradient, &b[q].gradient));
-        let mut terms = CellTerms { volume: self.volume / 4.0 * logs.mean, ..CellTerms::nothing() };
+        let (tensions, volumes) = self.second_tensions(strained, pair);
+        let volume = self.volume / 4.0 * volumes.log_mean;
+        let mut terms = CellTerms { volume, ..CellTerms::nothing() };
         for (q, point) in self.points.iter().enumerate() {
-            let tension = self.tension(&logs, q);
-            let mut stress = second_stress(self.at_points.mu, [&a[q], &b[q]], tension);
+            let mut stress = second_stress(self.at_points.mu, [&a[q], &b[q]], tensions[q]);
             if let Some(fibres) = &self.at_points.fibres {
                 stress += second_green_stress(fibres, &a[q].gradient, &b[q].gradient);
             }
@@ -311,13 +347,12 @@ impl Cell {
     /// N3 of the first state.
     pub fn third(&self, strained: &CellStrains) -> CellTerms {
         let a = strained.of(0);
-        let second = self.log_volumes(|q| second_log_volume(&a[q].gradient, &a[q].gradient));
-        let third = self.log_volumes(|q| third_log_volume(&a[q].gradient));
-        let mut terms =
-            CellTerms { volume: self.volume / 4.0 * third.mean, ..CellTerms::nothing() };
+        let (seconds, second) = self.second_tensions(strained, [0, 0]);
+        let (thirds, third) = self.third_tensions(strained, &second);
+        let volume = self.volume / 4.0 * third.log_mean;
+        let mut terms = CellTerms { volume, ..CellTerms::nothing() };
         for (q, point) in self.points.iter().enumerate() {
-            let tensions = (self.tension(&second, q), self.tension(&third, q));
-            let mut stress = third_stress(self.at_points.mu, &a[q], tensions.0, tensions.1);
+            let mut stress = third_stress(self.at_points.mu, &a[q], seconds[q], thirds[q]);
             if let Some(fibres) = &self.at_points.fibres {
                 stress += third_green_stress(fibres, &a[q].gradient);
             }

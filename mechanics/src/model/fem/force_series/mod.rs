@@ -4,7 +4,7 @@
 //! linear elements to the last bit of their formulation: at each point the stress series of neo-Hookean tissue with fibres
 //! (`material::stress_series`), with the tension that the element has:
 //!   plain cells          lambda ln J
-//!   mean dilatation      -2/3 mu ln J + K (1/V sum_q V_q ln J)     what is a mean at first order is one at every order
+//!   mean dilatation      -2/3 mu ln J + J K ln(Jm) / Jm, Jm = 1/V sum_q V_q J     what is a mean at first order is one at every order
 //!   stabilised pressure  (lambda - lambda') ln J + p, and a volume V/4 ln J - (C p)_a for each corner
 //! (`cell_stiffness`, `displacement_pressure`). A law that is stated adds what sets it apart from neo-Hookean tissue
 //! (`material::law_series`). The membrane has its plane stiffness of Green's strain.
