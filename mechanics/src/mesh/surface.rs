@@ -66,6 +66,16 @@ impl TriangleSurface {
         areas
     }
 
+    /// The same surface of a volume mesh after a displacement of its nodes in mm.
+    pub fn displaced(&self, displacement: &[Vector]) -> TriangleSurface {
+        let mut surface = self.clone();
+        let nodes = self.node_ids.as_deref().unwrap_or_default();
+        for (point, &node) in surface.points.iter_mut().zip(nodes) {
+            *point += displacement[node as usize];
+        }
+        surface
+    }
+
     /// For each point the area-weighted unit normal; zero where its triangles cancel.
     pub fn point_normals(&self) -> Vec<Vector> {
         let mut normals = vec![Vector::zeros(); self.points.len()];

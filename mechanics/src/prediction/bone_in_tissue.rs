@@ -13,11 +13,7 @@ pub(super) fn bones_in_tissue(scene: &Scene, displacement: &[Vector]) -> Vec<War
         return Vec::new();
     }
     let rest = scene.mesh.surface_of(&scene.boundary);
-    let mut moved = rest.clone();
-    let nodes = rest.node_ids.as_deref().unwrap_or_default();
-    for (point, &node) in moved.points.iter_mut().zip(nodes) {
-        *point += displacement[node as usize];
-    }
+    let moved = rest.displaced(displacement);
     let told = |BoneInside { bone, depth, at, points }: BoneInside| {
         let detail = format!(
             "bone {:?} lies in tissue, up to {depth:.2} mm deep and deeper than before the movement, with {points} of the points of its corners and edges: nothing holds them apart where tissue is not joined to bone, and no error estimate includes that; request `contact` to prevent it",

@@ -163,7 +163,7 @@ impl<'a> FacingSurfaces<'a> {
 
     /// The boundary after a displacement.
     pub fn after(&self, displacement: &[Vector]) -> TriangleSurface {
-        self.boundary.after(displacement)
+        self.boundary.rest.displaced(displacement)
     }
 
     /// The rows of the points that face another or a bone near by after a displacement and a share of the movement of bones,

@@ -36,18 +36,9 @@ impl Boundary {
         Boundary { rest, fans }
     }
 
-    pub fn after(&self, displacement: &[Vector]) -> TriangleSurface {
-        let mut surface = self.rest.clone();
-        let nodes = self.rest.node_ids.as_deref().unwrap_or_default();
-        for (point, &node) in surface.points.iter_mut().zip(nodes) {
-            *point += displacement[node as usize];
-        }
-        surface
-    }
-
     /// None where no triangle has an area.
     pub fn moved(&self, displacement: &[Vector]) -> Option<MovedBoundary> {
-        let surface = self.after(displacement);
+        let surface = self.rest.displaced(displacement);
         let search = SurfaceSearch::new(&surface).ok()?;
         let unit = |triangle: usize| surface.area_vector(triangle).try_normalize(f64::MIN_POSITIVE);
         let flats = (0..surface.triangles.len()).map(|triangle| unit(triangle).unwrap_or_default());
