@@ -139,11 +139,15 @@ impl From<&AnatomyError> for ErrorCode {
             ) => ErrorCode::NoTissue,
             AnatomyError::Surface(error) => error.into(),
             AnatomyError::SkinScan(error) => match error {
-                SkinScanError::Alignment(_) => ErrorCode::AlignmentFailed,
+                SkinScanError::Alignment(_) | SkinScanError::EmptyMask { .. } => {
+                    ErrorCode::AlignmentFailed
+                }
                 SkinScanError::Skin(_) => ErrorCode::MeshingFailed,
                 SkinScanError::Misfit { .. } => ErrorCode::SkinScanMisfit,
                 SkinScanError::Mirrored { .. } => ErrorCode::SkinScanMirrored,
-                SkinScanError::Small { .. } => ErrorCode::SkinScanSmall,
+                SkinScanError::Small { .. } | SkinScanError::SmallMask { .. } => {
+                    ErrorCode::SkinScanSmall
+                }
             },
             AnatomyError::Bone(_) => ErrorCode::SegmentNotFound,
             AnatomyError::Meshing(MeshingError::TooMany { .. } | MeshingError::TooFine { .. }) => {

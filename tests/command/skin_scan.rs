@@ -200,6 +200,11 @@ fn a_face_that_is_not_that_of_the_scan_is_refused_by_name() {
     let refused = facies(&[&asked[..], &["--skin-scan", path(&face)]].concat());
     let told = text(&refused.stderr);
     assert!(told.contains("/spec/skin_scan/landmarks") && told.contains("at least 3"), "{told}");
+    let beside = json!({"skin_scan": {"mask": {"sphere_mm": [900, 0, 0, 10]}}});
+    fs::write(&spec, beside.to_string()).unwrap();
+    let refused = facies(&[&asked[..], &["--skin-scan", path(&face)]].concat());
+    let told = text(&refused.stderr);
+    assert!(told.contains("/spec/skin_scan/mask: the mask holds no skin of the CT"), "{told}");
 }
 
 #[test]

@@ -33,6 +33,16 @@ pub(super) fn replaced<T: Copy>(
     values
 }
 
+/// That no voxel of a scan with these values is bone above its threshold; nothing where one is.
+pub fn no_bone(bone: &Labelled, (low, high): (f64, f64), threshold: f64) -> Option<Warning> {
+    let detail = format!(
+        "no voxel of the scan lies above the threshold of bone, {threshold} HU: its values reach from {low} to {high}. The mesh has no bone, \
+         tissue is held where the scan ends at most, and no plan can move anything; state `thresholds_hu.bone`"
+    );
+    let warning = || Warning::new("no-bone", detail).with("highest", high);
+    bone.labels.bone_box().is_none().then(warning)
+}
+
 /// How much bone is loose; nothing where none is.
 pub fn loose_bone(bone: &Labelled) -> Option<Warning> {
     let loose = &bone.loose;

@@ -198,27 +198,26 @@ pub fn build(
 /// Cuts at which nothing is parted: planes beside the bone, or between bones that do not touch. A line of pieces is one cut, which
 /// may begin and end beyond the bone: it is reported where all of it does.
 fn missed(bone: &Labelled, osteotomy: &Osteotomy) -> Vec<Warning> {
-    let mut cuts: Vec<(&str, usize, bool)> = Vec::new();
+    let mut cuts: Vec<(&str, Vec<usize>)> = Vec::new();
     for (number, cut) in osteotomy.cuts().iter().enumerate() {
-        let meets = bone.contacts.iter().any(|contact| contact.cut == Some(number));
-        match cuts.iter_mut().find(|(name, ..)| cut.chain().is_some() && *name == cut.line_name()) {
-            Some((_, pieces, any_meets)) => {
-                *pieces += 1;
-                *any_meets |= meets;
-            }
-            None => cuts.push((cut.line_name(), 1, meets)),
+        match cuts.iter_mut().find(|(name, _)| cut.chain().is_some() && *name == cut.line_name()) {
+            Some((_, pieces)) => pieces.push(number),
+            None => cuts.push((cut.line_name(), vec![number])),
         }
     }
-    let bone = extent(bone.labels.bone_box().as_ref());
-    let warning = |(name, pieces, _): &(&str, usize, bool)| {
-        let of =
-            if *pieces > 1 { format!(" with any of its {pieces} pieces") } else { String::new() };
+    cuts.retain(|(_, pieces)| !bone.is_parted_by(osteotomy, pieces[0]));
+    let extent = extent(bone.labels.bone_box().as_ref());
+    let warning = |(name, pieces): &(&str, Vec<usize>)| {
+        let count = pieces.len();
+        let of = if count > 1 { format!(" with any of its {count} pieces") } else { String::new() };
+        let in_scan = pieces.iter().any(|&cut| bone.labels.is_met_by(&osteotomy.cuts()[cut]));
+        let place = if in_scan { "" } else { ", and lies outside the image of the bone" };
         let detail = format!(
-            "cut `{name}` meets no bone of a segment{of}: {bone}; is it in the same frame?"
+            "cut `{name}` meets no bone of a segment{of}{place}: {extent}; is it in the same frame?"
         );
-        Warning::new("cut-meets-no-bone", detail).with("pieces", *pieces as f64)
+        Warning::new("cut-meets-no-bone", detail).with("pieces", count as f64)
     };
-    cuts.iter().filter(|(.., meets)| !meets).map(warning).collect()
+    cuts.iter().map(warning).collect()
 }
 
 /// Bone of which nothing can be moved.

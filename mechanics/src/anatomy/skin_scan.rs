@@ -9,7 +9,8 @@ use super::AnatomyError;
 use super::skin_scan_error::{MOST_MEDIAN, OUTLIER_MM, SkinScanError};
 use crate::domain::{ImageDomain, ImageOptions};
 use crate::image::ImageVolume;
-use crate::mesh::{SurfaceSearch, TriangleSurface, Vector, Warning, area_sampling};
+use crate::mesh::area_sampling::{self, AreaSample};
+use crate::mesh::{ClosestPoint, SurfaceSearch, TriangleSurface, Vector, Warning};
 use crate::osteotomy::bone_image::BoneImage;
 use crate::osteotomy::label_surface::label_surface;
 use crate::osteotomy::labelling::label_given;
@@ -103,26 +104,26 @@ pub fn fit(
     surface.points.iter_mut().for_each(|point| *point = found.0.apply(point));
     let search = SurfaceSearch::new(&skin).map_err(AlignmentError::from);
     let search = search.map_err(SkinScanError::from)?;
-    let left = measure(&surface, &search, (image, rules.mask.as_ref()));
-    refuse(&left)?;
-    let was_inside_out = faces_inwards(&surface, &search);
+    let samples = area_sampling::equal_areas(&surface, POINTS);
+    let on_skin: Vec<ClosestPoint> = samples.iter().map(|x| search.closest(&x.point)).collect();
+    let counts = |point: &Vector| {
+        image.at(point).is_some() && rules.mask.as_ref().is_none_or(|mask| mask.holds(point))
+    };
+    let pairs = samples.iter().zip(&on_skin);
+    let inside = pairs.clone().filter(|(sample, _)| counts(&sample.point));
+    let left = measure(inside.map(|(_, closest)| closest.distance).collect(), samples.len(), whole);
+    refuse(&left, rules.mask.is_some())?;
+    // Most of a scan faces along the skin of the CT that is nearest to it.
+    let along = |(sample, closest): (&AreaSample, &ClosestPoint)| {
+        let normal = surface.area_vector(sample.triangle as usize).try_normalize(0.0);
+        normal.unwrap_or_default().dot(&search.pseudo_normal(closest))
+    };
+    let near = pairs.filter(|(_, closest)| closest.distance <= OUTLIER_MM);
+    let was_inside_out = near.map(along).sum::<f64>() < 0.0;
     if was_inside_out {
         surface.triangles.iter_mut().for_each(|corners| corners.swap(1, 2));
     }
     Ok(FittedScan { surface, transform: found.0, iterations: found.1, left, was_inside_out })
-}
-
-/// Whether most of a scan faces against the skin of the CT that is nearest to it.
-fn faces_inwards(scan: &TriangleSurface, skin: &SurfaceSearch) -> bool {
-    let along = |sample: &area_sampling::AreaSample| {
-        let closest = skin.closest(&sample.point);
-        let normal = scan.area_vector(sample.triangle as usize).try_normalize(0.0);
-        match closest.distance > OUTLIER_MM {
-            true => 0.0,
-            false => normal.unwrap_or_default().dot(&skin.pseudo_normal(&closest)),
-        }
-    };
-    area_sampling::equal_areas(scan, POINTS).iter().map(along).sum::<f64>() < 0.0
 }
 
 /// The movement of the scan, and after how many iterations it was found.
@@ -142,7 +143,13 @@ fn register(
     };
     let mask = rules.mask;
     let method = IterativeClosestPoint { mask, start, ..IterativeClosestPoint::default() };
-    let found = method.align(skin, scan, progress)?;
+    let found = method.align(skin, scan, progress).map_err(|error| match error {
+        AlignmentError::EmptyMask => {
+            let (low, high) = skin.bounds();
+            SkinScanError::EmptyMask { low, high }
+        }
+        other => other.into(),
+    })?;
     let mirror = check_mirror(skin, scan, mask.as_ref(), &found.transform)?;
     match mirror.looks_mirrored() {
         true => {
@@ -153,19 +160,10 @@ fn register(
     }
 }
 
-fn measure(
-    scan: &TriangleSurface,
-    skin: &SurfaceSearch,
-    (image, mask): (&ImageVolume, Option<&SphereOrBox>),
-) -> ScanDeviation {
-    let samples = area_sampling::equal_areas(scan, POINTS);
-    let counts = |point: &Vector| mask.is_none_or(|mask| mask.holds(point));
-    let inside = samples.iter().filter(|x| image.at(&x.point).is_some() && counts(&x.point));
-    let points: Vec<Vector> = inside.map(|sample| sample.point).collect();
-    let mut distances: Vec<f64> = points.iter().map(|point| skin.closest(point).distance).collect();
+/// Of the distances of those of all samples of equal area that count.
+fn measure(mut distances: Vec<f64>, samples: usize, whole: f64) -> ScanDeviation {
     distances.sort_unstable_by(f64::total_cmp);
-    let whole = scan.area();
-    let area = whole * distances.len() as f64 / samples.len().max(1) as f64;
+    let area = whole * distances.len() as f64 / samples.max(1) as f64;
     let count = distances.len().max(1) as f64;
     let at = |share: f64| distances.get((share * count) as usize).copied().unwrap_or(f64::INFINITY);
     ScanDeviation {
@@ -178,18 +176,22 @@ fn measure(
     }
 }
 
-fn refuse(left: &ScanDeviation) -> Result<(), SkinScanError> {
+fn refuse(left: &ScanDeviation, has_mask: bool) -> Result<(), SkinScanError> {
     let [covered_cm2, whole_cm2] =
         [left.area * (1.0 - left.outliers), left.whole].map(|mm2| mm2 / 100.0);
+    let small = || match has_mask {
+        true => SkinScanError::SmallMask { covered_cm2, whole_cm2 },
+        false => SkinScanError::Small { covered_cm2, whole_cm2 },
+    };
     if left.area < LEAST_AREA {
-        return Err(SkinScanError::Small { covered_cm2, whole_cm2 });
+        return Err(small());
     }
     if left.median > MOST_MEDIAN || left.outliers > MOST_OUTLIERS {
         let (median, percent) = (left.median, 100.0 * left.outliers);
         return Err(SkinScanError::Misfit { median, percent });
     }
     match left.area * (1.0 - left.outliers) < LEAST_AREA {
-        true => Err(SkinScanError::Small { covered_cm2, whole_cm2 }),
+        true => Err(small()),
         false => Ok(()),
     }
 }

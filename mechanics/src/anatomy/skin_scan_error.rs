@@ -1,5 +1,6 @@
 //! Reasons why a surface scan is not the skin of a CT.
 
+use crate::mesh::Vector;
 use crate::osteotomy::RuleError;
 use crate::registration::AlignmentError;
 
@@ -29,4 +30,19 @@ pub enum SkinScanError {
         "{covered_cm2:.2} cm² of the surface scan, of {whole_cm2:.2}, can lie on the skin that the CT shows; at least 40 cm² are needed. Is its unit right?"
     )]
     Small { covered_cm2: f64, whole_cm2: f64 },
+    #[error(
+        "{covered_cm2:.2} cm² of the surface scan, of {whole_cm2:.2}, can lie on the skin that the CT shows within the mask; at least 40 cm² are needed: is the \
+         mask too small, or not where the skin is?"
+    )]
+    SmallMask { covered_cm2: f64, whole_cm2: f64 },
+    #[error(
+        "the mask holds no skin of the CT, which reaches from {} to {} mm",
+        place(low),
+        place(high)
+    )]
+    EmptyMask { low: Vector, high: Vector },
+}
+
+fn place(at: &Vector) -> String {
+    format!("({:.0}, {:.0}, {:.0})", at.x, at.y, at.z)
 }

@@ -24,7 +24,7 @@ pub(super) struct Rescale {
 impl Rescale {
     pub const NONE: Rescale = Rescale { slope: 1.0, intercept: 0.0 };
 
-    fn of(self, number: f64) -> f64 {
+    pub fn of(self, number: f64) -> f64 {
         self.slope * number + self.intercept
     }
 }

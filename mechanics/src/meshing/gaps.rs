@@ -43,6 +43,8 @@ pub(super) struct Thin {
     pub tissue: f64,
     /// Of all gaps, in mm³.
     pub filled: f64,
+    /// Of all sheets as far as edges met them, in mm³.
+    pub met: f64,
     /// Of all gaps that are bone, in mm³, and their mean place.
     pub bone: f64,
     pub bone_centre: Vector,
@@ -91,6 +93,7 @@ pub(super) fn find(
         sheets: side(false),
         tissue: tissue(lattice, leaves),
         filled: gaps().map(|met| met.volume).sum(),
+        met: met.iter().filter(|met| !met.ends_inside).map(|met| met.volume).sum(),
         bone,
         bone_centre: moments.sum::<Vector>() / bone.max(f64::MIN_POSITIVE),
     })

@@ -76,6 +76,10 @@ impl Search<'_> {
                 break;
             }
             let next = self.trial(scale, false)?;
+            // A sheet that lies between the middles of such cells: what was found before is all there is.
+            if next.number == f64::NEG_INFINITY {
+                break;
+            }
             let found = (last.number - next.number) / (next.scale - last.scale);
             slope = found.clamp(SLOPES[0], SLOPES[1]);
             last = next;
@@ -83,6 +87,9 @@ impl Search<'_> {
         }
         // Once more with thin tissue kept, which takes longer: by what that adds, cells are coarser.
         let kept = self.trial(best.scale, true)?;
+        if kept.number == f64::NEG_INFINITY {
+            return Ok(best.scale);
+        }
         Ok((best.scale + (kept.number - best.number) / slope).min(coarsest))
     }
 

@@ -2,6 +2,7 @@
 
 use nalgebra::Matrix3;
 
+use super::cut::Cut;
 use crate::image::Placement;
 use crate::mesh::Vector;
 
@@ -138,6 +139,15 @@ impl BoneLabels {
         let bone = (0..self.labels.len()).filter(|&voxel| self.labels[voxel] != NO_BONE);
         let places = bone.map(|voxel| self.centre_of(voxel)).map(|place| (place, place));
         places.reduce(|(low, high), (a, b)| (low.inf(&a), high.sup(&b)))
+    }
+
+    /// Whether a cut comes into the image, be it where there is no bone.
+    pub fn is_met_by(&self, cut: &Cut) -> bool {
+        let half = self.placement.steps.iter().map(Vector::norm).sum::<f64>() / 2.0;
+        (0..self.labels.len()).any(|voxel| {
+            let centre = self.centre_of(voxel);
+            cut.plane().height(&centre).abs() <= half && cut.reaches(&centre)
+        })
     }
 
     /// The centre of a voxel by its number, in mm.

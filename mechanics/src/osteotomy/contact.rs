@@ -54,12 +54,13 @@ impl Sum {
     }
 }
 
-/// Where segments touch others, in the order of their owners.
+/// Where segments touch others, in the order of their owners, and for each cut whether it parts any of them.
 pub(super) fn contacts(
     osteotomy: &Osteotomy,
     grid: &Grid<'_>,
     labels: &BoneLabels,
-) -> Vec<Contact> {
+) -> (Vec<Contact>, Vec<bool>) {
+    let mut parts = vec![false; osteotomy.cuts().len()];
     let mut sums: BTreeMap<(Owner, Owner, Option<usize>), Sum> = BTreeMap::new();
     for (voxel, neighbour) in pairs(grid) {
         let (Some(one), Some(other)) = (labels.owner(voxel), labels.owner(neighbour.voxel)) else {
@@ -69,7 +70,9 @@ pub(super) fn contacts(
             continue;
         }
         let [here, there] = [voxel, neighbour.voxel].map(|voxel| grid.centre(voxel));
-        let cut = cut_between(osteotomy, [one, other], [here, there]);
+        let mut cuts = cuts_between(osteotomy, [one, other], [here, there]).peekable();
+        let cut = cuts.peek().copied();
+        cuts.for_each(|cut| parts[cut] = true);
         let face = grid.face(neighbour.axis);
         let area =
             cut.map_or(face.norm(), |cut| face.dot(&osteotomy.cuts()[cut].plane().normal()).abs());
@@ -83,7 +86,7 @@ pub(super) fn contacts(
         area_mm2: sum.area,
         centre: sum.centre(),
     };
-    sums.into_iter().map(contact).collect()
+    (sums.into_iter().map(contact).collect(), parts)
 }
 
 fn pairs<'a>(grid: &'a Grid<'_>) -> impl Iterator<Item = (usize, Neighbour)> + 'a {
@@ -91,14 +94,18 @@ fn pairs<'a>(grid: &'a Grid<'_>) -> impl Iterator<Item = (usize, Neighbour)> + '
         .flat_map(|voxel| grid.later_neighbours(voxel).map(move |neighbour| (voxel, neighbour)))
 }
 
-/// The first cut of either owner that passes between two voxels, or that one of them fell to.
-fn cut_between(osteotomy: &Osteotomy, owners: [Owner; 2], ends: [Vector; 2]) -> Option<usize> {
+/// The cuts of either owner that pass between two voxels, or that one of them fell to.
+fn cuts_between(
+    osteotomy: &Osteotomy,
+    owners: [Owner; 2],
+    ends: [Vector; 2],
+) -> impl Iterator<Item = usize> {
     let cuts_of = |owner: Owner| match owner {
         Owner::Segment(segment) => osteotomy.segments()[segment].sides.as_slice(),
         Owner::Rest | Owner::Sawn | Owner::Loose => &[],
     };
-    let mut cuts = owners.into_iter().flat_map(cuts_of).map(|side| side.cut);
-    cuts.find(|&cut| {
+    let cuts = owners.into_iter().flat_map(cuts_of).map(|side| side.cut);
+    cuts.filter(move |&cut| {
         let cut = &osteotomy.cuts()[cut];
         cut.parts(&ends[0], &ends[1]) || ends.iter().any(|end| cut.saws(end))
     })

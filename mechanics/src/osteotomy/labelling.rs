@@ -33,6 +33,8 @@ pub struct Labelled {
     pub segments: Vec<FoundSegment>,
     /// Where segments touch each other or the rest of the bone.
     pub contacts: Vec<Contact>,
+    /// For each cut whether it parts segments from each other or from the rest of the bone.
+    pub parts: Vec<bool>,
     /// Pieces of bone too small to hold tissue.
     pub loose: PieceSummary,
     /// Bounded cuts around which a segment is still whole.
@@ -86,9 +88,17 @@ impl Labelled {
         labels: BoneLabels,
         segments: Vec<FoundSegment>,
     ) -> Labelled {
-        let contacts = contacts(osteotomy, grid, &labels);
+        let (contacts, parts) = contacts(osteotomy, grid, &labels);
         let bridges = bridges(osteotomy, grid, &labels);
-        Labelled { labels, segments, contacts, loose: PieceSummary::default(), bridges }
+        Labelled { labels, segments, contacts, parts, loose: PieceSummary::default(), bridges }
+    }
+
+    /// Whether a cut parts bone of a segment; a line of pieces does where one of them does.
+    pub fn is_parted_by(&self, osteotomy: &Osteotomy, cut: usize) -> bool {
+        let cuts = osteotomy.cuts();
+        let line = cuts[cut].chain();
+        let of_line = |other: usize| line.is_some() && cuts[other].chain() == line;
+        (0..cuts.len()).any(|other| self.parts[other] && (other == cut || of_line(other)))
     }
 
     fn segments_of(

@@ -238,6 +238,10 @@ pub struct DicomSlice {
     pub is_signed: bool,
     pub rescale: [f64; 2],
     pub frames: Option<u32>,
+    /// Patient ID, Study Instance UID and Frame of Reference UID; those that are empty are left out.
+    pub identity: [&'static str; 3],
+    /// Pixel Padding Value and its limit, as they are stored.
+    pub padding: Vec<u16>,
 }
 
 /// Slices of an image whose third axis is their normal or sheared against it.
@@ -264,6 +268,8 @@ pub fn dicom_slices(scan: &Scan, coding: Coding) -> Vec<DicomSlice> {
         is_signed: false,
         rescale: [1.0, -1024.0],
         frames: None,
+        identity: [""; 3],
+        padding: Vec::new(),
     };
     (0..count).map(slice).collect()
 }
@@ -303,9 +309,13 @@ impl DicomSlice {
         data.text(0x0008_0060, b"CS", self.modality);
         data.open_sequence(0x0008_1140);
         data.text(0x0010_0010, b"PN", "Roe^Jane");
+        let [patient, study, frame_of_reference] = self.identity;
+        data.text_if_any(0x0010_0020, b"LO", patient);
+        data.text_if_any(0x0020_000D, b"UI", study);
         data.text(0x0020_000E, b"UI", &self.series);
         data.text(0x0020_0032, b"DS", &words(&self.position));
         data.text(0x0020_0037, b"DS", &words(&self.orientation));
+        data.text_if_any(0x0020_0052, b"UI", frame_of_reference);
         data.short(0x0028_0002, 1);
         data.text(0x0028_0004, b"CS", "MONOCHROME2");
         if let Some(frames) = self.frames {
@@ -318,6 +328,9 @@ impl DicomSlice {
         data.short(0x0028_0101, self.bits);
         data.short(0x0028_0102, self.bits - 1);
         data.short(0x0028_0103, u16::from(self.is_signed));
+        for (tag, &value) in [0x0028_0120, 0x0028_0121].into_iter().zip(&self.padding) {
+            data.short(tag, value);
+        }
         data.text(0x0028_1052, b"DS", &self.rescale[1].to_string());
         data.text(0x0028_1053, b"DS", &self.rescale[0].to_string());
         match self.coding {
@@ -370,6 +383,12 @@ impl Elements {
             value.push(if kind == b"UI" { 0 } else { b' ' });
         }
         self.element(tag, kind, &value);
+    }
+
+    fn text_if_any(&mut self, tag: u32, kind: &[u8; 2], value: &str) {
+        if !value.is_empty() {
+            self.text(tag, kind, value);
+        }
     }
 
     fn short(&mut self, tag: u32, value: u16) {

@@ -10,10 +10,11 @@ use mechanics::anatomy::skin_scan::FittedScan;
 use mechanics::anatomy::surfaces::{
     hollow, mended, outside, overlapping, part_by_cuts, take_as_segments,
 };
-use mechanics::anatomy::{AnatomyRules, PartedBone};
+use mechanics::anatomy::{AnatomyError, AnatomyRules, PartedBone};
 use mechanics::domain::{Domain, LabelBody, SurfaceDomain, SurfaceDomainError, SurfaceName};
 use mechanics::image::ImageVolume;
 use mechanics::mesh::{TriangleSurface, Warning};
+use mechanics::osteotomy::LabelError;
 
 /// Parsed input.
 pub enum Body {
@@ -66,10 +67,33 @@ impl Surfaces {
             Some(_) => part_by_cuts(&domain, &rules.osteotomy),
             None => take_as_segments(&domain, &bones, &rules.osteotomy),
         };
-        let bone = parted.map_err(JobError::Anatomy)?;
+        let bone = parted.map_err(|error| match (&error, &self.document.bone) {
+            (AnatomyError::Bone(LabelError::NoBone { segment }), None) => self.hidden(segment),
+            _ => JobError::Anatomy(error),
+        })?;
         let warnings = mended(&domain).into_iter().chain(outside(&domain));
         let warnings = warnings.chain(hollow(&domain)).chain(overlapping(&domain)).collect();
         Ok(PartedBody { domain: Box::new(domain), bone, warnings, skin: None })
+    }
+
+    /// The refusal of a bone of which nothing is left beside the others.
+    fn hidden(&self, name: &str) -> JobError {
+        let at = Pointer::root().key("spec").key("surfaces").key("bones");
+        let bones = &self.document.bones;
+        let number = bones.iter().position(|bone| bone.name.trim() == name).unwrap_or_default();
+        let same = (0..self.bones.len())
+            .find(|&other| other != number && self.bones[other] == self.bones[number]);
+        let detail = match same {
+            Some(other) => format!(
+                "bone `{name}` is the same surface as bone `{}`: each bone needs one of its own",
+                bones[other].name.trim()
+            ),
+            None => format!(
+                "bone `{name}` has no place of its own: all of it lies in another bone, or it is smaller than a voxel of the grid on \
+                 which bones are distinguished"
+            ),
+        };
+        Problem::at(&at.index(number).key("mesh"), ErrorCode::SegmentNotFound, detail).into()
     }
 
     /// With the place of its surface.

@@ -25,7 +25,9 @@ pub fn cut_paths(rules: &AnatomyRules, anatomy: &Anatomy) -> (Vec<CutPathDocumen
         let back = movement.inverse();
         bones[segment].points.iter_mut().for_each(|point| *point = back.apply(point));
     }
-    let faces = cut_faces(osteotomy, &bones, voxel);
+    // Along an end of the bone nothing is sawn, though its surface reaches as far.
+    let mut faces = cut_faces(osteotomy, &bones, voxel);
+    faces.retain(|face| anatomy.bone.is_parted_by(osteotomy, face.cut));
     let documents = faces.iter().map(|face| path(osteotomy, face, &mut warnings)).collect();
     (documents, warnings)
 }

@@ -10,7 +10,7 @@ use crate::schema::{Faults, Pointer};
 use mechanics::anatomy::closed_jaw::{Closed, close};
 use mechanics::anatomy::label_bone::part_labels;
 use mechanics::anatomy::left_out::left_out_of_scan;
-use mechanics::anatomy::loose::{loose_bone, without_loose};
+use mechanics::anatomy::loose::{loose_bone, no_bone, without_loose};
 use mechanics::anatomy::region::around_segments;
 use mechanics::anatomy::skin_scan::{FittedScan, told};
 use mechanics::anatomy::whole_bone::close_bone;
@@ -71,6 +71,7 @@ impl PreparedMeshing {
         let tissue = tissue.map_err(ImageDomainError::from)?;
         let mut warnings = report.findings;
         warnings.extend(closed);
+        warnings.extend(no_bone(&bone.labelled, seen.range(), options.bone_threshold));
         let closing = self.rules.closing.filter(|_| skin.is_some());
         let (tissue, bone, way) = match closing {
             Some(closing) => {

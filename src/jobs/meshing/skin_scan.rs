@@ -86,7 +86,12 @@ impl SkinScan {
             })) => clock.stopped(),
             AnatomyError::SkinScan(reason) => {
                 let code = ErrorCode::from(&error);
-                Problem::at(&place().key("mesh"), code, reason.to_string()).into()
+                let of_mask = matches!(
+                    reason,
+                    SkinScanError::EmptyMask { .. } | SkinScanError::SmallMask { .. }
+                );
+                let at = place().key(if of_mask { "mask" } else { "mesh" });
+                Problem::at(&at, code, reason.to_string()).into()
             }
             AnatomyError::Image(_)
             | AnatomyError::Surface(_)

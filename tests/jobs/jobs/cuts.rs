@@ -157,6 +157,30 @@ fn a_line_that_begins_beside_the_bone_is_one_cut_and_reported_once_where_all_of_
 }
 
 #[test]
+fn a_cut_along_the_end_of_the_bone_has_no_path_and_one_that_another_repeats_has_one() {
+    let both = json!([{"name": "one", "below": ["c", "d"]}]);
+    let by = |second: f64, segments: &Value| {
+        let cut = |name: &str, z: f64| json!({"name": name, "point_mm": [60, 55, z], "normal": [0, 0, 1]});
+        let asked = json!({"cuts": [cut("c", 48.0), cut("d", second)], "segments": segments});
+        let (result, _folder) = meshed_by(asked).unwrap();
+        let paths: Vec<String> =
+            result.meshing.unwrap().cuts.into_iter().map(|path| path.cut).collect();
+        let missed = result.warnings.into_iter().filter(|own| own.code == "cut-meets-no-bone");
+        (paths, missed.map(|own| own.detail).collect::<Vec<String>>())
+    };
+    // The ball ends at 90 mm, within a voxel of the second cut.
+    let (paths, missed) = by(91.0, &both);
+    assert_eq!(paths, ["c"]);
+    let [detail] = &missed[..] else { panic!("{missed:?}") };
+    assert!(detail.starts_with("cut `d` meets no bone of a segment: bone reaches"), "{detail}");
+    let (_, missed) = by(910.0, &both);
+    assert!(missed[0].contains("and lies outside the image of the bone"), "{missed:?}");
+    let apart = json!([{"name": "one", "below": ["c"]}, {"name": "other", "above": ["d"]}]);
+    let (paths, missed) = by(48.0, &apart);
+    assert_eq!((paths.len(), missed.len()), (2, 0), "{paths:?} {missed:?}");
+}
+
+#[test]
 fn a_place_that_is_to_be_fine_and_holds_no_tissue_is_reported() {
     let fine = json!([{"sphere_mm": [60, 55, 92, 4]}, {"box_mm": [500, 0, 0, 520, 20, 20]}, {"sphere_mm": [60, 55, -400, 5]}]);
     let (result, _folder) = meshed_finely(steps(80.0), fine).unwrap();

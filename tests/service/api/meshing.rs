@@ -296,6 +296,14 @@ async fn surfaces_that_bound_no_tissue_are_refused_with_their_place() {
     let job = ended(&server, &asked).await;
     assert_eq!(job["error"]["type"], "no-inside", "{job}");
     assert_eq!(job["error"]["errors"][0]["pointer"], "/spec/surfaces/skin", "{job}");
+
+    let twice = json!([{"name": "jaw", "mesh": bone}, {"name": "skull", "mesh": bone}]);
+    let asked = json!({"kind": "mesh", "surfaces": {"skin": skin, "bones": twice}});
+    let job = ended(&server, &asked).await;
+    let fault = &job["error"]["errors"][0];
+    assert_eq!(fault["code"], "segment-not-found", "{job}");
+    assert!(fault["pointer"].as_str().unwrap().starts_with("/spec/surfaces/bones/"), "{job}");
+    assert!(fault["detail"].as_str().unwrap().contains("is the same surface as bone"), "{job}");
 }
 
 #[tokio::test]
@@ -311,6 +319,20 @@ async fn a_scan_without_cuts_gives_a_case_whose_bone_is_fixed() {
     let case = &job["results"]["meshing"]["case"];
     let kept = ask(server.post("/v1/cases").json(case)).await.expect(StatusCode::CREATED);
     assert!(kept["check"]["classes"]["fixed"].as_u64() > Some(300), "{kept}");
+}
+
+#[tokio::test]
+async fn a_scan_without_bone_is_meshed_and_says_so() {
+    let server = Server::start();
+    let scan = scan(&server).await;
+    let asked = json!({"kind": "mesh", "scan": scan, "thresholds_hu": {"skin": -480, "bone": 1300},
+        "size": {"tetrahedra": 5000}});
+    let job = ended(&server, &asked).await;
+    let warnings = job["results"]["warnings"].as_array().unwrap();
+    let told: Vec<&Value> = warnings.iter().filter(|own| own["code"] == "no-bone").collect();
+    let [told] = told[..] else { panic!("{job}") };
+    assert_eq!(told["highest"], json!(1200.0), "{job}");
+    assert!(told["detail"].as_str().unwrap().contains("threshold of bone, 1300 HU"), "{job}");
 }
 
 #[tokio::test]

@@ -41,7 +41,7 @@ enum Method {
 #[derive(Clone, Debug)]
 pub(super) struct Entry {
     /// From 1, in the order of the archive.
-    number: usize,
+    pub number: usize,
     name: Vec<u8>,
     method: Method,
     crc: u32,

@@ -11,9 +11,13 @@ use crate::format::scalar::ByteOrder;
 
 pub(super) const IMAGE_TYPE: Tag = 0x0008_0008;
 pub(super) const MODALITY: Tag = 0x0008_0060;
+pub(super) const PATIENT_NAME: Tag = 0x0010_0010;
+pub(super) const PATIENT: Tag = 0x0010_0020;
+pub(super) const STUDY: Tag = 0x0020_000D;
 pub(super) const SERIES: Tag = 0x0020_000E;
 pub(super) const POSITION: Tag = 0x0020_0032;
 pub(super) const ORIENTATION: Tag = 0x0020_0037;
+pub(super) const FRAME_OF_REFERENCE: Tag = 0x0020_0052;
 pub(super) const SAMPLES: Tag = 0x0028_0002;
 pub(super) const PHOTOMETRIC: Tag = 0x0028_0004;
 pub(super) const FRAMES: Tag = 0x0028_0008;
@@ -24,17 +28,23 @@ pub(super) const BITS_ALLOCATED: Tag = 0x0028_0100;
 pub(super) const BITS_STORED: Tag = 0x0028_0101;
 pub(super) const HIGH_BIT: Tag = 0x0028_0102;
 pub(super) const REPRESENTATION: Tag = 0x0028_0103;
+pub(super) const PADDING: Tag = 0x0028_0120;
+pub(super) const PADDING_LIMIT: Tag = 0x0028_0121;
 pub(super) const INTERCEPT: Tag = 0x0028_1052;
 pub(super) const SLOPE: Tag = 0x0028_1053;
 const PIXELS: Tag = 0x7FE0_0010;
 
 /// Those that are kept, with the words of messages.
-const KEPT: [(Tag, &str); 17] = [
+const KEPT: [(Tag, &str); 23] = [
     (IMAGE_TYPE, "Image Type"),
     (MODALITY, "Modality"),
+    (PATIENT_NAME, "Patient's Name"),
+    (PATIENT, "Patient ID"),
+    (STUDY, "Study Instance UID"),
     (SERIES, "Series Instance UID"),
     (POSITION, "Image Position (Patient)"),
     (ORIENTATION, "Image Orientation (Patient)"),
+    (FRAME_OF_REFERENCE, "Frame of Reference UID"),
     (SAMPLES, "Samples per Pixel"),
     (PHOTOMETRIC, "Photometric Interpretation"),
     (FRAMES, "Number of Frames"),
@@ -45,6 +55,8 @@ const KEPT: [(Tag, &str); 17] = [
     (BITS_STORED, "Bits Stored"),
     (HIGH_BIT, "High Bit"),
     (REPRESENTATION, "Pixel Representation"),
+    (PADDING, "Pixel Padding Value"),
+    (PADDING_LIMIT, "Pixel Padding Range Limit"),
     (INTERCEPT, "Rescale Intercept"),
     (SLOPE, "Rescale Slope"),
 ];
@@ -70,7 +82,7 @@ pub(super) struct Attributes<'a> {
     pub pixels_at: u64,
 }
 
-fn name(tag: Tag) -> &'static str {
+pub(super) fn name(tag: Tag) -> &'static str {
     KEPT.iter().find(|(known, _)| *known == tag).map_or("an attribute", |(_, name)| name)
 }
 
@@ -132,6 +144,15 @@ impl<'a> Attributes<'a> {
         let bytes = bytes.get(..2).and_then(|bytes| bytes.try_into().ok());
         let bytes = bytes.ok_or_else(|| bad(0, format!("{} has not two bytes", name(tag))))?;
         Ok(self.coding.u16(bytes))
+    }
+
+    /// The same where there may be none, signed or not, as pixels are.
+    pub fn integer(&self, tag: Tag, is_signed: bool) -> Result<Option<i64>, FormatError> {
+        if self.known.get(&tag).is_none_or(|bytes| bytes.is_empty()) {
+            return Ok(None);
+        }
+        let bits = self.count(tag)?;
+        Ok(Some(if is_signed { i64::from(bits as i16) } else { i64::from(bits) }))
     }
 
     /// Decimal numbers, as many as asked for, where the attribute is there.

@@ -1,13 +1,15 @@
 //! DICOM: the slices of a series as one image in LPS.
 //!
 //! Source: PS3.3 (image plane and CT image modules), PS3.5 (data structures and encoding), PS3.10 (files). Of the
-//! attributes those are read that decide the numbers and their place; names, dates and identifiers of a patient are
-//! passed over and stand in no message.
+//! attributes those are read that decide the numbers and their place, and whether slices belong together; names and identifiers of a
+//! patient are compared alone, and stand in no message.
 
 mod attributes;
 mod element;
+mod identity;
 mod jpeg_huffman;
 mod jpeg_lossless;
+mod padding;
 mod pixel_layout;
 mod pixels;
 mod rle;

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use super::identity::check_identity;
 use super::slice::{Part, Plane, Slice};
 use super::stack::{Layer, Stack};
 use super::{FORMAT, bad};
@@ -32,6 +33,7 @@ pub(in crate::format) fn assemble(
     limits: &ReadLimits,
 ) -> Result<ReadMesh, FormatError> {
     let Sorted { slices, mut warnings } = select_series(parts)?;
+    check_identity(slices.iter().map(|slice| (slice.file, &slice.identity)))?;
     let plane = check_alike(&slices)?;
     let [columns, rows] = plane.size;
     limits.check_voxels((columns * rows) as u64 * slices.len() as u64)?;

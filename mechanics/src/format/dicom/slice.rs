@@ -2,6 +2,8 @@
 
 use super::attributes::{self as tag, Attributes, StoredPixels};
 use super::bad;
+use super::identity::Identity;
+use super::padding::{Padding, air};
 use super::pixel_layout::PixelLayout;
 use super::pixels::decode;
 use crate::format::error::FormatError;
@@ -34,13 +36,26 @@ pub(super) struct Plane {
 }
 
 pub(in crate::format) struct Slice {
+    /// Its number in an archive, from 1.
+    pub(super) file: usize,
     pub(super) series: String,
+    pub(super) identity: Identity,
     pub(super) modality: String,
     pub(super) plane: Plane,
     /// The centre of the first pixel.
     pub(super) position: Vector,
     /// Rescaled.
     pub(super) voxels: Voxels,
+}
+
+impl Part {
+    /// As the file of that number.
+    pub fn of_file(self, file: usize) -> Part {
+        match self {
+            Part::Slice(slice) => Part::Slice(Box::new(Slice { file, ..*slice })),
+            other @ (Part::Localiser | Part::NoImage) => other,
+        }
+    }
 }
 
 impl Plane {
@@ -86,7 +101,9 @@ pub(in crate::format) fn read_part(bytes: &[u8], limits: &ReadLimits) -> Result<
     let voxels = voxels(&attributes, pixels, plane.size)?;
     let word = |tag| attributes.word(tag).unwrap_or_default();
     let (series, modality) = (word(tag::SERIES), word(tag::MODALITY));
-    Ok(Part::Slice(Box::new(Slice { series, modality, plane, position, voxels })))
+    let identity = Identity::read(&attributes);
+    let slice = Slice { file: 1, series, identity, modality, plane, position, voxels };
+    Ok(Part::Slice(Box::new(slice)))
 }
 
 fn check_kind(attributes: &Attributes<'_>) -> Result<(), FormatError> {
@@ -132,8 +149,23 @@ fn voxels(
     };
     let stored = decode(pixels, &layout, attributes.syntax)?;
     let mut builder = VoxelBuilder::integers(stored.len())?;
-    for pixel in stored {
-        builder.push_integer(layout.number(pixel), rescale)?;
+    let Some(padding) = Padding::read(attributes, layout.is_signed)? else {
+        for pixel in stored {
+            builder.push_integer(layout.number(pixel), rescale)?;
+        }
+        return Ok(builder.finish());
+    };
+    let numbers: Vec<i64> = stored.into_iter().map(|pixel| layout.number(pixel)).collect();
+    let is_padding = padding.of(&numbers, size);
+    let value = |number: i64| rescale.of(number as f64);
+    let measured = numbers.iter().zip(&is_padding).filter(|(_, padded)| !**padded);
+    let is_ct = attributes.word(tag::MODALITY).is_none_or(|modality| modality == "CT");
+    let air = air(measured.map(|(&number, _)| value(number)), is_ct);
+    for (&number, padded) in numbers.iter().zip(is_padding) {
+        match padded && value(number) > air {
+            true => builder.push_integer(air as i64, Rescale::NONE)?,
+            false => builder.push_integer(number, rescale)?,
+        }
     }
     Ok(builder.finish())
 }

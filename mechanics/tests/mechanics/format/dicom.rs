@@ -230,3 +230,69 @@ fn a_series_of_another_modality_says_that_its_values_may_be_no_hounsfield_units(
     other.iter_mut().for_each(|slice| slice.modality = "MR");
     assert_eq!(warning_codes(&read(&other)), ["no-hounsfield"]);
 }
+
+#[test]
+fn slices_of_two_patients_studies_or_frames_of_reference_are_refused_without_their_names() {
+    for (number, name) in
+        ["Patient ID", "Study Instance UID", "Frame of Reference UID"].into_iter().enumerate()
+    {
+        let error = refused(|slices| {
+            slices.iter_mut().for_each(|slice| slice.identity[number] = "1.77");
+            slices[5..].iter_mut().for_each(|slice| slice.identity[number] = "1.88");
+        });
+        let found = format!("{name} has 2 values in one series");
+        assert!(error.contains(&found), "{error}");
+        assert!(error.contains("5 (first file 1), 3 (first file 6)"), "{error}");
+        assert!(!error.contains("1.77") && !error.contains("1.88"), "{error}");
+    }
+    // A file that says nothing may be of the same patient.
+    let mut partly = slices();
+    partly[2..].iter_mut().for_each(|slice| slice.identity = ["7", "1.2", "1.3"]);
+    assert_eq!(*image(read(&partly)).voxels(), Voxels::I16(scan().values));
+}
+
+#[test]
+fn padding_around_the_circle_of_the_scanner_is_air_whatever_its_number() {
+    // The first row, the pixel below its middle, and one within that only has the number of padding.
+    let [row, below, within] = [0..5, 7..8, 11..12];
+    let padded = |value: u16, is_signed: bool, padding: &[u16]| {
+        let mut slices = slices();
+        for slice in &mut slices {
+            slice.is_signed = is_signed;
+            slice.bits = 16;
+            slice.rescale = [1.0, if is_signed { 0.0 } else { -1024.0 }];
+            slice.stored = vec![if is_signed { 40 } else { 1064 }; 20];
+            [&row, &below, &within].into_iter().for_each(|at| slice.stored[at.clone()].fill(value));
+            slice.padding = padding.to_vec();
+        }
+        match image(read(&slices)).voxels() {
+            Voxels::I16(values) => values[..20].to_vec(),
+            Voxels::F32(values) => values[..20].iter().map(|&value| value as i16).collect(),
+        }
+    };
+    let wanted = |around: i16, alone: i16| {
+        let mut values = vec![40; 20];
+        [&row, &below].into_iter().for_each(|at| values[at.clone()].fill(around));
+        values[within.clone()].fill(alone);
+        values
+    };
+    assert_eq!(padded(3000, true, &[3000]), wanted(-1000, 3000));
+    assert_eq!(padded(4095, false, &[4095]), wanted(-1000, 3071));
+    assert_eq!(padded(3000, true, &[3100, 2900]), wanted(-1000, 3000));
+    // Below air it is left as it is, and without a declaration nothing is padding.
+    assert_eq!(padded(-2000_i16 as u16, true, &[-2000_i16 as u16]), wanted(-2000, -2000));
+    assert_eq!(padded(3000, true, &[]), wanted(3000, 3000));
+}
+
+#[test]
+fn padding_of_another_modality_has_the_smallest_value_of_its_slice() {
+    let mut other = slices();
+    for slice in &mut other {
+        slice.modality = "MR";
+        slice.rescale = [1.0, 0.0];
+        slice.stored = [[900; 5], [30; 5], [60; 5], [900; 5]].concat();
+        slice.padding = vec![900];
+    }
+    let wanted = [[30_i16; 5], [30; 5], [60; 5], [30; 5]].concat();
+    assert_eq!(*image(read(&other)).voxels(), Voxels::I16(wanted.repeat(8)));
+}

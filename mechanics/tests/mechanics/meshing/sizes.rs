@@ -106,6 +106,17 @@ fn tissue_too_thin_for_its_cells_is_reported() {
     assert!((0.8..1.2).contains(&share), "{share}");
 }
 
+#[test]
+fn a_block_along_the_lattice_loses_nothing_however_its_nodes_count_it() {
+    // Sixteen planes of nodes, half a cell apart, lie within 7.9 cells: nodes alone count 64 ml.
+    let half = 0.5 * 7.9 * 5.0;
+    let body = Body::skin(half, move |x| half - x.amax());
+    let report = meshed(&body, &uniform(5.0)).report;
+    let exact = (2.0 * half).powi(3);
+    assert!((report.volume / exact - 1.0).abs() < 0.02, "{report:?}");
+    assert!(report.volume_lost < 0.01 * exact, "{} of {exact}", report.volume_lost);
+}
+
 /// Tissue of 10 mm around bone of 5 mm, and what that encloses.
 fn enclosed() -> Body {
     let skin: Distance = Box::new(|x| 40.0 - x.norm());
