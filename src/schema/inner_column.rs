@@ -8,8 +8,9 @@ use crate::schema::plan::document::PlanDocument;
 use crate::schema::plan::inner;
 use crate::schema::wire::fault::{Faults, Pointer};
 use crate::schema::wire::limits::Limits;
+use mechanics::mesh::Warning;
 use mechanics::mesh::ignored::listed;
-use mechanics::prediction::{linear_strain, nothing_left};
+use mechanics::prediction::{linear_strain, nothing_left, suspect_growth_and_pull};
 use mechanics::response::InnerLoad;
 
 /// Subject of a column. It follows those of the segments: the k-th after S segments is column 12 S + k.
@@ -48,15 +49,15 @@ impl InnerColumnDocument {
     }
 }
 
-/// The factors of the columns of growth and muscles for a plan; pointers start at `at`. A region or a muscle without
-/// a column is refused, and `*` where every one of `regions` has growth of its own.
+/// The factors of the columns of growth and muscles for a plan, and what of its numbers is suspect; pointers start at `at`. A region
+/// or a muscle without a column is refused, and `*` where every one of `regions` has growth of its own.
 pub fn inner_amounts(
     (columns, regions): (&[InnerColumnDocument], &[String]),
     plan: &PlanDocument,
     at: &Pointer,
     limits: &Limits,
     faults: &mut Faults,
-) -> Vec<f64> {
+) -> (Vec<f64>, Vec<Warning>) {
     let growth = inner::to_growth(&plan.growth, &at.key("growth"), limits, faults);
     let pulls = inner::to_activations(&plan.activations, &at.key("activations"), limits, faults);
     let names = growth.iter().map(|own| own.region.as_str());
@@ -77,7 +78,7 @@ pub fn inner_amounts(
         let place = at.key("activations").index(index).key("muscle");
         amounts.add(&InnerLoad::Muscle(own.muscle.clone()), own.stress, &place, faults);
     }
-    amounts.values
+    (amounts.values, suspect_growth_and_pull(&growth, &pulls))
 }
 
 struct Amounts<'a> {

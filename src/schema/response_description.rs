@@ -221,7 +221,7 @@ impl ResponseDescription {
             self.check_name(name, moves, &place, &mut faults);
         }
         let known = (self.inner_columns.as_slice(), self.regions.as_slice());
-        let inner = inner_amounts(known, plan, &at, limits, &mut faults);
+        let (inner, suspect) = inner_amounts(known, plan, &at, limits, &mut faults);
         faults.into_result()?;
         let by_name: BTreeMap<&str, RigidMovement> =
             planned.iter().map(|segment| (segment.name.as_str(), segment.movement)).collect();
@@ -229,7 +229,8 @@ impl ResponseDescription {
         let movements: Vec<RigidMovement> =
             self.segments.iter().map(|segment| of(segment).unwrap_or_default()).collect();
         self.check_whole(&movements, &at)?;
-        Ok(PlanAmounts { movements, inner, doubts: plan.doubts() })
+        let doubts = plan.doubts().into_iter().chain(suspect).collect();
+        Ok(PlanAmounts { movements, inner, doubts })
     }
 
     /// Refuses what a prediction of the same plan refuses: segments that leave the face, and a face that moves rigidly.

@@ -43,6 +43,12 @@ impl LawSeries {
         third * (length.powi(3) / (12.0 * STEP.powi(3)))
     }
 
+    /// D2 of a change of volume alone, its trace as a multiple of lambda: 27 where the pressure is lambda (J - 1) or lambda (J - 1/J) / 2,
+    /// less than 1 where it is lambda ln J / J and nu is above .45.
+    pub fn volume_term(&self) -> f64 {
+        self.quadratic(&Matrix3::identity()).trace() / self.law.at_rest().0
+    }
+
     fn quadratic(&self, h: &Matrix3<f64>) -> Matrix3<f64> {
         let Some((unit, length)) = direction(h) else { return Matrix3::zeros() };
         let at = |times: f64| self.difference(&(unit * (times * STEP)));

@@ -279,11 +279,9 @@ impl<'a> Check<'a> {
                 Load::Force { nodes, force } => {
                     let nodes = self.select(nodes, &format!("{pointer}/nodes"));
                     nodes.iter().for_each(|&node| forces[node as usize] += force);
-                    self.warnings.extend(load_on_constrained(
-                        &nodes,
-                        &scene.conditions.constraints,
-                        &pointer,
-                    ));
+                    let constraints = &scene.conditions.constraints;
+                    self.warnings.extend(self.point_force(&nodes, constraints, &pointer));
+                    self.warnings.extend(load_on_constrained(&nodes, constraints, &pointer));
                     continue;
                 }
                 Load::Traction { faces, traction } => (faces, FaceLoad::Traction(*traction)),

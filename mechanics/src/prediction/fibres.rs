@@ -91,7 +91,7 @@ impl Check<'_> {
             .collect();
         let detail = format!(
             "`{}` does not know the law of {}: its tissue has the moduli that the law has at rest, without fibres that only \
-             pull; `fem_nonlinear` follows the law",
+             pull (what is of second order, where the method has it, is of the law); `fem_nonlinear` follows the law",
             method.name,
             listed(&names)
         );

@@ -31,6 +31,7 @@ mod nonlinearity;
 mod numerical_error;
 mod numerics_revision;
 mod off_wall;
+mod point_force;
 mod pressure_kind;
 mod problem;
 mod reaction;
@@ -73,6 +74,7 @@ pub use scene::Scene;
 pub use skin::{Skin, least_moving};
 pub use skin_overlap::{SKIN_OVERLAPS, skin_overlap};
 pub use stated::{StatedCondition, StatedHold};
+pub use suspect_constants::suspect_growth_and_pull;
 pub use unconstrained::{NOTHING_HELD, RigidlyCarried, rigidly_carried};
 pub use walls::{is_normal_turned, normal_turned};
 

@@ -3,7 +3,9 @@
 //! Pairs of triangles that cross after the movement and did not before it are counted; scanned lips touch, and some
 //! of their triangles cross at rest. How deep: the triangles that cross cut the skin into parts, and an edge that
 //! pierces one triangle only begins outside and ends inside. Points of the parts that such edges end in lie inside what
-//! is not theirs; their depth is the distance to the closest triangle of another part that crosses or lies inside. It
+//! is not theirs; their depth is how far they lie behind the closest triangle of another part that crosses or lies inside, along its normal:
+//! along the surface a point may be far from all that crosses, as where walls are flush. Where that is of another body, the way to what of
+//! that body faces the point is taken if it is shorter. The depth
 //! is not above the true one, because a point may be closer to the rim of its own part. Where a closed surface does not wind around a point
 //! in front of it the point lies outside after all.
 
@@ -133,6 +135,7 @@ fn deepest(surface: &TriangleSurface, pairs: &[TrianglePair]) -> Option<Deepest>
     };
     let triangles = 0..surface.triangles.len();
     let area = triangles.map(|one| share_inside(one) * surface.area_vector(one).norm()).sum();
+    let (normals, body_of) = (surface.point_normals(), bodies(surface));
     let depth = |&point: &u32| {
         let own = part_of[point as usize];
         let is_other = |triangle: usize| {
@@ -141,7 +144,16 @@ fn deepest(surface: &TriangleSurface, pairs: &[TrianglePair]) -> Option<Deepest>
         };
         let at = surface.points[point as usize];
         let closest = search.closest_where(&at, is_other)?;
-        let depth = -search.signed_distance(&at, &closest);
+        let behind = (closest.point - at).dot(&search.pseudo_normal(&closest));
+        let body = |triangle: usize| body_of[surface.triangles[triangle][0] as usize];
+        let other = body(closest.triangle);
+        let faces = |triangle: usize| {
+            body(triangle) == other
+                && surface.area_vector(triangle).dot(&normals[point as usize]) < 0.0
+        };
+        let is_of_other = other != body_of[point as usize];
+        let facing = is_of_other.then(|| search.closest_where(&at, faces)).flatten();
+        let depth = facing.map_or(behind, |facing| behind.min(facing.distance));
         (depth > 0.0).then_some(Deepest { depth, at, area })
     };
     let step = inside.len().div_ceil(MEASURED_POINTS).max(1);
@@ -152,13 +164,22 @@ fn deepest(surface: &TriangleSurface, pairs: &[TrianglePair]) -> Option<Deepest>
         return measured.into_iter().next().map(|(_, deepest)| deepest);
     }
     // Where only an edge or a corner passes, what hangs together with its end lies outside.
-    let normals = surface.point_normals();
     let is_behind = |(point, own): &(u32, Deepest)| {
         let before = own.at + normals[*point as usize] * BEFORE_MM;
         surface.winding_number(0..surface.triangles.len(), &before) > BEHIND
     };
     let looked_at = MOST_ANGLES.div_ceil(surface.triangles.len().max(1));
     measured.into_iter().take(looked_at).find(is_behind).map(|(_, deepest)| deepest)
+}
+
+/// For each point what it hangs together with.
+fn bodies(surface: &TriangleSurface) -> Vec<u32> {
+    let mut bodies = DisjointSets::new(surface.points.len());
+    for &[a, b, c] in &surface.triangles {
+        bodies.join(a, b);
+        bodies.join(b, c);
+    }
+    (0..surface.points.len() as u32).map(|point| bodies.root(point)).collect()
 }
 
 /// For each point the part of the skin that it belongs to, where that lies behind other skin. A part with more than

@@ -28,23 +28,32 @@ pub enum StatedHold {
 }
 
 impl StatedCondition {
-    /// Its nodes that belong to no face of the boundary and to no cell all of whose nodes are its: points and lines, and sheets inside
-    /// the tissue.
+    /// Of its nodes.
     pub(super) fn nodes_without_extent(
         &self,
         mesh: &VolumeMesh,
         boundary: &[BoundaryFace],
     ) -> Vec<u32> {
-        let mut is_own = vec![false; mesh.nodes.len()];
-        self.nodes.iter().for_each(|&node| is_own[node as usize] = true);
-        let faces = boundary.iter().map(BoundaryFace::nodes);
-        let cells = mesh.cells.iter().map(|(_, nodes)| nodes);
-        let mut has_extent = vec![false; mesh.nodes.len()];
-        for nodes in faces.chain(cells) {
-            if nodes.iter().all(|&node| is_own[node as usize]) {
-                nodes.iter().for_each(|&node| has_extent[node as usize] = true);
-            }
-        }
-        self.nodes.iter().copied().filter(|&node| !has_extent[node as usize]).collect()
+        nodes_without_extent(&self.nodes, mesh, boundary)
     }
+}
+
+/// Those of some nodes that belong to no face of the boundary and to no cell all of whose nodes are among them: points and lines, and
+/// sheets inside the tissue.
+pub(super) fn nodes_without_extent(
+    nodes: &[u32],
+    mesh: &VolumeMesh,
+    boundary: &[BoundaryFace],
+) -> Vec<u32> {
+    let mut is_own = vec![false; mesh.nodes.len()];
+    nodes.iter().for_each(|&node| is_own[node as usize] = true);
+    let faces = boundary.iter().map(BoundaryFace::nodes);
+    let cells = mesh.cells.iter().map(|(_, nodes)| nodes);
+    let mut has_extent = vec![false; mesh.nodes.len()];
+    for filled in faces.chain(cells) {
+        if filled.iter().all(|&node| is_own[node as usize]) {
+            filled.iter().for_each(|&node| has_extent[node as usize] = true);
+        }
+    }
+    nodes.iter().copied().filter(|&node| !has_extent[node as usize]).collect()
 }

@@ -3,7 +3,7 @@
 //! What no unit explains is refused where constants are made (`material`). Between the two lie decades in which a
 //! number is more likely a mistake of a thousand than a tissue: fat has 1 to 3 kPa, bone 1e7 kPa.
 
-use super::case::{Case, Load, Plan};
+use super::case::{Activation, Case, Growth, Load, Plan};
 use super::scene::Scene;
 use crate::material::LinearElastic;
 use crate::mesh::{Vector, Warning};
@@ -88,14 +88,19 @@ pub(super) fn suspect_constants(scene: &Scene, plan: &Plan) -> Vec<Warning> {
     let link = scene.settings.method.link_stiffness();
     let links = link.into_iter().map(|stiffness| LINK.doubt(stiffness, ""));
     let loads = plan.loads.iter().enumerate().map(|(index, load)| of_load(index, load));
-    let growth = plan
-        .growth
+    let inner = suspect_growth_and_pull(&plan.growth, &plan.activations);
+    let stated = materials.chain(sheet).chain(links).chain(loads).flatten();
+    stated.chain(inner).take(MOST).collect()
+}
+
+/// A warning for each growth and each pull of a plan that is far from what tissue has.
+pub fn suspect_growth_and_pull(growth: &[Growth], activations: &[Activation]) -> Vec<Warning> {
+    let growth = growth
         .iter()
         .map(|own| GROWTH.doubt(own.volume_change.abs(), &format!(" of region {:?}", own.region)));
-    let pulls = plan.activations.iter();
+    let pulls = activations.iter();
     let pulls = pulls.map(|own| PULL.doubt(own.stress, &format!(" of muscle {:?}", own.muscle)));
-    let plan = loads.chain(growth).chain(pulls);
-    materials.chain(sheet).chain(links).chain(plan).flatten().take(MOST).collect()
+    growth.chain(pulls).flatten().take(MOST).collect()
 }
 
 /// The warning of a case whose tissues are all stiffer than skin or softer than fat: a thousand times another unit.

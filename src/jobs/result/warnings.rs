@@ -5,7 +5,7 @@ use mechanics::mesh::Warning;
 
 /// Codes that precede all others, in this order: those of doubtful input or measurements, those of a result that
 /// has larger errors than reported elsewhere, and those of an impossible one.
-const GRAVE: [&str; 58] = [
+const GRAVE: [&str; 59] = [
     "nothing-moves",
     "nothing-performed",
     "units-suspect",
@@ -25,6 +25,7 @@ const GRAVE: [&str; 58] = [
     "template-apart",
     "surfaces-apart",
     "surfaces-opposed",
+    "no-bone",
     "segment-without-nodes",
     "segment-far-from-bone",
     "cells-inverted",
@@ -37,6 +38,7 @@ const GRAVE: [&str; 58] = [
     "muscle-few-cells",
     "muscles-not-refined",
     "points-refined",
+    "point-force",
     "muscle-outside",
     "sliding-normal-turned",
     "volume-not-kept",
@@ -46,7 +48,6 @@ const GRAVE: [&str; 58] = [
     "outside-linear-range",
     "outside-second-order-range",
     "nonlinearity-unknown",
-    "hexahedra-crease",
     "another-equilibrium",
     "bulk-in-all-cells",
     "skin-outruns-plan",

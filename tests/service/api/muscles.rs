@@ -90,6 +90,20 @@ async fn growth_and_activations_are_predicted_and_applied_alike() {
     assert_eq!(applied["within_linear_range"], false);
     assert_eq!(applied["warnings"][0]["code"], "nonlinearity-unknown");
 
+    // A pull in Pa is suspect to both.
+    let mut pulled = plan();
+    pulled["activations"][0]["stress_kpa"] = json!(5000.0);
+    let applied = apply(&server, &case, &pulled).await.expect(StatusCode::OK);
+    let body = json!({"plan": pulled, "method": "fem_linear"});
+    let checked = ask(server.post(&format!("/v1/cases/{case}/check")).json(&body)).await;
+    for told in [&applied["warnings"], &checked.expect(StatusCode::OK)["warnings"]] {
+        let suspect = told.as_array().unwrap().iter();
+        let suspect: Vec<&Value> =
+            suspect.filter(|warning| warning["code"] == "constant-suspect").collect();
+        assert_eq!(suspect.len(), 1, "{told}");
+        assert_eq!(suspect[0]["value"], 5000.0);
+    }
+
     // Without them the skin is another, and its estimate is there.
     let alone = json!({"segments": plan()["segments"]});
     let applied = apply(&server, &case, &alone).await.expect(StatusCode::OK);

@@ -593,6 +593,23 @@ async fn a_response_of_order_two_adds_its_quadratic_form_and_hands_it_over() {
 }
 
 #[tokio::test]
+async fn a_response_of_order_two_says_where_its_law_takes_volume_at_points() {
+    let law = json!({"kind": "neo_hookean_isochoric", "mu_kpa": 5, "bulk_modulus_kpa": 250});
+    for (order, warns) in [(1, false), (2, true)] {
+        let server = Server::start();
+        let mut block = SMALL.case();
+        block["materials"] = json!({"*": {"law": law}});
+        let case = kept(&server, &SMALL, &block).await;
+        let job = built(&server, json!({"kind": "response", "case": case, "order": order})).await;
+        let shift = json!({"segments": [{"name": "bone", "translation_mm": [0, 0, 1.0]}]});
+        let applied = apply(&server, &case, &shift, "application/json").await;
+        for told in [job["results"].clone(), applied.expect(StatusCode::OK)] {
+            assert_eq!(warnings_of(&told).any(|told| told["code"] == "locking"), warns, "{told}");
+        }
+    }
+}
+
+#[tokio::test]
 async fn an_order_that_a_response_does_not_have_is_refused() {
     let server = Server::start();
     let case = case(&server).await;

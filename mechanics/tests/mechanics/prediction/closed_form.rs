@@ -139,6 +139,27 @@ fn a_load_on_held_nodes_alone_is_reported() {
     }
 }
 
+/// The top has three rows of three nodes: one of them fills no face, two do. The bottom is held.
+#[test]
+fn a_force_at_nodes_without_a_face_is_reported() {
+    let mut mesh = block(Vector::new(4.0, 5.0, 6.0), [2, 2, 3], CellShape::Hex8);
+    let top: Vec<u32> = mesh.node_sets["z_max"].clone();
+    mesh.node_sets.insert("point".to_owned(), vec![top[4]]);
+    mesh.node_sets.insert("row".to_owned(), top[3..6].to_vec());
+    mesh.node_sets.insert("rows".to_owned(), top[..6].to_vec());
+    let mut case = case_of(mesh, material(15.0, 0.3));
+    case.fixed.push(set("z_min"));
+    let told = |nodes: &str| {
+        let loads = vec![Load::Force { nodes: set(nodes), force: Vector::new(0.0, 0.0, 5.0) }];
+        let plan = Plan { loads, ..Plan::default() };
+        let warnings = solve(&case, &plan, &Settings::default()).warnings;
+        let told = warnings.iter().find(|warning| warning.code == "point-force")?;
+        Some(told.numbers[0].1)
+    };
+    assert_eq!(["point", "row"].map(told), [Some(1.0), Some(3.0)]);
+    assert_eq!(["rows", "z_max", "z_min"].map(told), [None; 3]);
+}
+
 #[test]
 fn a_bar_under_its_own_weight_shortens_by_half_of_what_its_weight_on_top_would_do() {
     let mesh = block(Vector::new(3.0, 3.0, 30.0), [1, 1, 10], CellShape::Hex8);

@@ -170,6 +170,20 @@ fn blocks_with_meshes_that_do_not_match_keep_apart_and_press_within_a_ninth_of_e
     assert!(off.fold(0.0, f64::max) < 0.075);
 }
 
+/// What crosses lies hundredths of a millimetre behind the face that it crossed, and far from all other edges that cross.
+#[test]
+fn blocks_with_flush_walls_overlap_by_the_way_back_through_the_face_that_was_crossed() {
+    let lower = block(Vector::new(12.0, 12.0, 6.0), [5, 5, 2], CellShape::Hex8);
+    let upper = block(Vector::new(12.0, 12.0, 6.0), [3, 3, 2], CellShape::Hex8);
+    let mesh = together(&[("lower", lower), ("upper", at(upper, [0.0, 0.0, 6.0]))]);
+    let case = Case { allow_unfixed: true, ..case_of(mesh, material(15.0, 0.45)) };
+    let found = solve(&case, &blocks().1, &unilateral());
+    let touch = found.contact.as_ref().unwrap();
+    assert!(touch.area() > 100.0, "{}", touch.area());
+    let overlap = touch.overlap.as_ref().map_or(0.0, |deepest| deepest.depth);
+    assert!(overlap < 0.1, "{:?}", touch.overlap);
+}
+
 /// A C of tissue: two jaws of 20 mm with a slit of 5 mm and 30 mm depth between them, the lower one raised.
 pub(super) fn jaws(size: f64) -> Case {
     jaws_of(CellShape::Hex8, size)

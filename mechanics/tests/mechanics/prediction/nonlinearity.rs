@@ -157,6 +157,33 @@ fn the_estimate_is_that_of_the_law_that_is_stated() {
     assert!(told[1] > 1.2 * told[0] && told[2] > 1.1 * told[0], "{told:?}");
 }
 
+/// What sets a law apart from neo-Hookean tissue is taken at points, whatever elements share at first order.
+#[test]
+fn a_second_order_that_takes_volume_at_points_is_told_near_incompressible() {
+    let (lambda, mu) = (60.0, 5.0);
+    let volumetric = Volumetric::Logarithmic(lambda + 2.0 / 3.0 * mu);
+    let pointwise = Law::SaintVenantKirchhoff(SaintVenantKirchhoff { lambda, mu });
+    let softer = Law::SaintVenantKirchhoff(SaintVenantKirchhoff { lambda: 40.0, mu });
+    let logarithmic = Law::Fung(Fung { mu, b: 10.0, volumetric });
+    let cells = |shape, law, element| {
+        let material = LinearElastic::of_law(law, 1.0).unwrap();
+        let case = Case { materials: [("*".to_owned(), material)].into(), ..slab(shape, 0.4) };
+        let settings = Settings { element, ..linear() };
+        let scene = Scene::new(&case, &Plan::default(), &settings).unwrap();
+        scene.second_order_locking().map(|warning| (warning.code, warning.numbers[0].1))
+    };
+    let count = 12.0 * 12.0 * 4.0;
+    for (shape, each) in [(CellShape::Tet4, 6.0), (CellShape::Hex8, 1.0), (CellShape::Wedge6, 2.0)]
+    {
+        let told = cells(shape, pointwise, ElementChoice::Auto);
+        assert_eq!(told, Some(("locking", each * count)), "{shape:?}");
+        assert_eq!(cells(shape, softer, ElementChoice::Auto), None, "{shape:?}");
+        assert_eq!(cells(shape, logarithmic, ElementChoice::Auto), None, "{shape:?}");
+        // Plain elements lock at first order too, and are told of.
+        assert_eq!(cells(shape, pointwise, ElementChoice::Plain), None, "{shape:?}");
+    }
+}
+
 #[test]
 fn what_is_left_out_where_a_wall_turns_with_its_segment_is_not_known() {
     let segment = Some("first".to_owned());
