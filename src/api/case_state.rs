@@ -4,6 +4,7 @@ use serde::Serialize;
 use serde_json::{Value, json};
 use utoipa::ToSchema;
 
+use super::Service;
 use super::error::{ApiError, ApiResult};
 use crate::schema::case::meshed::CaseBody;
 use crate::schema::job::{ErrorClass, JobErrorDocument, JobStatus};
@@ -94,6 +95,19 @@ fn error_of(meshing: &CaseMeshing) -> ApiResult<JobErrorDocument> {
         (None, None) => Ok(ended("removed")),
         (None, Some(_)) => Ok(ended("dismissed")),
     }
+}
+
+/// The case of a request that is posted for what its mesh is needed for: a meshing that failed through no fault of its own is
+/// accepted again, as any other such job is when it is posted again.
+pub async fn meshed_again(service: &Service, row: CaseRow) -> ApiResult<CaseRow> {
+    let lost = row.meshing.as_ref().filter(|meshing| {
+        let error = (meshing.status == Some(JobStatus::Failed)).then(|| error_of(meshing));
+        matches!(error, Some(Ok(error)) if error.class == ErrorClass::Infrastructure)
+    });
+    let Some(meshing) = lost else { return Ok(row) };
+    service.store.requeue(&meshing.job).await?;
+    let row = service.store.case(&row.id).await?;
+    row.ok_or_else(|| ApiError::not_found("case"))
 }
 
 /// The case as input of a job.

@@ -12,7 +12,7 @@ use utoipa_axum::routes;
 
 use super::caller::Caller;
 use super::case_draft::{PostedCase, checked, split};
-use super::case_state::{CaseMeshingView, CaseState, meshing_view, tag_of};
+use super::case_state::{CaseMeshingView, CaseState, meshed_again, meshing_view, tag_of};
 use super::error::{ApiError, ApiResult};
 use super::idempotency::KeyedRequest;
 use super::meshes::document_of;
@@ -164,8 +164,9 @@ async fn create(
         .collect();
     let asked = KeyedRequest::at(&service, &headers, "/v1/cases", &content)?;
     if let Some(known) = asked.known(&service).await?
-        && service.store.case(&known.id).await?.is_some()
+        && let Some(row) = service.store.case(&known.id).await?
     {
+        meshed_again(&service, row).await?;
         return created(&service, &known.id, wait).await;
     }
     let place = place.map(|place| place.to_string());

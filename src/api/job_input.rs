@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::Service;
 use super::accepted::{Accepted, fault, in_spec, prepared, require_compared, require_mesh};
-use super::case_state::{CaseOfJob, case_of_job, whole};
+use super::case_state::{CaseOfJob, case_of_job, meshed_again, whole};
 use super::cohort_input::of_cohort;
 use super::error::ApiResult;
 use super::learn_input::{learned_from, of_learning};
@@ -43,6 +43,7 @@ pub async fn of(service: &Service, document: JobDocument) -> ApiResult<NewJob> {
 /// A prediction: its case and plan in their present versions, checked together with the meshes.
 async fn of_prediction(service: &Service, mut spec: PredictDocument) -> ApiResult<NewJob> {
     let row = require_case(service, spec.case.as_deref().unwrap_or_default()).await?;
+    let row = meshed_again(service, row).await?;
     let case = match case_of_job(&row)? {
         CaseOfJob::Whole(case) => *case,
         CaseOfJob::Waits(awaited) => {
@@ -108,6 +109,7 @@ async fn of_comparison(service: &Service, spec: CompareDocument) -> ApiResult<Ne
 async fn of_response(service: &Service, mut spec: ResponseDocument) -> ApiResult<NewJob> {
     let row = require_case(service, &spec.case).await?;
     spec.case.clone_from(&row.id);
+    let row = meshed_again(service, row).await?;
     let case = match case_of_job(&row)? {
         CaseOfJob::Whole(case) => *case,
         CaseOfJob::Waits(awaited) => {
@@ -132,6 +134,7 @@ async fn of_response(service: &Service, mut spec: ResponseDocument) -> ApiResult
 async fn of_optimisation(service: &Service, mut spec: OptimiseDocument) -> ApiResult<NewJob> {
     let row = require_case(service, &spec.case).await?;
     spec.case.clone_from(&row.id);
+    let row = meshed_again(service, row).await?;
     let case = match case_of_job(&row)? {
         CaseOfJob::Whole(case) => *case,
         CaseOfJob::Waits(awaited) => {

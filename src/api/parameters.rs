@@ -22,10 +22,21 @@ impl<T: DeserializeOwned, S: Sync> FromRequestParts<S> for Parameters<T> {
                 let detail = error.body_text();
                 let detail = detail.rsplit("query string: ").next().unwrap_or_default();
                 let detail = detail.replace("unknown variant", "unknown word");
-                Err(ApiError::invalid_parameter("query", detail))
+                Err(ApiError::invalid_parameter(named(&detail), detail.clone()))
             }
         }
     }
+}
+
+/// The parameter that a refusal of the query begins with, or that it says is missing.
+fn named(detail: &str) -> &str {
+    let is_name = |text: &&str| {
+        !text.is_empty() && text.chars().all(|letter| letter.is_alphanumeric() || letter == '_')
+    };
+    let first = detail.split_once(": ").map(|(name, _)| name).filter(is_name);
+    let quoted =
+        || detail.split('`').nth(1).filter(|_| detail.contains(" field `")).filter(is_name);
+    first.or_else(quoted).unwrap_or("query")
 }
 
 /// The only id of the path. Other texts are not found.

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::documents::write;
+use super::claim::Claim;
 use super::failure::CommandError;
 use super::scene::{PlanArgument, SceneArguments};
 use super::screen::print_check;
@@ -16,6 +16,7 @@ use crate::schema::wire::canonical;
 
 /// The document of a check.
 const CHECK: &str = "check.json";
+const PICTURE: &str = "classes.svg";
 
 #[derive(Debug, Args)]
 pub struct Arguments {
@@ -35,17 +36,18 @@ pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
     let report = check(&asked.file.to_input(), &asked.sources, &Limits::default())?;
     print_check(&report.document);
     if let Some(out) = &arguments.out {
+        let claim = Claim::of(out, &[CHECK, PICTURE])?;
         remove_earlier_movements(out);
         let document = canonical::to_value(&report.document);
-        write(&out.join(CHECK), format!("{document:#}\n"))?;
-        write(&out.join("classes.svg"), &report.picture()?)?;
+        claim.put(CHECK, format!("{document:#}\n"))?;
+        claim.put(PICTURE, &report.picture()?)?;
         println!("wrote      {}", out.join(CHECK).display());
         let movements = &report.document.movements;
         let names = files_of(movements.iter().map(|movement| &*movement.segment));
         for (movement, name) in movements.iter().zip(names) {
-            write_movement(movement, out, &name)?;
+            write_movement(movement, &claim, out, &name)?;
         }
-        println!("wrote      {}", out.join("classes.svg").display());
+        println!("wrote      {}", out.join(PICTURE).display());
     }
     Ok(())
 }
@@ -53,13 +55,14 @@ pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
 /// The movement of a segment as files for navigation.
 fn write_movement(
     movement: &MovementReportDocument,
+    claim: &Claim,
     out: &Path,
     name: &str,
 ) -> Result<(), CommandError> {
     let mut files = vec![(format!("{name}.txt"), &movement.matrix_text)];
     files.extend(movement.itk_transform.iter().map(|text| (format!("{name}.tfm"), text)));
     for (file, text) in files {
-        write(&out.join(&file), text)?;
+        claim.put(&file, text)?;
         println!("wrote      {}", out.join(&file).display());
     }
     Ok(())

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
+use super::claim::Claim;
 use super::documents::read;
 use super::failure::CommandError;
 use super::files::{FileSource, ScaleArguments};
@@ -78,6 +79,7 @@ pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
     let sources = FileSource::new(&PathBuf::new(), LengthUnit::Mm, ScaleArguments::default());
     let input = JobInput::Cohort(input);
     let place = JobContext { sources: &sources, limits: &limits, out: &arguments.out };
+    let _claim = Claim::of(&arguments.out, &[])?;
     let done = run_with_progress(&input, &place)?;
     if let Some(cohort) = &done.result.cohort {
         print_cohort(cohort);

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 use serde_json::{Value, json};
 
+use super::claim::Claim;
 use super::documents::read;
 use super::failure::CommandError;
 use super::files::{FileSource, ScaleArguments, UnitArgument, relative};
@@ -116,6 +117,7 @@ pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
     let spec = arguments.document()?;
     let input = JobInput::Compare(CompareInput { job: None, queue_s: None, spec });
     let place = JobContext { sources: &sources, limits: &limits, out: &arguments.out };
+    let _claim = Claim::of(&arguments.out, &[])?;
     let done = run_with_progress(&input, &place)?;
     print_result(&done.result);
     print_files(&done.files, &arguments.out);

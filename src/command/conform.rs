@@ -4,7 +4,8 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::documents::{read, write};
+use super::claim::Claim;
+use super::documents::{CASE_FILE, read};
 use super::failure::CommandError;
 use super::files::{FileSource, ScaleArguments, UnitArgument};
 use super::screen::{print_files, print_warnings, run_with_progress};
@@ -12,9 +13,6 @@ use crate::jobs::{ConformInput, JobContext, JobInput};
 use crate::schema::conform::result::{ConformationDocument, LeftDocument, MappedMuscleDocument};
 use crate::schema::wire::canonical;
 use crate::schema::{ConformDocument, Limits};
-
-/// The case of the mesh, as `predict` reads it.
-const CASE_FILE: &str = "case.json";
 
 #[derive(Debug, Args)]
 pub struct Arguments {
@@ -42,11 +40,12 @@ pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
     let sources = FileSource::new(&PathBuf::new(), arguments.units.unit(), arguments.scale);
     let input = JobInput::Conform(ConformInput { job: None, queue_s: None, spec });
     let place = JobContext { sources: &sources, limits: &limits, out: &arguments.out };
+    let claim = Claim::of(&arguments.out, &[CASE_FILE])?;
     let done = run_with_progress(&input, &place)?;
     if let Some(found) = &done.result.conformation {
         let case = canonical::to_value(&found.case);
         let file = serde_json::json!({ "case": case });
-        write(&arguments.out.join(CASE_FILE), format!("{file:#}\n"))?;
+        claim.put(CASE_FILE, format!("{file:#}\n"))?;
         print_found(found);
         print_muscles(&found.muscles);
     }

@@ -9,10 +9,14 @@ use serde_json::{Map, Value};
 use super::failure::CommandError;
 use super::files::{FileSource, relative};
 use crate::jobs::PredictInput;
+use crate::jobs::result::folder;
 use crate::schema::wire::{canonical, strict};
 use crate::schema::{
     CaseDocument, ErrorCode, Faults, Limits, PlanDocument, Pointer, PredictDocument,
 };
+
+/// The case, as commands write it into the folder of a result.
+pub const CASE_FILE: &str = "case.json";
 
 /// `case.json`: mesh ids are paths relative to the file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -93,6 +97,11 @@ fn refuse(stated: &Map<String, Value>, why: &str, path: &Path) -> Result<(), Com
     faults.into_result().map_err(refused)
 }
 
+/// Whether two paths lead to one file.
+pub fn is_same(one: &Path, other: &Path) -> bool {
+    one.canonicalize().is_ok_and(|one| other.canonicalize().is_ok_and(|other| one == other))
+}
+
 /// Writes a file, and the folder it is in.
 pub fn write(path: &Path, content: impl AsRef<[u8]>) -> Result<(), CommandError> {
     let failed = |source| CommandError::Write { path: path.to_owned(), source };
@@ -111,16 +120,10 @@ impl CaseFile {
         out: &Path,
         read_from: Option<&Path>,
     ) -> Result<PathBuf, CommandError> {
-        let path = out.join("case.json");
-        let is_source = |from: &Path| {
-            let whole = (from.canonicalize().ok(), path.canonicalize().ok());
-            whole.0.is_some() && whole.0 == whole.1
-        };
-        if read_from.is_some_and(is_source) {
+        let path = out.join(CASE_FILE);
+        if read_from.is_some_and(|from| is_same(from, &path)) {
             return Ok(path);
         }
-        std::fs::create_dir_all(out)
-            .map_err(|source| CommandError::Write { path: out.to_owned(), source })?;
         let bones: Vec<String> = self.case.bones.iter().map(|bone| bone.name.clone()).collect();
         let lead = |id: &mut String| {
             *id = relative(&folder.join(&*id), out).to_string_lossy().into_owned();
@@ -139,7 +142,7 @@ impl CaseFile {
                 .into_iter()
                 .for_each(|(_, id)| lead(id));
         }
-        write(&path, format!("{:#}\n", canonical::to_value(&self)))?;
+        folder::put(out, CASE_FILE, format!("{:#}\n", canonical::to_value(&self)).as_bytes())?;
         Ok(path)
     }
 

@@ -2,17 +2,21 @@
 
 pub mod case;
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 use serde_json::{Map, Value, json};
 
-use super::documents::write;
+use super::claim::Claim;
+use super::documents::CASE_FILE;
 use super::failure::CommandError;
 use crate::jobs::JobError;
 use case::{SKIN_REGIONS, case_of, meshes};
 use mechanics::mesh::CellShape;
 use mechanics::mesh::generic_face::{FaceSettings, GenericFace, Lips, generic_face};
+
+/// A conformation that waits for the names of a patient's surfaces.
+const CONFORMATION: &str = "conform.json";
 
 /// The finest face, with 505 440 hexahedra.
 const FINEST: u64 = 9;
@@ -59,20 +63,17 @@ pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
     };
     let fineness = arguments.fineness as usize;
     let face = generic_face(FaceSettings { lips, fineness, shape });
-    let out = &arguments.out;
-    for (name, bytes) in meshes(&face).map_err(JobError::from)? {
-        put(&out.join(name), bytes)?;
+    let claim = Claim::of(&arguments.out, &[CASE_FILE, CONFORMATION])?;
+    let mut files = meshes(&face).map_err(JobError::from)?;
+    files.push((CASE_FILE.to_owned(), format!("{:#}\n", documents(&face)).into_bytes()));
+    let conformation = format!("{:#}\n", conformation(&case_of(&face)));
+    files.push((CONFORMATION.to_owned(), conformation.into_bytes()));
+    for (name, bytes) in files {
+        claim.put(&name, bytes)?;
+        println!("wrote      {}", arguments.out.join(name).display());
     }
-    put(&out.join("case.json"), format!("{:#}\n", documents(&face)))?;
-    put(&out.join("conform.json"), format!("{:#}\n", conformation(&case_of(&face))))?;
     let (cells, muscles) = (face.mesh.cells.len(), face.muscles.len());
     println!("{cells} cells, {} landmarks, {muscles} muscles", face.landmarks.len());
-    Ok(())
-}
-
-fn put(path: &Path, content: impl AsRef<[u8]>) -> Result<(), CommandError> {
-    write(path, content)?;
-    println!("wrote      {}", path.display());
     Ok(())
 }
 

@@ -12,6 +12,7 @@ use crate::jobs::JobError;
 use crate::schema::Problem;
 use crate::schema::job::ErrorClass;
 use crate::schema::study::report::OutcomeName;
+use crate::schema::wire::numbers::with_short_numbers;
 use crate::worker::process::SlotError;
 
 /// The job ran and failed.
@@ -92,7 +93,9 @@ impl CommandError {
                 problem_lines(problem).map(|line| format!("{file}: {line}")).collect()
             }
             CommandError::Job(JobError::Refused(problem)) => problem_lines(problem).collect(),
-            CommandError::Job(error) => vec![format!("{error} ({})", error.kind())],
+            CommandError::Job(error) => {
+                vec![format!("{} ({})", with_short_numbers(&error.to_string()), error.kind())]
+            }
             other => vec![other.to_string()],
         }
     }

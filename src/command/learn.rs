@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 
+use super::claim::Claim;
 use super::documents::{CaseFile, read};
 use super::failure::CommandError;
 use super::files::{FileSource, ScaleArguments};
@@ -98,6 +99,7 @@ pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
     let (job, queue_s, cohort) = (None, None, None);
     let input = JobInput::Learn(LearnInput { job, queue_s, spec, cohort, cases });
     let place = JobContext { sources: &sources, limits: &limits, out: &arguments.out };
+    let _claim = Claim::of(&arguments.out, &[])?;
     let done = run_with_progress(&input, &place)?;
     if let Some(found) = &done.result.learning {
         print_learning(found);

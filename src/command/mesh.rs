@@ -6,7 +6,8 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use serde_json::Value;
 
-use super::documents::{CaseFile, document, read, write};
+use super::claim::Claim;
+use super::documents::{CASE_FILE, CaseFile, document, read};
 use super::failure::CommandError;
 use super::files::{FileSource, ScaleArguments, UnitArgument};
 use super::screen::{print_files, print_warnings, run_with_progress};
@@ -122,12 +123,12 @@ impl Meshed {
 pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
     let Arguments { scan, skin, units, plan, out, scale } = arguments;
     let (skin, plan, units, scale) = (skin.as_deref(), plan.as_deref(), *units, *scale);
+    let claim = Claim::of(out, &[CASE_FILE])?;
     let meshed = scan.mesh(&ScanContext { skin, plan, units, scale }, out)?;
-    let path = out.join("case.json");
-    write(&path, format!("{:#}\n", canonical::to_value(&meshed.file)))?;
+    claim.put(CASE_FILE, format!("{:#}\n", canonical::to_value(&meshed.file)))?;
     meshed.print(out);
     print_warnings(&meshed.warnings);
-    println!("wrote      {}", path.display());
+    println!("wrote      {}", out.join(CASE_FILE).display());
     Ok(())
 }
 

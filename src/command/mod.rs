@@ -2,6 +2,7 @@
 
 pub mod admin;
 pub mod check;
+mod claim;
 pub mod cohort;
 pub mod compare;
 pub mod config;

@@ -4,7 +4,8 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::documents::{spec_beside, write};
+use super::claim::Claim;
+use super::documents::spec_beside;
 use super::failure::CommandError;
 use super::scene::SceneArguments;
 use super::screen::{print_files, print_warnings, run_with_progress};
@@ -40,10 +41,11 @@ pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
     let input = JobInput::Optimise(OptimiseInput { job: None, queue_s: None, case, spec });
     let limits = Limits::default();
     let place = JobContext { sources: &asked.sources, limits: &limits, out: &arguments.out };
+    let claim = Claim::of(&arguments.out, &[PLAN_FILE])?;
     let done = run_with_progress(&input, &place)?;
     if let Some(found) = &done.result.optimisation {
         let plan = canonical::to_value(&found.plan);
-        write(&arguments.out.join(PLAN_FILE), format!("{plan:#}\n"))?;
+        claim.put(PLAN_FILE, format!("{plan:#}\n"))?;
         print_found(found);
     }
     print_warnings(&done.result.warnings);

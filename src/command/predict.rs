@@ -1,15 +1,18 @@
 //! `facies predict`: the path of a job without a server.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use serde::de::DeserializeOwned;
 
+use super::claim::Claim;
+use super::documents::{CASE_FILE, is_same};
 use super::failure::CommandError;
 use super::mesh::ScanArguments;
 use super::scene::{PlanArgument, SceneArguments};
 use super::screen::{print_check, print_files, print_warnings, run_with_progress};
 use super::watch::Watch;
+use crate::jobs::result::folder;
 use crate::jobs::{JobContext, JobInput, check};
 use crate::schema::Limits;
 use crate::schema::methods::MethodName;
@@ -82,13 +85,19 @@ pub struct Arguments {
 /// Tells what is held, solves, writes the result and the documents, and prints a table.
 pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
     let plan = arguments.plan.plan.as_deref();
+    let read_from = arguments.scene.case.as_deref();
+    let is_own = |from: &Path| is_same(from, &arguments.out.join(CASE_FILE));
+    let written: &[&str] = if read_from.is_some_and(is_own) { &[] } else { &[CASE_FILE] };
+    let _claim = Claim::of(&arguments.out, written)?;
     let mut asked = match arguments.scan.is_given() {
         true => arguments.scene.documents_of_scan(&arguments.scan, plan, &arguments.out)?,
         false => arguments.scene.documents(plan)?,
     };
     asked.file.refuse_beside_spec(&asked.path)?;
     let stated = arguments.outputs.clone().or(asked.file.spec.outputs.take());
-    asked.file.spec.outputs = Some(stated.unwrap_or_else(usual_outputs));
+    let outputs = stated.unwrap_or_else(usual_outputs);
+    folder::refuse_foreign(&arguments.out, outputs.iter().map(|output| output.file_name()))?;
+    asked.file.spec.outputs = Some(outputs);
     asked.file.spec.method = arguments.method.unwrap_or(asked.file.spec.method);
     if arguments.load_steps.is_some() {
         let load_steps = arguments.load_steps;
@@ -125,7 +134,6 @@ pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
     let place = JobContext { sources: &asked.sources, limits: &limits, out: &arguments.out };
     let done = run_with_progress(&JobInput::Predict(input), &place)?;
 
-    let read_from = arguments.scene.case.as_deref();
     let documents = asked.file.write_beside(&asked.folder, &arguments.out, read_from)?;
     print_result(&done.result, &before);
     print_files(&done.files, &arguments.out);

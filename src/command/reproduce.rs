@@ -4,7 +4,8 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::documents::{read, write};
+use super::claim::Claim;
+use super::documents::read;
 use super::failure::CommandError;
 use super::files::{FileSource, ScaleArguments, UnitArgument};
 use super::screen::{print_files, print_warnings, run_with_progress};
@@ -42,10 +43,11 @@ pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
     let sources = FileSource::new(&PathBuf::new(), arguments.units.unit(), arguments.scale);
     let input = JobInput::Reproduce(ReproduceInput { job: None, queue_s: None, spec });
     let place = JobContext { sources: &sources, limits: &limits, out: &arguments.out };
+    let claim = Claim::of(&arguments.out, &[PLAN_FILE])?;
     let done = run_with_progress(&input, &place)?;
     if let Some(found) = &done.result.reproduction {
         let plan = canonical::to_value(&found.plan);
-        write(&arguments.out.join(PLAN_FILE), format!("{plan:#}\n"))?;
+        claim.put(PLAN_FILE, format!("{plan:#}\n"))?;
         print_found(found);
     }
     print_warnings(&done.result.warnings);

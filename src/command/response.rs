@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::claim::Claim;
 use super::documents::spec_beside;
 use super::failure::CommandError;
 use super::scene::SceneArguments;
@@ -42,6 +43,7 @@ pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
     let input = JobInput::Response(ResponseInput { job: None, queue_s: None, case, spec });
     let limits = Limits::default();
     let place = JobContext { sources: &asked.sources, limits: &limits, out: &arguments.out };
+    let _claim = Claim::of(&arguments.out, &[])?;
     let done = run_with_progress(&input, &place)?;
     let provenance = &done.result.provenance;
     println!("time       {:.2} s; key {}", provenance.timing.total_s, provenance.spec_hash);

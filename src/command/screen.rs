@@ -61,11 +61,6 @@ impl TerminalProgress {
 
 /// Does a job, and shows where it is.
 pub fn run_with_progress(input: &JobInput, place: &JobContext) -> Result<JobOutput, JobError> {
-    // A file in the place of the folder is known before anything is solved.
-    if place.out.is_file() {
-        let source = std::io::ErrorKind::NotADirectory.into();
-        return Err(JobError::Write { file: place.out.display().to_string(), source });
-    }
     folder::check(place)?;
     let progress = TerminalProgress::start();
     let done = work(input, place, &progress);

@@ -168,7 +168,9 @@ pub async fn open(config: &Config) -> Result<Store, ServeError> {
     match store.check_blobs().await {
         // What does not answer yet keeps the service unready, not from starting.
         Err(error) if error.is_setting() => return Err(error.into()),
-        Err(error) => tracing::warn!(%error, "the blobs do not answer"),
+        Err(error) => {
+            tracing::warn!(%error, "the store of blobs does not answer: /readyz answers 503 until it does");
+        }
         Ok(()) => {}
     }
     start_garbage_collection(&store).await?;

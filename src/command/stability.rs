@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use serde_json::{Value, json};
 
-use super::documents::write;
+use super::claim::Claim;
 use super::failure::CommandError;
 use crate::jobs::study::words::variant_in_words;
 use mechanics::chart::{Mark, StabilityAxis, StabilityMap};
@@ -18,13 +18,14 @@ const PROBE_S: f64 = 30.0;
 /// Maps these variants, writes `stability.svg`, `stability.json` and `stability.csv` into the folder and prints
 /// a line for each axis and variant. An answer that is silently wrong is an error.
 pub fn run(out: &Path, variants: &[Variant]) -> Result<(), CommandError> {
+    let claim = Claim::of(out, &["stability.svg", "stability.json", "stability.csv"])?;
     let clock = Clock::start();
     let bounds = Bounds { stopwatch: &clock, seconds: PROBE_S };
     let found = map(variants, &axes::every(), &bounds, &|title| eprintln!("{title} …"));
     print(&found);
-    write(&out.join("stability.svg"), picture(&found))?;
-    write(&out.join("stability.json"), format!("{:#}\n", document(&found)))?;
-    write(&out.join("stability.csv"), table(&found))?;
+    claim.put("stability.svg", picture(&found))?;
+    claim.put("stability.json", format!("{:#}\n", document(&found)))?;
+    claim.put("stability.csv", table(&found))?;
     for name in ["stability.svg", "stability.json", "stability.csv"] {
         println!("wrote      {}", out.join(name).display());
     }

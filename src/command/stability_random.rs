@@ -5,7 +5,7 @@ use std::path::Path;
 
 use serde_json::{Value, json};
 
-use super::documents::write;
+use super::claim::Claim;
 use super::failure::CommandError;
 use super::stability::Clock;
 use mechanics::study::stability::Bounds;
@@ -20,6 +20,7 @@ const TOLD: u64 = 500;
 /// Ends so many scenes of a seed, writes `random.json` and `random.csv` into the folder and prints a line for each method and
 /// law. An answer that is silently wrong, or a panic, is an error.
 pub fn run(out: &Path, scenes: u64, seed: u64) -> Result<(), CommandError> {
+    let claim = Claim::of(out, &["random.json", "random.csv"])?;
     let clock = Clock::start();
     let bounds = Bounds { stopwatch: &clock, seconds: SCENE_S };
     let told = |ended: u64| {
@@ -29,8 +30,8 @@ pub fn run(out: &Path, scenes: u64, seed: u64) -> Result<(), CommandError> {
     };
     let found = random(seed, 0..scenes, &bounds, &told);
     print(&found);
-    write(&out.join("random.json"), format!("{:#}\n", document(&found)))?;
-    write(&out.join("random.csv"), table(&found))?;
+    claim.put("random.json", format!("{:#}\n", document(&found)))?;
+    claim.put("random.csv", table(&found))?;
     for name in ["random.json", "random.csv"] {
         println!("wrote      {}", out.join(name).display());
     }

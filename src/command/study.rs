@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
+use super::claim::Claim;
 use super::documents::{CaseFile, read};
 use super::failure::CommandError;
 use super::files::{FileSource, ScaleArguments};
@@ -124,6 +125,7 @@ pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
             eprintln!("expected   {}", cost.sentence());
         }
     }
+    let _claim = Claim::of(&arguments.out, &[REPORT_JSON])?;
     let done = run_with_progress(&JobInput::Study(input), &place)?;
     let report = read_report(&arguments.out.join(REPORT_JSON))?;
     if let Some(file) = kept.filter(|_| report.rows_of.is_none() && report.is_complete()) {

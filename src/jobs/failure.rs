@@ -6,6 +6,7 @@ use super::source::SourceError;
 use crate::schema::ErrorCode;
 use crate::schema::Problem;
 use crate::schema::job::{ErrorClass, JobErrorDocument};
+use crate::schema::wire::numbers::with_short_numbers;
 use mechanics::anatomy::AnatomyError;
 use mechanics::chart::PngError;
 use mechanics::format::WriteError;
@@ -113,7 +114,7 @@ impl JobError {
             JobError::Source(SourceError::Unreadable { .. }) => {
                 "a stored mesh could not be read".to_owned()
             }
-            other => other.to_string(),
+            other => with_short_numbers(&other.to_string()),
         };
         let kind = self.kind().name().to_owned();
         JobErrorDocument { kind, class: self.class(), detail, members: self.members() }

@@ -4,7 +4,7 @@ use super::source::StoredShape;
 use crate::schema::ErrorCode;
 use crate::schema::Problem;
 use crate::schema::case::document::LengthUnit;
-use mechanics::mesh::{Vector, Warning};
+use mechanics::mesh::Warning;
 
 /// Diagonals of the bounding boxes of heads and their parts, in mm.
 const USUAL_DIAGONAL_MM: std::ops::RangeInclusive<f64> = 50.0..=600.0;
@@ -21,16 +21,12 @@ pub struct MeshSize {
 impl MeshSize {
     /// The size of a mesh that was read; an image is in mm.
     pub fn of(shape: &StoredShape, units: LengthUnit) -> Self {
-        match shape {
-            StoredShape::Volume(volume) => MeshSize { diagonal: diagonal(&volume.nodes), units },
-            StoredShape::Surface(surface) => {
-                MeshSize { diagonal: diagonal(&surface.points), units }
-            }
-            StoredShape::Image(image) => {
-                let (low, high) = image.bounds();
-                MeshSize { diagonal: (high - low).norm(), units: LengthUnit::Mm }
-            }
-        }
+        let ((low, high), units) = match shape {
+            StoredShape::Volume(volume) => (volume.bounds().into(), units),
+            StoredShape::Surface(surface) => (surface.bounds(), units),
+            StoredShape::Image(image) => (image.bounds(), LengthUnit::Mm),
+        };
+        MeshSize { diagonal: (high - low).norm(), units }
     }
 
     /// Refuses a size that no head has, unless any scale is permitted; a warning if it is unusual.
@@ -59,11 +55,4 @@ impl MeshSize {
             None => problem,
         })
     }
-}
-
-fn diagonal(points: &[Vector]) -> f64 {
-    let Some(&first) = points.first() else { return 0.0 };
-    let (low, high) =
-        points.iter().fold((first, first), |(low, high), x| (low.inf(x), high.sup(x)));
-    (high - low).norm()
 }

@@ -10,7 +10,7 @@ use mechanics::mesh::check::several_components;
 use mechanics::mesh::conformity::cells_do_not_match;
 use mechanics::mesh::connectivity::Faces;
 use mechanics::mesh::quality::quality;
-use mechanics::mesh::{Frame, IgnoredArray, Vector, VolumeMesh, Warning};
+use mechanics::mesh::{Frame, IgnoredArray, VolumeMesh, Warning};
 
 /// An image that is smaller, in mm along any axis, shows no head.
 const HEAD_MM: f64 = 80.0;
@@ -29,11 +29,11 @@ pub fn mesh_report(read: &ReadMesh) -> MeshReport {
             warnings.extend(several_components(volume, &faces));
             warnings.extend(cells_do_not_match(volume, &boundary));
             let triangles = boundary.iter().map(|face| face.nodes().len() - 2).sum();
-            (MeshKind::Volume, bounding_box(&volume.nodes), volume.nodes.len(), triangles)
+            (MeshKind::Volume, volume.bounds().into(), volume.nodes.len(), triangles)
         }
         Mesh::Surface(surface) => {
-            let points = &surface.points;
-            (MeshKind::Surface, bounding_box(points), points.len(), surface.triangles.len())
+            let (points, triangles) = (surface.points.len(), surface.triangles.len());
+            (MeshKind::Surface, surface.bounds(), points, triangles)
         }
         Mesh::Image(image) => (MeshKind::Image, image.bounds(), 0, 0),
     };
@@ -141,9 +141,4 @@ fn values(arrays: &BTreeMap<String, Vec<i64>>) -> BTreeMap<String, Vec<i64>> {
         values
     };
     arrays.iter().map(|(name, labels)| (name.clone(), distinct(labels))).collect()
-}
-
-fn bounding_box(points: &[Vector]) -> (Vector, Vector) {
-    let first = points.first().copied().unwrap_or_else(Vector::zeros);
-    points.iter().fold((first, first), |(low, high), point| (low.inf(point), high.sup(point)))
 }

@@ -62,7 +62,7 @@ impl Store {
     /// Opens the store. The data folder is that of this process alone.
     pub async fn connect(places: &StorageLocations) -> Result<Store, StoreError> {
         std::fs::create_dir_all(places.data.join("tmp"))?;
-        let lock = lock(&places.data)?;
+        let lock = lock(&places.data).await?;
         let shared = matches!(places.database, DatabaseLocation::Server { .. });
         // Before the database is opened, which may need the room.
         let spare = (!shared).then(|| Arc::new(Spare::new(&places.data)));
@@ -105,7 +105,7 @@ impl Store {
             DatabaseLocation::Server { .. } => None,
             DatabaseLocation::Embedded => {
                 std::fs::create_dir_all(&places.data)?;
-                let locked = lock(&places.data);
+                let locked = lock(&places.data).await;
                 Some(locked.map_err(|error| match error {
                     StoreError::InUse { folder } => StoreError::ServedAlready { folder },
                     other => other,
@@ -222,9 +222,19 @@ impl Store {
     }
 }
 
-fn lock(folder: &Path) -> Result<File, StoreError> {
+/// How long a start waits for the data folder: a process that was killed may hold it a little longer.
+const LOCK_WITHIN: Duration = Duration::from_secs(3);
+const LOCK_PAUSE: Duration = Duration::from_millis(50);
+
+async fn lock(folder: &Path) -> Result<File, StoreError> {
     let lock = File::create(folder.join("lock"))?;
-    lock.try_lock().map_err(|_| StoreError::InUse { folder: folder.to_owned() })?;
+    let until = Instant::now() + LOCK_WITHIN;
+    while lock.try_lock().is_err() {
+        if Instant::now() >= until {
+            return Err(StoreError::InUse { folder: folder.to_owned() });
+        }
+        tokio::time::sleep(LOCK_PAUSE).await;
+    }
     Ok(lock)
 }
 
@@ -240,6 +250,18 @@ fn address(places: &StorageLocations) -> Result<Address, StoreError> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[tokio::test(flavor = "multi_thread")]
+    async fn a_folder_that_a_process_is_about_to_leave_is_waited_for() {
+        let folder = tempfile::tempdir().unwrap();
+        let held = File::create(folder.path().join("lock")).unwrap();
+        held.lock().unwrap();
+        let mut opening = std::pin::pin!(Store::open(folder.path()));
+        let early = tokio::time::timeout(Duration::from_millis(1), &mut opening).await;
+        assert!(early.is_err(), "it neither serves the folder nor gives up");
+        drop(held);
+        opening.await.unwrap();
+    }
 
     #[tokio::test(flavor = "multi_thread")]
     async fn what_goes_on_again_and_again_ends_as_soon_as_the_store_is_closed() {

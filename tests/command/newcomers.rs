@@ -104,6 +104,35 @@ fn a_folder_holds_the_files_of_one_answer_and_the_plan_that_it_answers() {
 }
 
 #[test]
+fn a_file_that_no_command_wrote_is_not_replaced_and_a_folder_has_one_command_at_a_time() {
+    let folder = tempfile::tempdir().unwrap();
+    let case = block().join("case.json");
+    let refused = |out: &Path, words: &str| {
+        let asked = ["predict", "--case", path(&case), "--outputs", "skin.vtp", "--out", path(out)];
+        let done = facies(&asked);
+        let told = text(&done.stderr);
+        assert_eq!((done.status.code(), told.contains(words)), (Some(2), true), "{told}");
+    };
+    for name in ["case.json", "skin.vtp", "result.json"] {
+        let out = folder.path().join(name).with_extension("folder");
+        fs::create_dir(&out).unwrap();
+        fs::write(out.join(name), "{}").unwrap();
+        refused(&out, "give another folder");
+        assert_eq!(fs::read_dir(&out).unwrap().count(), 1, "{name}");
+        assert_eq!(fs::read(out.join(name)).unwrap(), b"{}");
+    }
+    let out = folder.path().join("held");
+    fs::create_dir(&out).unwrap();
+    let held = fs::File::open(&out).unwrap();
+    held.lock().unwrap();
+    refused(&out, "another command is writing");
+    drop(held);
+    let done = facies(&["face", "--out", path(&out)]);
+    assert_eq!(done.status.code(), Some(0), "{}", text(&done.stderr));
+    assert_eq!(facies(&["face", "--lips", "open", "--out", path(&out)]).status.code(), Some(0));
+}
+
+#[test]
 fn a_plan_that_was_found_without_a_server_is_one_that_predict_takes() {
     let folder = tempfile::tempdir().unwrap();
     let targets = json!({

@@ -196,10 +196,12 @@ impl BoundaryFace {
 }
 
 impl VolumeMesh {
-    /// The lowest and the highest corner of the box around all nodes.
+    /// The lowest and the highest corner of the box around the nodes of cells: others are no part of the tissue.
     pub fn bounds(&self) -> [Vector; 2] {
-        let first = self.nodes.first().copied().unwrap_or_default();
-        self.nodes.iter().fold([first, first], |[low, high], x| [low.inf(x), high.sup(x)])
+        let nodes = self.cells.iter().flat_map(|(_, nodes)| nodes);
+        let mut used = nodes.map(|&node| self.nodes[node as usize]);
+        let first = used.next().unwrap_or_default();
+        used.fold([first, first], |[low, high], x| [low.inf(&x), high.sup(&x)])
     }
 
     /// The corner positions of a cell, as many as its shape has nodes.

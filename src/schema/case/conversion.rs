@@ -230,7 +230,10 @@ impl CaseDocument {
             faults.check_name(&place, name, 128);
             match value.parse::<i64>() {
                 Ok(label) => {
-                    names.insert(label, name.trim().to_owned());
+                    if names.insert(label, name.trim().to_owned()).is_some() {
+                        let detail = format!("the value {label} is named more than once");
+                        faults.add(&place, ErrorCode::DuplicateName, detail);
+                    }
                 }
                 Err(_) => {
                     let detail = format!("`{value}` is not a value of an integer array");
@@ -320,13 +323,8 @@ impl CaseDocument {
 
 /// The centre of the bounding box of a mesh.
 pub fn centre(volume: &VolumeMesh) -> Vector {
-    bounding_box(volume).map_or_else(Vector::zeros, |(low, high)| (low + high) * 0.5)
-}
-
-fn bounding_box(volume: &VolumeMesh) -> Option<(Vector, Vector)> {
-    let first = *volume.nodes.first()?;
-    let nodes = volume.nodes.iter();
-    Some(nodes.fold((first, first), |(low, high), node| (low.inf(node), high.sup(node))))
+    let [low, high] = volume.bounds();
+    (low + high) * 0.5
 }
 
 /// The regions of a mesh by name. None if their array is missing: that is refused, with the existing arrays, when the scene
@@ -353,7 +351,7 @@ fn check_regions(materials: &[PlacedMaterials], known: &BTreeSet<String>, faults
 }
 
 fn unusual_size(volume: &VolumeMesh, units: LengthUnit) -> Option<Warning> {
-    let (low, high) = bounding_box(volume)?;
+    let [low, high] = volume.bounds();
     let diagonal = (high - low).norm();
     let (shortest, longest) = USUAL_DIAGONAL_MM;
     if (shortest..=longest).contains(&diagonal) {

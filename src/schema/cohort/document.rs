@@ -153,9 +153,14 @@ impl CohortDocument {
             faults.add(&place, ErrorCode::MissingField, "a cohort has at least one group");
         }
         let subjects = self.groups.values().next().map_or(0, Vec::len);
+        let mut names = BTreeSet::new();
         for (name, jobs) in &self.groups {
             let place = place.key(name);
             faults.check_name(&place, name, limits.name_characters as usize);
+            if !names.insert(name.trim()) {
+                let detail = format!("group `{}` is named more than once", name.trim());
+                faults.add(&place, ErrorCode::DuplicateName, detail);
+            }
             faults.check_length(&place, jobs.len(), limits.list_entries as usize);
             if jobs.is_empty() || jobs.len() != subjects {
                 let detail = format!(
@@ -206,7 +211,7 @@ impl CohortDocument {
         let mut names = BTreeSet::new();
         for (index, name) in self.subjects.iter().enumerate() {
             faults.check_name(&at.index(index), name, limits.name_characters as usize);
-            if !names.insert(name) {
+            if !names.insert(name.trim()) {
                 let detail = format!("subject `{name}` is named more than once");
                 faults.add(&at.index(index), ErrorCode::DuplicateName, detail);
             }

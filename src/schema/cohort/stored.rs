@@ -110,7 +110,7 @@ impl MemberDocument {
 
     /// Its name, or its number.
     pub fn called(&self, number: i64) -> String {
-        self.name.clone().unwrap_or_else(|| number.to_string())
+        self.name.as_deref().map_or_else(|| number.to_string(), |name| name.trim().to_owned())
     }
 
     fn check(&self, at: &Pointer, limits: &Limits, faults: &mut Faults) {
@@ -162,7 +162,7 @@ impl StoredCohortDocument {
             let own =
                 [("prediction", &member.prediction), ("actual", &member.actual), ("name", &name)];
             for ((key, value), seen) in own.into_iter().zip(&mut seen) {
-                if !seen.insert(value.clone()) {
+                if !seen.insert(value.trim().to_owned()) {
                     let detail =
                         format!("{value:?} is listed twice, and every member is another patient");
                     faults.add(&place.key(key), ErrorCode::DuplicateName, detail);

@@ -213,8 +213,8 @@ impl LearnDocument {
 
     /// The name of a case.
     pub fn name(&self, index: usize) -> String {
-        let named = self.cases.get(index).and_then(|case| case.name.clone());
-        named.unwrap_or_else(|| (index + 1).to_string())
+        let named = self.cases.get(index).and_then(|case| case.name.as_deref());
+        named.map_or_else(|| (index + 1).to_string(), |name| name.trim().to_owned())
     }
 
     /// The class of surgery of a case whose plan moves so many segments.

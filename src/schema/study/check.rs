@@ -192,7 +192,14 @@ impl StudyDocument {
                 faults.add(&at.key(region), ErrorCode::MissingField, detail);
             }
             for (name, list) in lists {
-                faults.check_length(&at.key(region).key(name), list.len(), MOST_SWEPT_VALUES);
+                let place = at.key(region).key(name);
+                faults.check_length(&place, list.len(), MOST_SWEPT_VALUES);
+                for (index, value) in list.iter().enumerate() {
+                    if list[..index].contains(value) {
+                        let detail = format!("{value} is swept twice");
+                        faults.add(&place.index(index), ErrorCode::DuplicateName, detail);
+                    }
+                }
             }
         }
     }

@@ -2,6 +2,7 @@
 
 use std::ops::RangeInclusive;
 
+use super::numbers::with_short_numbers;
 pub use super::pointer::{FieldError, Pointer};
 use super::problem::Problem;
 use crate::schema::code::ErrorCode;
@@ -42,7 +43,8 @@ pub struct Faults {
 
 impl Faults {
     pub fn add(&mut self, at: &Pointer, code: ErrorCode, detail: impl Into<String>) {
-        let error = FieldError { pointer: at.to_string(), code, detail: detail.into() };
+        let detail = with_short_numbers(&detail.into());
+        let error = FieldError { pointer: at.to_string(), code, detail };
         if self.is_told(&error) {
             return;
         }
@@ -64,6 +66,11 @@ impl Faults {
 
     pub fn is_empty(&self) -> bool {
         self.errors.is_empty()
+    }
+
+    /// Whether further faults are counted only.
+    pub fn is_full(&self) -> bool {
+        self.errors.len() == REPORTED_FAULTS
     }
 
     /// `Ok` without faults. A problem has the code of its faults if all share one

@@ -5,6 +5,7 @@ pub mod date;
 pub mod fault;
 pub mod limits;
 pub mod names;
+pub mod numbers;
 pub mod pointer;
 pub mod problem;
 pub mod reading;

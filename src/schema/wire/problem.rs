@@ -4,6 +4,7 @@ use serde::Serialize;
 use serde_json::{Map, Value};
 use utoipa::ToSchema;
 
+use super::numbers::with_short_numbers;
 use super::pointer::FieldError;
 use crate::schema::code::ErrorCode;
 
@@ -28,7 +29,8 @@ impl Problem {
     }
 
     pub fn new(code: ErrorCode, detail: impl Into<String>) -> Self {
-        Problem { code, detail: detail.into(), errors: Vec::new(), members: Map::new() }
+        let detail = with_short_numbers(&detail.into());
+        Problem { code, detail, errors: Vec::new(), members: Map::new() }
     }
 
     /// The same problem with one more member.
@@ -101,6 +103,15 @@ pub struct ProblemDocument {
 mod tests {
     use super::*;
     use crate::schema::{Faults, Pointer};
+
+    #[test]
+    fn a_number_with_hundreds_of_digits_is_told_in_short() {
+        let mut faults = Faults::default();
+        faults.check_range(&Pointer::root().key("finest_mm"), 1e300, 0.5..=50.0, "mm");
+        let told = faults.into_result().unwrap_err();
+        assert_eq!(told.detail, "/finest_mm: 1e300 mm is outside 0.5 to 50 mm");
+        assert_eq!(told.errors[0].detail, "1e300 mm is outside 0.5 to 50 mm");
+    }
 
     #[test]
     fn a_problem_that_is_moved_names_its_first_place_again_in_its_sentence() {

@@ -4,6 +4,7 @@
 //! repeated keys, nulls and anything a document does not know as `validation-failed` with JSON pointers.
 
 use std::cell::RefCell;
+use std::collections::BTreeSet;
 use std::fmt;
 use std::ops::Range;
 
@@ -50,10 +51,12 @@ pub fn parse_value(bytes: &[u8], limits: &Limits) -> Result<Value, Problem> {
 }
 
 /// A document of a known type from JSON accepted by `parse_value`.
-/// Every unknown field is reported, and the first of other type errors.
+/// What is unknown, missing or of another type is reported and left out, so that what follows is found too; of an array the first
+/// such entry.
 pub fn from_value<T: DeserializeOwned>(mut value: Value) -> Result<T, Problem> {
     let mut faults = Faults::default();
     remove_nulls(&mut value, &Pointer::root(), &mut faults);
+    let mut left_out = BTreeSet::new();
     loop {
         let mistake = match reading::read::<T>(&value) {
             Ok(document) => return faults.into_result().map(|()| document),
@@ -64,13 +67,32 @@ pub fn from_value<T: DeserializeOwned>(mut value: Value) -> Result<T, Problem> {
             Some(name) => parent.key(name),
             None => parent.clone(),
         };
-        faults.add(&at, mistake.code, mistake.detail.clone());
-        let object = value.pointer_mut(parent.as_str()).and_then(Value::as_object_mut);
-        let unknown = mistake.member.filter(|_| mistake.code == ErrorCode::UnknownField);
-        let removed = object.zip(unknown).and_then(|(object, name)| object.remove(&name));
-        if removed.is_none() {
-            faults.into_result()?;
-            return Err(Problem::new(ErrorCode::ValidationFailed, mistake.detail));
+        let is_missing = mistake.code == ErrorCode::MissingField;
+        if !is_missing || !left_out.contains(at.as_str()) {
+            faults.add(&at, mistake.code, mistake.detail.clone());
+        }
+        let wrong = if is_missing { parent } else { at };
+        let goes_on = mistake.code == ErrorCode::UnknownField || !faults.is_full();
+        match remove(&mut value, wrong.as_str()).filter(|_| goes_on) {
+            Some(place) => left_out.insert(place),
+            None => {
+                faults.into_result()?;
+                return Err(Problem::new(ErrorCode::ValidationFailed, mistake.detail));
+            }
+        };
+    }
+}
+
+/// Removes the value at a place, or the array that it is in, whose other entries keep no place without it. What was removed.
+fn remove(value: &mut Value, mut at: &str) -> Option<String> {
+    loop {
+        let (parent, name) = at.rsplit_once('/')?;
+        match value.pointer_mut(parent)? {
+            Value::Object(members) => {
+                members.remove(&name.replace("~1", "/").replace("~0", "~"))?;
+                return Some(at.to_owned());
+            }
+            _ => at = parent,
         }
     }
 }

@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 use utoipa::ToSchema;
 
+use super::numbers::with_short_numbers;
 use mechanics::mesh::Warning;
 
 /// A stable code, a sentence, and the numbers behind it under their own names.
@@ -21,7 +22,7 @@ impl From<&Warning> for WarningDocument {
         let finite = warning.numbers.iter().filter(|(_, value)| value.is_finite());
         WarningDocument {
             code: warning.code.to_owned(),
-            detail: warning.detail.clone(),
+            detail: with_short_numbers(&warning.detail),
             numbers: finite.map(|&(name, value)| (name.to_owned(), value.into())).collect(),
         }
     }

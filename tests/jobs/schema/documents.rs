@@ -3,17 +3,21 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use facies::jobs::{MeshSize, StoredShape};
 use facies::schema::case::conversion::ConvertedCase;
 use facies::schema::case::document::{CaseMeshes, NamedMesh};
+use facies::schema::cohort::stored::StoredCohortDocument;
 use facies::schema::hashes;
 use facies::schema::job_document::{JobDocument, JobKind};
 use facies::schema::plan::document::PlanContext;
 use facies::schema::wire::{canonical, strict};
 use facies::schema::{
-    CaseDocument, Faults, Limits, PlanDocument, Pointer, PredictDocument, Problem,
+    CaseDocument, CohortDocument, Faults, Limits, PlanDocument, Pointer, PredictDocument, Problem,
+    StudyDocument,
 };
 use mechanics::mesh::{CellShape, Frame, Vector, VolumeMesh};
 use mechanics::prediction::{Method, Plan};
+use serde_json::json;
 
 pub fn parse<T: serde::de::DeserializeOwned>(text: &str) -> Result<T, Problem> {
     strict::parse(text.as_bytes(), &Limits::default())
@@ -166,6 +170,54 @@ fn lengths_become_millimetres() {
         assert_eq!(case.volume.nodes[1].x, 100.0 * factor);
         assert_eq!(warnings.contains(&"units-suspect"), units != "mm", "{units}");
     }
+}
+
+#[test]
+fn the_size_of_a_mesh_is_that_of_its_cells() {
+    let mut meshes = tetrahedron(None);
+    Arc::make_mut(&mut meshes.volume.mesh).nodes.push(Vector::x() * 9000.0);
+    assert_eq!(meshes.volume.mesh.bounds()[1], Vector::repeat(100.0));
+    let document: CaseDocument = parse(r#"{"units":"mm","volume":"v"}"#).expect("accepted");
+    let size = MeshSize::of(&StoredShape::Volume(meshes.volume.mesh), document.units);
+    assert!(size.check(false).is_ok_and(|warning| warning.is_none()));
+}
+
+#[test]
+fn a_value_of_a_region_is_named_once() {
+    let text = r#"{"units":"mm","volume":"v","regions":{"array":"band","names":{"1":"stiff","01":"soft"}}}"#;
+    let (code, errors) = refused(case(text));
+    assert_eq!((code.as_str(), errors.len()), ("validation-failed", 1));
+    assert_eq!(errors[0].0, "duplicate-name");
+    assert!(errors[0].1.starts_with("/case/regions/names/"), "{errors:?}");
+}
+
+#[test]
+fn a_value_is_swept_once() {
+    let text = r#"{"kind":"study","scenes":["slab"],"plans":["patch 4 mm"],"sweep":{"*":{"young_modulus_kpa":[15,30,15.0]}}}"#;
+    let document: StudyDocument = parse(text).expect("accepted");
+    let mut faults = Faults::default();
+    document.check(&Limits::default(), &mut faults);
+    let wanted = one("validation-failed", "duplicate-name", "/spec/sweep/*/young_modulus_kpa/2");
+    assert_eq!(refused(faults.into_result()), wanted);
+}
+
+#[test]
+fn names_of_patients_differ_in_more_than_spaces_around_them() {
+    let member = |name: &str| json!({"prediction": name, "actual": name, "name": name});
+    let members = ["A", "B", " A"].map(member);
+    let consent = json!({"statement": "form 4", "uses": ["learn"]});
+    let cohort = json!({"name": "blocks", "consent": consent, "members": members});
+    let stored: StoredCohortDocument = parse(&cohort.to_string()).expect("accepted");
+    let mut faults = Faults::default();
+    stored.check(&Limits::default(), &mut faults);
+    let (_, errors) = refused(faults.into_result());
+    assert!(errors.contains(&("duplicate-name".to_owned(), "/members/2/name".to_owned())));
+    let groups = json!({"kind": "cohort", "groups": {"dvs": ["a"], "dvs ": ["b"]}});
+    let document: CohortDocument = parse(&groups.to_string()).expect("accepted");
+    let mut faults = Faults::default();
+    document.check(&Limits::default(), &mut faults);
+    let (_, errors) = refused(faults.into_result());
+    assert_eq!(errors, [("duplicate-name".to_owned(), "/spec/groups/dvs ".to_owned())]);
 }
 
 #[test]

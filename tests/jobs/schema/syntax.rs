@@ -59,6 +59,22 @@ fn every_misspelt_field_is_named() {
 }
 
 #[test]
+fn mistakes_of_every_kind_are_named_in_one_answer() {
+    let text =
+        r#"{"segments":[{"name":5,"translation_mm":"far"}],"loads":{},"frame":"XX","speed":1}"#;
+    let (_, mut errors) = refused(plan(text));
+    errors.sort();
+    let wanted = [
+        ("unknown-field", "/speed"),
+        ("unknown-word", "/frame"),
+        ("wrong-type", "/loads"),
+        ("wrong-type", "/segments/0/name"),
+        ("wrong-type", "/segments/0/translation_mm"),
+    ];
+    assert_eq!(errors, wanted.map(|(code, place)| (code.to_owned(), place.to_owned())));
+}
+
+#[test]
 fn a_repeated_key_is_refused_in_objects_and_in_maps() {
     let in_object = r#"{"segments":[{"name":"jaw","name":"chin","translation_mm":[0,0,0]}]}"#;
     let wanted = one("validation-failed", "duplicate-key", "/segments/0/name");

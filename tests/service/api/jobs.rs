@@ -251,7 +251,8 @@ async fn jobs_are_listed_in_pages_newest_first_and_by_what_they_are() {
         "stauts=failed",
     ] {
         let answer = ask(server.get(&format!("/v1/jobs?{query}"))).await;
-        answer.problem_of(query, 400, "invalid-parameter");
+        let problem = answer.problem_of(query, 400, "invalid-parameter");
+        assert_eq!(problem["parameter"], query.split('=').next().unwrap(), "{problem}");
     }
 }
 

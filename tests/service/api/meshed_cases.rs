@@ -220,6 +220,22 @@ async fn a_meshing_that_fails_stands_on_its_case_and_fails_what_waited_with_its_
 }
 
 #[tokio::test]
+async fn a_meshing_that_the_storage_failed_is_tried_again_when_a_job_is_posted() {
+    let server = faulty("publish:before:1:error:attempt=1:tag=meshing", &["--attempts", "1"]);
+    let case = post(&server, &document()).await.expect(StatusCode::CREATED);
+    let failed = settled(&server, &id(&case)).await.json();
+    assert_eq!(
+        (&failed["state"], &failed["meshing"]["error"]["type"]),
+        (&json!("failed"), &json!("storage"))
+    );
+    let waits = server.job(&plan_on(&case)).await;
+    assert!(waits.status.is_success(), "{}", waits.status);
+    assert_eq!(server.ended(&id(&waits.json())).await["status"], "successful");
+    let case = settled(&server, &id(&case)).await.json();
+    assert_eq!(case["state"], "ready", "{case}");
+}
+
+#[tokio::test]
 async fn a_case_to_be_meshed_that_makes_no_sense_is_refused_before_it_is_kept() {
     let server = Server::start();
     let refused = async |change: &dyn Fn(&mut Value), code: &str, at: &str| {
