@@ -71,7 +71,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn an_energy_of_volume_agrees_with_the_square_of_the_logarithm_and_its_bounded_part_stays_bounded() {
+    fn an_energy_of_volume_is_that_of_ln_j_near_rest_and_its_bounded_part_stays_bounded() {
         let (both, log) = (
             VolumeEnergy { logarithmic: 7.0, bounded: 4.0 },
             VolumeEnergy { logarithmic: 11.0, bounded: 0.0 },

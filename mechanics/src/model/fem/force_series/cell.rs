@@ -213,7 +213,11 @@ impl Cell {
     }
 
     /// tau2 of a pair of states at each point in kPa: of the mean the second order of K J ln(Jm) / Jm.
-    fn second_tensions(&self, strained: &CellStrains, pair: [usize; 2]) -> ([f64; MAX_NODES], Volumes) {
+    fn second_tensions(
+        &self,
+        strained: &CellStrains,
+        pair: [usize; 2],
+    ) -> ([f64; MAX_NODES], Volumes) {
         let [a, b] = pair.map(|state| strained.of(state));
         let second = self.volumes(|q| {
             let (g, h) = (&a[q].gradient, &b[q].gradient);
@@ -229,7 +233,11 @@ impl Cell {
     }
 
     /// tau3 of the first state at each point in kPa.
-    fn third_tensions(&self, strained: &CellStrains, second: &Volumes) -> ([f64; MAX_NODES], Volumes) {
+    fn third_tensions(
+        &self,
+        strained: &CellStrains,
+        second: &Volumes,
+    ) -> ([f64; MAX_NODES], Volumes) {
         let a = strained.of(0);
         let third =
             self.volumes(|q| [third_log_volume(&a[q].gradient), a[q].gradient.determinant()]);
