@@ -28,10 +28,12 @@ export function uploadForm(app: App): HTMLElement {
   const next = make("div");
   const files = make("input", { type: "file", multiple: true, hidden: true, data: { files: "" } });
   const take = (list: FileList | null | undefined) => {
-    if (list === null || list === undefined || list.length === 0) return;
+    // Hidden files of a folder, such as the record of what was written into it, are none of a case.
+    const chosen = [...(list ?? [])].filter(({ name }) => !name.startsWith("."));
+    if (chosen.length === 0) return;
     said.replaceChildren();
     next.replaceChildren();
-    taken(app, [...list], said, next).catch((error: unknown) => said.replaceChildren(refusal(error, words)));
+    taken(app, chosen, said, next).catch((error: unknown) => said.replaceChildren(refusal(error, words)));
   };
   files.addEventListener("change", () => { take(files.files); files.value = ""; });
   const drop = make("section", { className: "card drop" }, make("h2", {}, words.addCase), make("p", {}, words.dropHere),
