@@ -55,6 +55,24 @@ fn free_tissue_grows_in_shape_without_stress_in_every_element() {
     }
 }
 
+/// At rest without growth such cells are pressed by hundreds of shear moduli.
+#[test]
+fn free_tissue_that_hardly_changes_its_volume_grows_in_few_steps() {
+    for (shape, element) in EVERY.into_iter().filter(|(_, own)| *own != ElementChoice::Plain) {
+        for (nu, change) in [(0.4999, 0.05), (0.4999, -0.05), (0.499, 0.3)] {
+            let (case, plan) = free(distorted(shape), material(15.0, nu));
+            let plan = Plan { growth: growing("tissue", change), ..plan };
+            let settings = Settings { relative_residual: 1e-3, ..tight(element) };
+            let answer = solve(&case, &plan, &settings);
+            let strain = linear_strain(change);
+            let error = largest_error(&case.volume, &answer.displacement, |x| x * strain);
+            let steps = answer.solver.iterations;
+            assert!(error < 1e-5, "{shape:?} {nu} {change}: {error:e} mm in {steps} steps");
+            assert!(steps <= 80, "{shape:?} {nu} {change}: {steps} steps");
+        }
+    }
+}
+
 /// Far from the origin coordinates keep fewer digits of a deformation.
 #[test]
 fn tissue_that_exerts_nothing_rests_wherever_it_lies() {

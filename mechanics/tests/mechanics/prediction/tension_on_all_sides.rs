@@ -39,6 +39,8 @@ fn hexahedra_and_wedges_that_are_pulled_on_all_sides_stay_even() {
         for (nu, by) in [(0.45, 0.2), (0.49, 0.05), (0.49, 0.3), (0.499, 0.02), (0.499, 0.2)] {
             let (found, error) = pulled(shape, nu, by);
             assert!(error < 1e-5, "{shape:?}, nu {nu}, {by}: {error} mm, {:?}", found.warnings);
+            let newton = found.solver.newton.as_ref().unwrap();
+            assert_ne!(newton.is_stable, Some(false), "{shape:?}, nu {nu}, {by}");
         }
     }
 }

@@ -28,10 +28,12 @@ impl Balance {
         Balance { rounding, at_first: None, has_moved: false, unbalanced: 0.0, residual: 0.0 }
     }
 
-    /// Takes up the norm in mN of what the whole movement would exert on nodes that stay, in the first step alone.
-    pub fn moved(&mut self, load: f64) {
+    /// Takes up what the whole movement would exert on nodes that stay, by the norm in mN of what the step that a part of it makes is to
+    /// balance, in the first step alone. What was out of balance before is no part of that.
+    pub fn moved(&mut self, load: f64, part: f64) {
         if !self.has_moved {
-            self.at_first = self.at_first.map(|at_first| at_first.max(load));
+            let exerted = (load - self.unbalanced).max(0.0) / part;
+            self.at_first = self.at_first.map(|at_first| at_first.max(exerted));
             self.has_moved = true;
         }
     }

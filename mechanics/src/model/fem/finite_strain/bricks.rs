@@ -1,24 +1,27 @@
 //! Hexahedra and wedges at positions, with one volume change for each cell or one for each of its points, and tetrahedra with nodes
 //! in the middle of their edges, with one for each of four points.
+//!
+//! On the way a cell has a mean volume change t of its own beside the Jm of its positions (the three fields of Simo, Taylor, Pister
+//! 1985, without unknowns): p = U'(t) in its tangent, p + U''(t) (Jm - t) in the forces of a step, and t goes to what the step
+//! makes of Jm at first order. In the end t = Jm. With Jm alone a cell whose step turns or grows it is pressed by the bulk modulus at
+//! once, and the steps of Newton's method wander.
 
 use std::sync::Arc;
 
 use nalgebra::Matrix3;
 use rayon::prelude::*;
 
+use super::brick_at_rest::{Brick, PointAtRest};
 use super::elements::{CellBulkModulus, rounded};
 use super::fibres::FibreField;
 use super::problem::FiniteStrain;
 use super::step_length::Volume;
-use crate::element::tetrahedron10;
 use crate::material::hyperelastic::point::{Corner, MeanShare, Point};
 use crate::material::hyperelastic::{Law, OfVolume, VolumeEnergy};
-use crate::mesh::{CellShape, Vector, VolumeMesh};
+use crate::mesh::{CellShape, Vector};
 use crate::model::dofs::DofMap;
-use crate::model::fem::cell_stiffness::tetrahedron;
-use crate::model::fem::inner_stress::{Grown, InnerStress};
+use crate::model::fem::inner_stress::InnerStress;
 use crate::model::problem::InvertedCell;
-use crate::model::reference_cell;
 use crate::progress::Progress;
 use crate::solver::half_matrix::HalfMatrix;
 use crate::solver::{Block, SolverError};
@@ -26,12 +29,8 @@ use crate::solver::{Block, SolverError};
 /// Cells that one thread takes at a time.
 const CHUNK: usize = 128;
 
-/// A point of a cell at rest, as it has grown.
-pub(super) struct PointAtRest {
-    pub gradients: Vec<Vector>,
-    /// In mm^3.
-    pub volume: f64,
-}
+/// The mean volume change that a cell has of its own is at most so many times that of its positions, and not less than that part.
+const MOST_APART: f64 = 2.0;
 
 /// A brick at positions, point by point.
 pub(super) struct BrickAt<'a> {
@@ -75,17 +74,6 @@ impl BrickAt<'_> {
     }
 }
 
-/// A hexahedron or wedge at rest.
-struct Brick {
-    rows: Vec<u32>,
-    points: Vec<PointAtRest>,
-    volume: f64,
-    law: u16,
-    cell: usize,
-    /// The energy of the mean of J; none where volume is taken at each point.
-    of_mean: Option<VolumeEnergy>,
-}
-
 /// The hexahedra and wedges of a mesh.
 pub(super) struct Bricks<'a> {
     laws: &'a [Law],
@@ -100,7 +88,26 @@ pub(super) struct Bricks<'a> {
 /// A brick at positions.
 struct DeformedBrick {
     points: Vec<Point>,
-    mean: Option<OfVolume>,
+    mean: Option<DeformedMean>,
+}
+
+/// What acts on the mean of J.
+#[derive(Clone, Copy)]
+struct DeformedMean {
+    /// t of the cell, and U there.
+    own: f64,
+    at_own: OfVolume,
+    /// Jm of its positions, and U'.
+    volume: f64,
+    pressure: f64,
+}
+
+impl DeformedMean {
+    /// What the pressure of Jm, and that of a step, are more than U'(t), in kPa.
+    fn more(&self) -> [f64; 2] {
+        let OfVolume { first, second, .. } = self.at_own;
+        [self.pressure - first, second * (self.volume - self.own)]
+    }
 }
 
 pub(super) struct DeformedBricks<'a> {
@@ -139,13 +146,14 @@ impl<'a> Bricks<'a> {
         Ok(Bricks { laws, fibres, inner, bricks, own_elements, of_cell })
     }
 
-    pub fn is_empty(&self) -> bool {
-        self.bricks.is_empty()
-    }
-
     /// Cells of the mesh.
     pub fn cells(&self) -> impl Iterator<Item = usize> {
         self.bricks.iter().map(|brick| brick.cell)
+    }
+
+    /// Whether all take volume as a mean.
+    pub fn all_share(&self) -> bool {
+        self.bricks.iter().all(|brick| brick.of_mean.is_some())
     }
 
     /// Those that take volume as a mean.
@@ -168,7 +176,8 @@ impl<'a> Bricks<'a> {
         })
     }
 
-    fn at_brick(&self, brick: &Brick, x: &[Vector]) -> DeformedBrick {
+    /// With the mean volume change that the cell has of its own, or that of the positions.
+    fn at_brick(&self, brick: &Brick, x: &[Vector], own: Option<f64>) -> DeformedBrick {
         let law = &self.laws[usize::from(brick.law)];
         let of_cell = brick.positions(x);
         let fibres = self.fibres.along(brick.law, brick.cell);
@@ -178,20 +187,41 @@ impl<'a> Bricks<'a> {
         let Some(energy) = brick.of_mean else { return DeformedBrick { points, mean: None } };
         let pairs = brick.points.iter().zip(&points);
         let volume: f64 = pairs.map(|(at, point)| at.volume * point.volume()).sum();
-        let mean = energy.at(volume / brick.volume);
-        let by = MeanShare { pressure: mean.first, energy };
+        let volume = volume / brick.volume;
+        let own = own.unwrap_or(volume);
+        let (at_own, pressure) = (energy.at(own), energy.at(volume).first);
+        let by = MeanShare { pressure: at_own.first, energy };
         let points = points.into_iter().map(|point| point.of_mean(by)).collect();
-        DeformedBrick { points, mean: Some(mean) }
+        DeformedBrick { points, mean: Some(DeformedMean { own, at_own, volume, pressure }) }
     }
 
-    pub fn at(&self, x: &[Vector]) -> DeformedBricks<'_> {
-        let deformed = self.bricks.par_iter().map(|brick| self.at_brick(brick, x)).collect();
+    /// `means` are the mean volume changes that cells have of their own; those of the positions where there are none.
+    pub fn at(&self, x: &[Vector], means: &[f64]) -> DeformedBricks<'_> {
+        let deformed = |(number, brick)| self.at_brick(brick, x, means.get(number).copied());
+        let deformed = self.bricks.par_iter().enumerate().map(deformed).collect();
         DeformedBricks { bricks: self, deformed }
+    }
+
+    /// The mean volume changes of positions; empty where no cell takes volume as a mean.
+    pub fn means_at(&self, x: &[Vector]) -> Vec<f64> {
+        if self.means_at_rest().is_empty() {
+            return Vec::new();
+        }
+        let deformed = self.at(x, &[]).deformed.into_iter();
+        deformed.map(|brick| brick.mean.map_or(1.0, |mean| mean.volume)).collect()
+    }
+
+    /// The mean volume changes of cells at rest; empty where none takes volume as a mean.
+    pub fn means_at_rest(&self) -> Vec<f64> {
+        match self.bricks.iter().any(|brick| brick.of_mean.is_some()) {
+            true => vec![1.0; self.bricks.len()],
+            false => Vec::new(),
+        }
     }
 
     /// In mN mm.
     pub fn energy(&self, x: &[Vector]) -> f64 {
-        let energy = |brick: &Brick| self.at_brick(brick, x).of(brick).energy(Point::energy);
+        let energy = |brick: &Brick| self.at_brick(brick, x, None).of(brick).energy(Point::energy);
         let sums: Vec<f64> =
             self.bricks.par_chunks(CHUNK).map(|bricks| bricks.iter().map(energy).sum()).collect();
         sums.iter().sum()
@@ -209,86 +239,58 @@ impl<'a> Bricks<'a> {
     }
 }
 
-impl Brick {
-    fn new(
-        mesh: &VolumeMesh,
-        cell: usize,
-        rows: Vec<u32>,
-        law: u16,
-    ) -> Result<Brick, InvertedCell> {
-        let points = match mesh.cells.shape(cell) {
-            CellShape::Tet4 => quadratic_points(mesh, cell)?,
-            CellShape::Hex8 | CellShape::Wedge6 => points(mesh, cell)?,
-        };
-        let volume = points.iter().map(|point| point.volume).sum();
-        Ok(Brick { rows, points, volume, law, cell, of_mean: None })
-    }
-
-    fn grown(mut self, grown: Grown) -> Brick {
-        for point in &mut self.points {
-            point.gradients.iter_mut().for_each(|g| *g = grown.gradient(g));
-            point.volume *= grown.volume;
-        }
-        self.volume *= grown.volume;
-        self
-    }
-
-    fn positions(&self, x: &[Vector]) -> Vec<Vector> {
-        self.rows.iter().map(|&row| x[row as usize]).collect()
-    }
-}
-
-fn points(mesh: &VolumeMesh, cell: usize) -> Result<Vec<PointAtRest>, InvertedCell> {
-    let corners: Vec<Vector> = mesh.corners(cell).collect();
-    let point = |point: &crate::element::ReferencePoint| {
-        let at = point.at(&corners).ok_or(InvertedCell { cell })?;
-        Ok(PointAtRest { gradients: at.gradients[..corners.len()].to_vec(), volume: at.volume })
-    };
-    reference_cell(mesh.cells.shape(cell)).points.iter().map(point).collect()
-}
-
-/// Those of a tetrahedron with ten nodes and straight edges.
-fn quadratic_points(mesh: &VolumeMesh, cell: usize) -> Result<Vec<PointAtRest>, InvertedCell> {
-    let (volume, of_barycentric) = tetrahedron(mesh, cell)?;
-    let point = |point: &[f64; 4]| PointAtRest {
-        gradients: tetrahedron10::gradients(point, &of_barycentric).to_vec(),
-        volume: 0.25 * volume,
-    };
-    Ok(tetrahedron10::points().iter().map(point).collect())
-}
-
 impl DeformedBrick {
     fn of<'a>(&'a self, at_rest: &'a Brick) -> BrickAt<'a> {
         let DeformedBrick { points, mean } = self;
         let bulk_modulus = at_rest.of_mean.map_or(0.0, VolumeEnergy::bulk_modulus);
-        BrickAt { at_rest: &at_rest.points, points, law: at_rest.law, mean: *mean, bulk_modulus }
-    }
-}
-
-impl PointAtRest {
-    /// F for the positions of the corners.
-    fn gradient(&self, corners: &[Vector]) -> Matrix3<f64> {
-        corners.iter().zip(&self.gradients).map(|(x, g)| x * g.transpose()).sum()
+        let mean = mean.map(|mean| mean.at_own);
+        BrickAt { at_rest: &at_rest.points, points, law: at_rest.law, mean, bulk_modulus }
     }
 }
 
 impl DeformedBricks<'_> {
-    /// Adds internal forces in mN.
-    pub fn add_forces(&self, forces: &mut [Vector]) {
+    /// Adds internal forces in mN to those of the positions, and to those of a step.
+    pub fn add_forces(&self, forces: &mut [Vector], of_step: &mut [Vector]) {
         let pairs = self.bricks.bricks.par_iter().zip(&self.deformed);
-        let of_bricks: Vec<Vec<Vector>> = pairs
+        let of_bricks: Vec<Vec<[Vector; 2]>> = pairs
             .map(|(brick, deformed)| {
-                let mut forces = vec![Vector::zeros(); brick.rows.len()];
+                let more = deformed.mean.map_or([0.0; 2], |mean| mean.more());
+                let mut forces = vec![[Vector::zeros(); 2]; brick.rows.len()];
                 for (at, point) in brick.points.iter().zip(&deformed.points) {
                     let stress = point.stress() * at.volume;
-                    forces.iter_mut().zip(&at.gradients).for_each(|(f, g)| *f += stress * g);
+                    for (force, g) in forces.iter_mut().zip(&at.gradients) {
+                        let (own, of_volume) =
+                            (stress * g, point.corner(g).of_volume() * at.volume);
+                        force.iter_mut().zip(more).for_each(|(f, m)| *f += own + of_volume * m);
+                    }
                 }
                 forces
             })
             .collect();
         for (brick, own) in self.bricks.bricks.iter().zip(of_bricks) {
-            brick.rows.iter().zip(own).for_each(|(&row, force)| forces[row as usize] += force);
+            for (&row, [force, in_step]) in brick.rows.iter().zip(own) {
+                forces[row as usize] += force;
+                of_step.get_mut(row as usize).into_iter().for_each(|sum| *sum += in_step);
+            }
         }
+    }
+
+    /// Moves the mean volume changes that cells have of their own by a part of a step.
+    pub fn advance(&self, step: &[Vector], taken: f64, means: &mut [f64]) {
+        let bricks = self.bricks.bricks.par_iter().zip(&self.deformed);
+        bricks.zip(means).for_each(|((brick, deformed), own)| {
+            let Some(mean) = &deformed.mean else { return };
+            let step = brick.positions(step);
+            let pairs = brick.points.iter().zip(&deformed.points);
+            let grown = pairs.map(|(at, point)| {
+                let corners = step.iter().zip(&at.gradients);
+                let along: f64 = corners.map(|(d, g)| point.corner(g).of_volume().dot(d)).sum();
+                along * at.volume
+            });
+            let ahead = mean.volume + grown.sum::<f64>() / brick.volume;
+            let next = *own + taken * (ahead - *own);
+            *own = next.clamp(mean.volume / MOST_APART, mean.volume * MOST_APART);
+        });
     }
 
     /// Adds the derivatives of the internal forces, in kPa mm.
@@ -317,21 +319,21 @@ impl DeformedBricks<'_> {
         let (at_rest, deformed) = (&self.bricks.bricks[brick], &self.deformed[brick]);
         let count = at_rest.rows.len();
         let mut sums = vec![Matrix3::zeros(); count * count];
-        let mut mean = vec![Vector::zeros(); count];
+        let mut of_volume = vec![Vector::zeros(); count];
         for (at, point) in at_rest.points.iter().zip(&deformed.points) {
             let corners: Vec<Corner> = at.gradients.iter().map(|g| point.corner(g)).collect();
             for (entry, sum) in sums.iter_mut().enumerate() {
                 let (a, b) = (&corners[entry / count], &corners[entry % count]);
                 *sum += point.block(a, b) * at.volume;
             }
-            for (mean, corner) in mean.iter_mut().zip(&corners) {
-                *mean += corner.of_volume() * at.volume;
+            for (sum, corner) in of_volume.iter_mut().zip(&corners) {
+                *sum += corner.of_volume() * at.volume;
             }
         }
-        if let Some(of_mean) = &deformed.mean {
-            let factor = of_mean.second / at_rest.volume;
+        if let Some(mean) = &deformed.mean {
+            let factor = mean.at_own.second / at_rest.volume;
             for (entry, sum) in sums.iter_mut().enumerate() {
-                *sum += mean[entry / count] * mean[entry % count].transpose() * factor;
+                *sum += of_volume[entry / count] * of_volume[entry % count].transpose() * factor;
             }
         }
         sums.iter().map(|m| std::array::from_fn(|i| std::array::from_fn(|j| m[(i, j)]))).collect()

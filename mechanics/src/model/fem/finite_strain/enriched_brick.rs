@@ -5,7 +5,8 @@
 
 use nalgebra::Matrix3;
 
-use super::bricks::{BrickAt, PointAtRest};
+use super::brick_at_rest::PointAtRest;
+use super::bricks::BrickAt;
 use super::edge_block::{LEAST, stiff_enough};
 use crate::element::{MAX_NODES, ReferencePoint};
 use crate::material::hyperelastic::point::{Corner, Point};

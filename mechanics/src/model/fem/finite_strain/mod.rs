@@ -6,6 +6,7 @@
 
 mod another_rest;
 mod balance;
+mod brick_at_rest;
 mod bricks;
 mod direction;
 mod edge_block;
@@ -253,6 +254,7 @@ impl<'a> FiniteStrain<'a> {
             share: 1.0,
             kept: CellBulkModulus::USUAL,
             out_of_balance: OUT_OF_BALANCE,
+            by_energy: false,
             most_steps: MOST_STEPS,
             tolerance: self.tolerance,
             progress,

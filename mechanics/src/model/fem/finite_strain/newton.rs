@@ -1,8 +1,8 @@
 //! Newton's method that moves the bones and brings the tissue to rest in the same steps (docs/methods.md#newton).
 //!
 //! At x, with the share s of the movement made: K d_f = -f_f - K_fb d_b with d_b on the rest of the way, then x <- x + t d,
-//! s <- s + t ds, t the longest step in which every cell keeps a share of its volume; pressures p <- p + t d_p alike. Once
-//! s = 1 the energy has to fall too, where no pressures make of its least a saddle.
+//! s <- s + t ds, t the longest step in which every cell keeps a share of its volume; pressures p <- p + t d_p alike, and mean volume
+//! changes of hexahedra and wedges (`bricks`). Once s = 1 the energy has to fall too, where neither makes of its least a saddle.
 
 use super::balance::Balance;
 use super::direction::{Direction, Directions, Remaining};
@@ -46,6 +46,8 @@ pub(super) struct Newton<'a, 'b> {
     directions: Directions,
     x: Vec<Vector>,
     p: Vec<f64>,
+    /// The mean volume change that each hexahedron and wedge has of its own; empty where none takes volume as a mean.
+    means: Vec<f64>,
     made: f64,
     /// How much of the movement the next step tries.
     ahead: f64,
@@ -76,6 +78,7 @@ impl<'a, 'b> Newton<'a, 'b> {
             question,
             x: start.x,
             p: pressures.map_or_else(Vec::new, |p| p.of_log_volumes(&start.log_volumes)),
+            means: if question.by_energy { Vec::new() } else { tissue.means_from(start.means) },
             directions,
             made: start.made,
             ahead: start.touching.as_ref().map_or(1.0, |touching| touching.most_ahead),
@@ -98,7 +101,7 @@ impl<'a, 'b> Newton<'a, 'b> {
         loop {
             let tissue = self.tissue;
             let pressures = self.directions.pressures.as_ref();
-            let deformed = tissue.at(&self.x, &self.p, pressures);
+            let deformed = tissue.on_the_way(&self.x, &self.p, pressures, &self.means);
             let contact_rests = self.look();
             let pressures = self.directions.pressures.as_ref();
             self.balance.measure(&deformed, &self.acting(), constrained, pressures);
@@ -108,13 +111,7 @@ impl<'a, 'b> Newton<'a, 'b> {
             tell(progress, self.history.len(), residual, wanted)?;
             let rests = self.balance.rest() <= wanted;
             if self.made >= share && rests && contact_rests {
-                let report = self.report(&deformed)?;
-                let (positions, pressures, forces) = (self.x, self.p, deformed.forces);
-                let made = self.made;
-                let (directions, touching) = (self.directions, self.touching);
-                let rest =
-                    Rest { positions, pressures, made, forces, report, directions, touching };
-                return Ok(Ending::Rest(Box::new(rest)));
+                return Ok(Ending::Rest(Box::new(self.rest()?)));
             }
             let is_near = self.made >= share && residual <= NEAR;
             if until.near && is_near {
@@ -134,6 +131,15 @@ impl<'a, 'b> Newton<'a, 'b> {
         }
     }
 
+    fn rest(mut self) -> Result<Rest<'a>, ModelError> {
+        let tissue = self.tissue;
+        let deformed = tissue.at(&self.x, &self.p, self.directions.pressures.as_ref());
+        let report = self.report(&deformed)?;
+        let forces = deformed.forces;
+        let Newton { x: positions, p: pressures, means, made, directions, touching, .. } = self;
+        Ok(Rest { positions, pressures, means, made, forces, report, directions, touching })
+    }
+
     /// The state reached, which is measured again where it is gone on from.
     fn reached(mut self) -> Start<'a> {
         self.history.pop();
@@ -141,8 +147,8 @@ impl<'a, 'b> Newton<'a, 'b> {
         let pressures = self.directions.pressures.as_ref();
         let log_volumes = pressures.map_or_else(Vec::new, |own| own.log_volumes(&self.p));
         let tally = self.directions.tally;
-        let Newton { x, made, history, path, touching, .. } = self;
-        Start { x, log_volumes, made, history, path, tally, touching }
+        let Newton { x, means, made, history, path, touching, .. } = self;
+        Start { x, log_volumes, means, made, history, path, tally, touching }
     }
 
     /// One step: a direction, how far, and the same of the movement of the bones.
@@ -152,6 +158,28 @@ impl<'a, 'b> Newton<'a, 'b> {
         let rests = self.unsettled && residual > out_of_balance;
         let ahead = if rests { 0.0 } else { self.ahead.min(share - self.made) };
         let direction = self.direction(deformed, ahead)?;
+        if direction.is_convex || self.means.is_empty() {
+            return self.take(deformed, direction, ahead);
+        }
+        // Where the tangent is not positive definite the energy says how far to go, which is that of the positions alone.
+        self.directions.tally.indefinite -= 1;
+        self.means.clear();
+        let deformed = self.tissue.at(&self.x, &self.p, self.directions.pressures.as_ref());
+        let direction = self.direction(&deformed, ahead)?;
+        self.take(&deformed, direction, ahead)?;
+        self.means = self.tissue.means_at(&self.x);
+        Ok(())
+    }
+
+    /// Goes along a direction that makes so much more of the movement.
+    fn take(
+        &mut self,
+        deformed: &Deformed,
+        direction: Direction,
+        ahead: f64,
+    ) -> Result<(), ModelError> {
+        let (residual, Question { share, out_of_balance, .. }) =
+            (self.balance.residual, self.question);
         self.unsettled = !direction.is_convex || (self.unsettled && residual > out_of_balance);
         let longest = self.tissue.longest_step(&self.x, &direction.positions);
         if let Some(touching) = &mut self.touching {
@@ -159,14 +187,14 @@ impl<'a, 'b> Newton<'a, 'b> {
         }
         let taken = match ahead > 0.0 {
             true => longest,
-            // The least energy in contact is a saddle, too.
-            false if self.has_pressures() || self.touching.is_some() => longest,
+            false if self.is_saddle() => longest,
             false => self.falling(deformed, &direction.positions, longest)?,
         };
         self.x.iter_mut().zip(&direction.positions).for_each(|(x, d)| *x += d * taken);
         self.p.iter_mut().zip(&direction.pressures).for_each(|(p, d)| *p += d * taken);
+        deformed.bricks.advance(&direction.positions, taken, &mut self.means);
         if ahead > 0.0 {
-            self.balance.moved(direction.load / ahead);
+            self.balance.moved(direction.load, ahead);
             self.made = advanced(self.made, taken * ahead, share);
             let most = self.touching.as_ref().map_or(1.0, |touching| touching.most_ahead);
             self.ahead = (2.0 * taken * ahead).max(LEAST_AHEAD).min(most);
@@ -181,6 +209,11 @@ impl<'a, 'b> Newton<'a, 'b> {
             true => Err(self.standstill(deformed)),
             false => Ok(()),
         }
+    }
+
+    /// Whether the least energy is a saddle of what the steps go to.
+    fn is_saddle(&self) -> bool {
+        self.has_pressures() || !self.means.is_empty() || self.touching.is_some()
     }
 
     fn has_pressures(&self) -> bool {
@@ -234,7 +267,7 @@ impl<'a, 'b> Newton<'a, 'b> {
         });
         let mut forces = self.acting_on_nodes(share.min(1.0));
         for (force, &row) in forces.iter_mut().zip(&constrained.dof_map.ordering.place) {
-            *force -= deformed.forces[row as usize];
+            *force -= deformed.forces_of_step()[row as usize];
         }
         LoadCase { held: held.collect(), forces, ..LoadCase::default() }
     }

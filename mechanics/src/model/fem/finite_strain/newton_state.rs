@@ -25,6 +25,8 @@ pub(super) struct Start<'a> {
     pub x: Vec<Vector>,
     /// For each pressure the mean of ln J that it answers to.
     pub log_volumes: Vec<f64>,
+    /// The mean volume change that each hexahedron and wedge has of its own.
+    pub means: Vec<f64>,
     /// The share of movement and load that is made.
     pub made: f64,
     /// Relative residuals so far.
@@ -41,6 +43,7 @@ impl<'a> Start<'a> {
         Start {
             x,
             log_volumes: Vec::new(),
+            means: Vec::new(),
             made,
             history: Vec::new(),
             path: Vec::new(),
@@ -62,6 +65,8 @@ pub(super) struct Question<'a> {
     /// The relative residual above which tissue whose tangent was not positive definite is brought nearer to rest before bones
     /// go on.
     pub out_of_balance: f64,
+    /// Whether hexahedra and wedges have the mean volume changes of their positions alone, so that their energy can be asked to fall.
+    pub by_energy: bool,
     /// Steps, with those before, after which no rest is expected any more.
     pub most_steps: usize,
     pub tolerance: Tolerance,
@@ -82,6 +87,8 @@ pub(super) struct Rest<'a> {
     /// By row.
     pub positions: Vec<Vector>,
     pub pressures: Vec<f64>,
+    /// As those of a start.
+    pub means: Vec<f64>,
     /// The share of movement and load that is made.
     pub made: f64,
     /// Internal forces in mN, by row.
@@ -115,6 +122,7 @@ impl<'a> Rest<'a> {
         Start {
             x: self.positions,
             log_volumes,
+            means: self.means,
             made: self.made,
             history,
             path,

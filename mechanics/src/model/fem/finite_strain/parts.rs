@@ -105,6 +105,7 @@ fn in_part(question: Question, share: f64, begun: usize) -> Question {
         share,
         kept: CellBulkModulus::IN_PARTS,
         out_of_balance: OUT_OF_BALANCE,
+        by_energy: true,
         most_steps: begun + MOST_OF_PART,
         tolerance: Tolerance { relative_residual, ..asked },
         ..question

@@ -21,7 +21,7 @@ use crate::solver::half_matrix::HalfMatrix;
 /// What the last digits of a sum of a few terms lose, with some room.
 const ROUNDING: f64 = 1e-15;
 
-/// What a cell may lose of its volume in one step. Where no pressures carry the bulk modulus it is less above twelve times the
+/// What a cell may lose of its volume in one step. Where cells do not share their volume it is less above twelve times the
 /// shear modulus: what a loss does to the forces grows with their ratio.
 const LOSS: f64 = 0.3;
 const SOFT: f64 = 12.0;
@@ -51,6 +51,8 @@ pub(super) struct Deformed<'a> {
     sheet: DeformedSheet<'a>,
     /// By row, in mN.
     pub forces: Vec<Vector>,
+    /// Those that a step has to balance, where cells have mean volume changes of their own; empty where there are none.
+    of_step: Vec<Vector>,
     /// What the pressures leave of the volumes, in mm^3; none where there are none.
     pub volumes: Vec<f64>,
 }
@@ -67,7 +69,7 @@ impl<'a> Tissue<'a> {
         let sheet = Sheet::new(problem, dof_map);
         let rest = dof_map.by_row(nodes);
         let carries_all =
-            bricks.is_empty() && simplices.cells.iter().all(|cell| cell.carried > 0.0);
+            bricks.all_share() && simplices.cells.iter().all(|cell| cell.carried > 0.0);
         let stiffest = laws.iter().map(Law::at_rest).map(|(lambda, mu)| lambda / mu);
         let keep = match carries_all {
             true => 1.0 - LOSS,
@@ -144,20 +146,32 @@ impl<'a> Tissue<'a> {
 
     /// At positions, one for each row.
     pub fn at(&self, x: &[Vector], p: &[f64], pressures: Option<&Pressures>) -> Deformed<'_> {
+        self.on_the_way(x, p, pressures, &[])
+    }
+
+    /// The same where hexahedra and wedges have mean volume changes of their own (`bricks`).
+    pub fn on_the_way(
+        &self,
+        x: &[Vector],
+        p: &[f64],
+        pressures: Option<&Pressures>,
+        of_bricks: &[f64],
+    ) -> Deformed<'_> {
         let mut means = Vec::new();
         if let Some(pressures) = pressures {
             means = vec![0.0; self.simplices.cells.len()];
             pressures.means(p).for_each(|(cell, mean)| means[cell as usize] = mean);
         }
-        let (simplices, bricks) = (self.simplices.at(x, &means), self.bricks.at(x));
+        let (simplices, bricks) = (self.simplices.at(x, &means), self.bricks.at(x, of_bricks));
         let mut forces = simplices.forces(self.dof_map);
-        bricks.add_forces(&mut forces);
         let sheet = self.sheet.at(x);
         sheet.add_forces(&mut forces);
+        let mut of_step = if of_bricks.is_empty() { Vec::new() } else { forces.clone() };
+        bricks.add_forces(&mut forces, &mut of_step);
         let log_volume = |cell: u32| simplices.log_volume(cell);
         let volumes = pressures.map(|pressures| pressures.residual(p, &log_volume));
         let volumes = volumes.unwrap_or_default();
-        Deformed { tissue: self, forces, volumes, simplices, bricks, sheet }
+        Deformed { tissue: self, forces, of_step, volumes, simplices, bricks, sheet }
     }
 
     /// The cell of the mesh of each tetrahedron.
@@ -168,6 +182,18 @@ impl<'a> Tissue<'a> {
     /// The cells of the mesh that are taken point by point.
     pub fn cells_of_bricks(&self) -> impl Iterator<Item = usize> {
         self.bricks.cells()
+    }
+
+    /// The mean volume changes that hexahedra and wedges have of their own: those that are stated, or those at rest; empty where none
+    /// takes volume as a mean.
+    pub fn means_from(&self, stated: Vec<f64>) -> Vec<f64> {
+        let at_rest = self.bricks.means_at_rest();
+        if at_rest.is_empty() || stated.is_empty() { at_rest } else { stated }
+    }
+
+    /// Those of positions.
+    pub fn means_at(&self, x: &[Vector]) -> Vec<f64> {
+        self.bricks.means_at(x)
     }
 
     /// In mN mm, of tissue without pressures.
@@ -190,6 +216,11 @@ impl Deformed<'_> {
         self.bricks.add_tangent(&mut matrix, dof_map, progress)?;
         self.sheet.add_tangent(&mut matrix);
         Ok(matrix)
+    }
+
+    /// What a step has to balance, by row in mN.
+    pub fn forces_of_step(&self) -> &[Vector] {
+        if self.of_step.is_empty() { &self.forces } else { &self.of_step }
     }
 
     /// F^-T g of the corners of a tetrahedron.
