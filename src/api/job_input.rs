@@ -40,11 +40,18 @@ pub async fn of(service: &Service, document: JobDocument) -> ApiResult<NewJob> {
     }
 }
 
+/// The case of a job that needs its mesh, in its present version.
+async fn case_to_solve(service: &Service, named: &str) -> ApiResult<(CaseRow, CaseOfJob)> {
+    let row = meshed_again(service, require_case(service, named).await?).await?;
+    let case = case_of_job(&row)?;
+    Ok((row, case))
+}
+
 /// A prediction: its case and plan in their present versions, checked together with the meshes.
 async fn of_prediction(service: &Service, mut spec: PredictDocument) -> ApiResult<NewJob> {
-    let row = require_case(service, spec.case.as_deref().unwrap_or_default()).await?;
-    let row = meshed_again(service, row).await?;
-    let case = match case_of_job(&row)? {
+    let named = spec.case.as_deref().unwrap_or_default();
+    let (row, case) = case_to_solve(service, named).await?;
+    let case = match case {
         CaseOfJob::Whole(case) => *case,
         CaseOfJob::Waits(awaited) => {
             if spec.correction.is_some() {
@@ -107,10 +114,9 @@ async fn of_comparison(service: &Service, spec: CompareDocument) -> ApiResult<Ne
 
 /// A plan response: its case in its present version, checked with its meshes.
 async fn of_response(service: &Service, mut spec: ResponseDocument) -> ApiResult<NewJob> {
-    let row = require_case(service, &spec.case).await?;
+    let (row, case) = case_to_solve(service, &spec.case).await?;
     spec.case.clone_from(&row.id);
-    let row = meshed_again(service, row).await?;
-    let case = match case_of_job(&row)? {
+    let case = match case {
         CaseOfJob::Whole(case) => *case,
         CaseOfJob::Waits(awaited) => {
             return Waiting { case: &row.id, awaited }.response(service, spec).await;
@@ -132,10 +138,9 @@ async fn of_response(service: &Service, mut spec: ResponseDocument) -> ApiResult
 
 /// Inverse planning: its case in its present version, checked with its meshes.
 async fn of_optimisation(service: &Service, mut spec: OptimiseDocument) -> ApiResult<NewJob> {
-    let row = require_case(service, &spec.case).await?;
+    let (row, case) = case_to_solve(service, &spec.case).await?;
     spec.case.clone_from(&row.id);
-    let row = meshed_again(service, row).await?;
-    let case = match case_of_job(&row)? {
+    let case = match case {
         CaseOfJob::Whole(case) => *case,
         CaseOfJob::Waits(awaited) => {
             return Waiting { case: &row.id, awaited }.optimisation(service, spec).await;

@@ -1,7 +1,7 @@
 //! `facies check`: what a case and a plan mean, without solving.
 
 use std::collections::BTreeSet;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::Args;
 
@@ -10,13 +10,10 @@ use super::failure::CommandError;
 use super::scene::{PlanArgument, SceneArguments};
 use super::screen::print_check;
 use crate::jobs::check;
+use crate::jobs::result::folder::{self, CHECK, CHECK_PICTURE};
 use crate::schema::Limits;
 use crate::schema::predict::planned::MovementReportDocument;
 use crate::schema::wire::canonical;
-
-/// The document of a check.
-const CHECK: &str = "check.json";
-const PICTURE: &str = "classes.svg";
 
 #[derive(Debug, Args)]
 pub struct Arguments {
@@ -33,52 +30,34 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
     let asked = arguments.scene.documents(arguments.plan.plan.as_deref())?;
     asked.file.refuse_beside_spec(&asked.path)?;
-    let report = check(&asked.file.to_input(), &asked.sources, &Limits::default())?;
+    let input = asked.file.to_input();
+    let report = check(&input, &asked.sources, &Limits::default())?;
     print_check(&report.document);
-    if let Some(out) = &arguments.out {
-        let claim = Claim::of(out, &[CHECK, PICTURE])?;
-        remove_earlier_movements(out);
-        let document = canonical::to_value(&report.document);
-        claim.put(CHECK, format!("{document:#}\n"))?;
-        claim.put(PICTURE, &report.picture()?)?;
-        println!("wrote      {}", out.join(CHECK).display());
-        let movements = &report.document.movements;
-        let names = files_of(movements.iter().map(|movement| &*movement.segment));
-        for (movement, name) in movements.iter().zip(names) {
-            write_movement(movement, &claim, out, &name)?;
-        }
-        println!("wrote      {}", out.join(PICTURE).display());
+    let Some(out) = &arguments.out else { return Ok(()) };
+    let document = canonical::to_value(&report.document);
+    let mut files = vec![(CHECK.to_owned(), format!("{document:#}\n"))];
+    files.extend(movements(&report.document.movements));
+    files.push((CHECK_PICTURE.to_owned(), report.picture()?));
+    let names: Vec<&str> = files.iter().map(|(name, _)| name.as_str()).collect();
+    let claim = Claim::of(out, &names)?;
+    folder::refuse_other_plan(out, &canonical::to_value(&input.plan))?;
+    folder::remove_check(out)?;
+    for (name, content) in &files {
+        claim.put(name, content)?;
+        println!("wrote      {}", out.join(name).display());
     }
     Ok(())
 }
 
-/// The movement of a segment as files for navigation.
-fn write_movement(
-    movement: &MovementReportDocument,
-    claim: &Claim,
-    out: &Path,
-    name: &str,
-) -> Result<(), CommandError> {
-    let mut files = vec![(format!("{name}.txt"), &movement.matrix_text)];
-    files.extend(movement.itk_transform.iter().map(|text| (format!("{name}.tfm"), text)));
-    for (file, text) in files {
-        claim.put(&file, text)?;
-        println!("wrote      {}", out.join(&file).display());
-    }
-    Ok(())
-}
-
-/// Removes the movements of an earlier check of a folder: those of segments that this one does not move would be taken for its own.
-fn remove_earlier_movements(out: &Path) {
-    let Ok(bytes) = std::fs::read(out.join(CHECK)) else { return };
-    let Ok(check) = serde_json::from_slice::<serde_json::Value>(&bytes) else { return };
-    let movements = check["movements"].as_array().into_iter().flatten();
-    for name in files_of(movements.filter_map(|movement| movement["segment"].as_str())) {
-        for end in ["txt", "tfm"] {
-            // One that is not there need not go.
-            let _ = std::fs::remove_file(out.join(format!("{name}.{end}")));
-        }
-    }
+/// The movements of segments as files for navigation.
+fn movements(movements: &[MovementReportDocument]) -> Vec<(String, String)> {
+    let names = files_of(movements.iter().map(|movement| &*movement.segment));
+    let files = movements.iter().zip(names).flat_map(|(movement, name)| {
+        let itk = movement.itk_transform.iter().map(|text| (format!("{name}.tfm"), text.clone()));
+        let itk: Vec<_> = itk.collect();
+        std::iter::once((format!("{name}.txt"), movement.matrix_text.clone())).chain(itk)
+    });
+    files.collect()
 }
 
 /// The names of files of segments, without their ends: a segment's may hold what leads to another folder.

@@ -38,7 +38,8 @@ impl Claim {
 
     /// Writes a file beside those of the result.
     pub fn put(&self, name: &str, content: impl AsRef<[u8]>) -> Result<(), CommandError> {
-        Ok(folder::put(&self.folder, name, content.as_ref())?)
+        folder::put(&self.folder, name, content.as_ref())?;
+        Ok(())
     }
 }
 

@@ -63,11 +63,12 @@ pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
     };
     let fineness = arguments.fineness as usize;
     let face = generic_face(FaceSettings { lips, fineness, shape });
-    let claim = Claim::of(&arguments.out, &[CASE_FILE, CONFORMATION])?;
     let mut files = meshes(&face).map_err(JobError::from)?;
     files.push((CASE_FILE.to_owned(), format!("{:#}\n", documents(&face)).into_bytes()));
     let conformation = format!("{:#}\n", conformation(&case_of(&face)));
     files.push((CONFORMATION.to_owned(), conformation.into_bytes()));
+    let names: Vec<&str> = files.iter().map(|(name, _)| name.as_str()).collect();
+    let claim = Claim::of(&arguments.out, &names)?;
     for (name, bytes) in files {
         claim.put(&name, bytes)?;
         println!("wrote      {}", arguments.out.join(name).display());

@@ -174,6 +174,7 @@ pub fn problem_of(error: &FormatError) -> Problem {
         let value: Value = match member {
             Member::Text(text) => text.into(),
             Member::Count(count) => count.into(),
+            Member::Number(number) => number.into(),
             Member::Counts(counts) => counts.into(),
             Member::Texts(texts) => texts.into(),
         };

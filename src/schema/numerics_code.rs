@@ -74,7 +74,9 @@ impl From<&FormatError> for ErrorCode {
             FormatError::Parse { .. }
             | FormatError::UnsupportedCells { .. }
             | FormatError::Name { .. } => ErrorCode::MeshParse,
-            FormatError::Limits { .. } | FormatError::Memory { .. } => ErrorCode::MeshLimits,
+            FormatError::Limits { .. } | FormatError::Far { .. } | FormatError::Memory { .. } => {
+                ErrorCode::MeshLimits
+            }
             FormatError::NonFinite { .. } => ErrorCode::MeshNonfinite,
             FormatError::IndexOutOfRange { .. } => ErrorCode::MeshIndexOutOfRange,
             FormatError::Empty { .. } => ErrorCode::MeshEmpty,
@@ -228,6 +230,7 @@ mod tests {
             FormatError::UnsupportedCells { types: Vec::new() },
             FormatError::Name { detail: String::new() },
             FormatError::Limits { what: "nodes", declared: count, limit },
+            FormatError::Far { coordinate: 2.0, limit: 1.0 },
             FormatError::Memory { values: count },
             FormatError::NonFinite { count, first: Vec::new() },
             FormatError::IndexOutOfRange { count, first: Vec::new(), nodes: 1 },

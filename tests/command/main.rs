@@ -225,6 +225,33 @@ fn every_mistake_in_the_documents_has_a_line_with_its_place() {
 }
 
 #[test]
+fn a_number_out_of_range_hides_no_name_that_the_mesh_lacks() {
+    let folder = tempfile::tempdir().unwrap();
+    let read = fs::read_to_string(block().join("case.json")).unwrap();
+    let mut documents: serde_json::Value = serde_json::from_str(&read).unwrap();
+    let lacks = serde_json::json!({"node_set": "nowhere"});
+    documents["case"]["volume"] = path(&block().join("block.vtu")).into();
+    documents["case"]["bones"] = serde_json::json!([]);
+    documents["case"]["materials"]["deep"]["young_modulus_kpa"] = (-1).into();
+    documents["case"]["fixed"] = serde_json::json!([{"node_set": "skull"}, lacks]);
+    let load = serde_json::json!({"force_millinewton": [0, 0, 1], "nodes": lacks});
+    documents["plan"]["loads"] = serde_json::json!([load]);
+    documents["plan"]["growth"] = serde_json::json!([{"region": "none", "volume_change": 0.1}]);
+    let case = folder.path().join("case.json");
+    fs::write(&case, documents.to_string()).unwrap();
+    let done = facies(&["check", "--case", path(&case)]);
+    let told = text(&done.stderr);
+    let places: BTreeSet<&str> = told.lines().filter_map(|line| line.split(": ").nth(1)).collect();
+    let wanted = [
+        "/case/fixed/1",
+        "/case/materials/deep/young_modulus_kpa",
+        "/plan/growth/0/region",
+        "/plan/loads/0/nodes",
+    ];
+    assert_eq!((done.status.code(), places), (Some(2), wanted.into()), "{told}");
+}
+
+#[test]
 fn a_segment_that_is_nowhere_and_a_mesh_that_is_not_there_are_refused() {
     let folder = plan_folder(r#"{"segments":[{"name":"jaw","translation_mm":[1,0,0]}]}"#);
     let done = predict_block(folder.path(), &folder.path().join("out"));

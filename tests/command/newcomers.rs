@@ -133,6 +133,56 @@ fn a_file_that_no_command_wrote_is_not_replaced_and_a_folder_has_one_command_at_
 }
 
 #[test]
+fn a_file_that_was_edited_is_neither_replaced_nor_removed() {
+    let folder = tempfile::tempdir().unwrap();
+    let (face, out) = (folder.path().join("face"), folder.path().join("out"));
+    let case = block().join("case.json");
+    let make = ["face", "--out", path(&face)];
+    let predict = ["predict", "--case", path(&case), "--outputs", "skin.csv", "--out", path(&out)];
+    for (command, file) in [(&make[..], face.join("case.json")), (&predict, out.join("skin.csv"))] {
+        for _ in 0..2 {
+            assert_eq!(facies(command).status.code(), Some(0), "{command:?}");
+        }
+        let edited = fs::read_to_string(&file).unwrap() + "\n";
+        fs::write(&file, &edited).unwrap();
+        let told = facies(command);
+        let (code, told) = (told.status.code(), text(&told.stderr));
+        let line = format!("{} was changed since", path(&file));
+        assert!(code == Some(2) && told.contains(&line), "{told}");
+        assert_eq!(told.matches("error: ").count(), 1, "{told}");
+        assert_eq!(fs::read_to_string(&file).unwrap(), edited);
+    }
+    assert!(out.join("result.json").is_file());
+}
+
+#[test]
+fn a_check_and_a_prediction_of_different_plans_do_not_stand_in_one_folder() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    let run = |command: &str, by: f64| {
+        let read = fs::read(block().join("case.json")).unwrap();
+        let mut documents: Value = serde_json::from_slice(&read).unwrap();
+        documents["case"]["volume"] = json!(path(&block().join("block.vtu")));
+        documents["case"]["bones"] = json!([]);
+        documents["plan"]["segments"][0]["translation_mm"] = json!([0, 0, by]);
+        documents["spec"]["outputs"] = json!(["skin.vtp"]);
+        let file = folder.path().join("mine.json");
+        fs::write(&file, documents.to_string()).unwrap();
+        facies(&[command, "--case", path(&file), "--out", path(&out)])
+    };
+    let names = ["check.json", "classes.svg", "mandible.txt", "mandible.tfm"];
+    let of_check = || names.map(|name| out.join(name).exists());
+    assert_eq!(run("check", 1.0).status.code(), Some(0));
+    assert_eq!(of_check(), [true; 4]);
+    assert_eq!(run("predict", 2.0).status.code(), Some(0));
+    assert_eq!(of_check(), [false; 4]);
+    let refused = run("check", 1.0);
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(text(&refused.stderr).contains("of another plan"), "{}", text(&refused.stderr));
+    assert_eq!((run("check", 2.0).status.code(), of_check()), (Some(0), [true; 4]));
+}
+
+#[test]
 fn a_plan_that_was_found_without_a_server_is_one_that_predict_takes() {
     let folder = tempfile::tempdir().unwrap();
     let targets = json!({

@@ -49,6 +49,15 @@ fn a_study_writes_its_report_in_every_form_and_ends_well() {
 }
 
 #[test]
+fn a_method_that_is_named_twice_is_one_mistake() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut twice = spec();
+    twice["methods"] = json!(["fem_linear", "fem_linear"]);
+    let (code, told, _) = study(folder.path(), &twice, &[]);
+    assert_eq!((code, told.matches("/spec/methods: two variants").count()), (2, 1), "{told}");
+}
+
+#[test]
 fn the_exit_code_is_that_of_the_outcome() {
     let folder = tempfile::tempdir().unwrap();
     let of = |spec: &Value, more: &[&str]| {

@@ -1,6 +1,6 @@
 //! Reasons why a surface scan is not the skin of a CT.
 
-use crate::mesh::Vector;
+use crate::mesh::{Vector, place};
 use crate::osteotomy::RuleError;
 use crate::registration::AlignmentError;
 
@@ -37,12 +37,8 @@ pub enum SkinScanError {
     SmallMask { covered_cm2: f64, whole_cm2: f64 },
     #[error(
         "the mask holds no skin of the CT, which reaches from {} to {} mm",
-        place(low),
-        place(high)
+        place(low, 0),
+        place(high, 0)
     )]
     EmptyMask { low: Vector, high: Vector },
-}
-
-fn place(at: &Vector) -> String {
-    format!("({:.0}, {:.0}, {:.0})", at.x, at.y, at.z)
 }

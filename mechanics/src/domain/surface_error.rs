@@ -3,7 +3,7 @@
 use std::fmt;
 
 use super::limit::LimitError;
-use crate::mesh::Vector;
+use crate::mesh::{Vector, place};
 
 /// Which of the surfaces of a body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -67,7 +67,7 @@ pub enum SurfaceDomainError {
     Tangled { surface: SurfaceName, times: f64 },
     #[error(
         "{surface}: {percent:.0} % of it lies outside the skin, the nearest of it {nearest:.0} mm from it: the skin reaches from {} to {} mm, this bone from {} to {}; are both in the same frame and unit?",
-        place(&skin.0), place(&skin.1), place(&bone.0), place(&bone.1)
+        place(&skin.0, 0), place(&skin.1, 0), place(&bone.0, 0), place(&bone.1, 0)
     )]
     BoneOutside {
         surface: SurfaceName,
@@ -104,8 +104,4 @@ impl SurfaceDomainError {
             SurfaceDomainError::NoTissue { .. } | SurfaceDomainError::Limit(_) => None,
         }
     }
-}
-
-fn place(at: &Vector) -> String {
-    format!("({:.0}, {:.0}, {:.0})", at.x, at.y, at.z)
 }

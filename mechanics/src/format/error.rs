@@ -29,6 +29,8 @@ pub enum FormatError {
     Name { detail: String },
     #[error("{declared} {what}, and {limit} is the limit")]
     Limits { what: &'static str, declared: u64, limit: u64 },
+    #[error("a coordinate is {coordinate:e}, and {limit:e} is the limit")]
+    Far { coordinate: f64, limit: f64 },
     #[error("memory does not hold {values} values")]
     Memory { values: u64 },
     #[error("{count} nodes have a coordinate that is not a finite number")]
@@ -52,6 +54,7 @@ pub enum FormatError {
 pub enum Member {
     Text(String),
     Count(u64),
+    Number(f64),
     Counts(Vec<u64>),
     Texts(Vec<String>),
 }
@@ -63,7 +66,9 @@ impl FormatError {
             FormatError::Parse { .. }
             | FormatError::UnsupportedCells { .. }
             | FormatError::Name { .. } => "mesh-parse",
-            FormatError::Limits { .. } | FormatError::Memory { .. } => "mesh-limits",
+            FormatError::Limits { .. } | FormatError::Far { .. } | FormatError::Memory { .. } => {
+                "mesh-limits"
+            }
             FormatError::NonFinite { .. } => "mesh-nonfinite",
             FormatError::IndexOutOfRange { .. } => "mesh-index-out-of-range",
             FormatError::Empty { .. } => "mesh-empty",
@@ -76,7 +81,7 @@ impl FormatError {
 
     /// The numbers behind the sentence, by the names of the error catalogue.
     pub fn members(&self) -> Vec<(&'static str, Member)> {
-        use Member::{Count, Counts, Text, Texts};
+        use Member::{Count, Counts, Number, Text, Texts};
         match self {
             FormatError::Parse { format, place, detail } => vec![
                 ("format", Text((*format).into())),
@@ -93,6 +98,9 @@ impl FormatError {
                 ("declared", Count(*declared)),
                 ("limit", Count(*limit)),
             ],
+            FormatError::Far { coordinate, limit } => {
+                vec![("declared", Number(*coordinate)), ("limit", Number(*limit))]
+            }
             FormatError::Memory { values } => vec![("declared", Count(*values))],
             FormatError::NonFinite { count, first } => {
                 vec![("count", Count(*count)), ("first", Counts(first.clone()))]

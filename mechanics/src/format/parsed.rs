@@ -123,11 +123,7 @@ impl Parsed {
             return Err(FormatError::NonFinite { count: nonfinite.count, first: nonfinite.first });
         }
         if largest > LARGEST_COORDINATE {
-            return Err(FormatError::Limits {
-                what: "is the largest coordinate",
-                declared: largest as u64,
-                limit: LARGEST_COORDINATE as u64,
-            });
+            return Err(FormatError::Far { coordinate: largest, limit: LARGEST_COORDINATE });
         }
         Ok(())
     }

@@ -106,6 +106,8 @@ impl Placement {
         for (axis, step) in self.steps.iter().enumerate() {
             let spacing = step.norm();
             if !SPACING.contains(&spacing) {
+                // A length that overflows is told by its largest part.
+                let spacing = if spacing.is_finite() { spacing } else { step.amax() };
                 return Err(ImageError::Spacing { axis, spacing });
             }
         }

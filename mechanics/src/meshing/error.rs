@@ -1,6 +1,6 @@
 //! Reasons why there is no mesh.
 
-use crate::mesh::Vector;
+use crate::mesh::{Vector, place};
 
 /// Why a body was not meshed. Lengths in mm.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -9,14 +9,14 @@ pub enum MeshingError {
     Setting { setting: &'static str, value: f64, wanted: &'static str },
     #[error(
         "the box that is to hold the tissue reaches from {} to {}, which is no box",
-        place(low),
-        place(high)
+        place(low, 2),
+        place(high, 2)
     )]
     Bounds { low: Vector, high: Vector },
     #[error(
         "no tissue was found between {} and {} with cells of {size:.2} mm",
-        place(low),
-        place(high)
+        place(low, 2),
+        place(high, 2)
     )]
     Empty { low: Vector, high: Vector, size: f64 },
     #[error(
@@ -36,14 +36,10 @@ pub enum MeshingError {
         "the lattice would have {cells} cells of {finest} mm along an axis, and at most {allowed} can be numbered"
     )]
     TooFine { cells: f64, allowed: u32, finest: f64 },
-    #[error("the body has no finite {what} at {}", place(at))]
+    #[error("the body has no finite {what} at {}", place(at, 2))]
     NotFinite { what: &'static str, at: Vector },
-    #[error("the mesh would be wrong: {count} {what}, the first at {}", place(at))]
+    #[error("the mesh would be wrong: {count} {what}, the first at {}", place(at, 2))]
     Broken { what: &'static str, count: usize, at: Vector },
     #[error("cancelled")]
     Cancelled,
-}
-
-fn place(at: &Vector) -> String {
-    format!("({:.2}, {:.2}, {:.2})", at.x, at.y, at.z)
 }

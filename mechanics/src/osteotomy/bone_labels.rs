@@ -143,10 +143,25 @@ impl BoneLabels {
 
     /// Whether a cut comes into the image, be it where there is no bone.
     pub fn is_met_by(&self, cut: &Cut) -> bool {
-        let half = self.placement.steps.iter().map(Vector::norm).sum::<f64>() / 2.0;
-        (0..self.labels.len()).any(|voxel| {
-            let centre = self.centre_of(voxel);
-            cut.plane().height(&centre).abs() <= half && cut.reaches(&centre)
+        let steps = &self.placement.steps;
+        let half = steps.iter().map(Vector::norm).sum::<f64>() / 2.0;
+        let rises = Vector::from(steps.map(|step| cut.plane().normal().dot(&step)));
+        // Of a row along the axis that rises most only the voxels about the plane are near it.
+        let across = rises.iamax();
+        let [one, other] = [(across + 1) % 3, (across + 2) % 3];
+        let mut rows = (0..self.size[one]).flat_map(|i| (0..self.size[other]).map(move |j| [i, j]));
+        rows.any(|place| {
+            let mut index = [0; 3];
+            [index[one], index[other]] = place;
+            let crossing = -cut.plane().height(&self.centre(index)) / rises[across];
+            let reach = half / rises[across].abs() + 1.0;
+            let first = (crossing - reach).max(0.0) as usize;
+            let end = (crossing + reach + 1.0).clamp(0.0, self.size[across] as f64) as usize;
+            (first..end).any(|number| {
+                index[across] = number;
+                let centre = self.centre(index);
+                cut.plane().height(&centre).abs() <= half && cut.reaches(&centre)
+            })
         })
     }
 
@@ -161,3 +176,7 @@ impl BoneLabels {
         steps.fold(self.placement.origin, |sum, (step, count)| sum + step * count as f64)
     }
 }
+
+#[cfg(test)]
+#[path = "bone_labels_tests.rs"]
+mod tests;

@@ -1,6 +1,6 @@
 //! Reasons why the bone of a scan cannot be divided into the stated segments.
 
-use crate::mesh::Vector;
+use crate::mesh::{Vector, place};
 
 /// Why a scan cannot be parted as asked.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -9,7 +9,7 @@ pub enum LabelError {
     NoBone { segment: String },
     #[error(
         "seed {seed} of segment `{segment}` has no bone of its sides within 10 mm of {}: {}{}",
-        place(at), extent(bone.as_ref()), hint(at, bone.as_ref())
+        place(at, 0), extent(bone.as_ref()), hint(at, bone.as_ref())
     )]
     SeedOffBone { segment: String, seed: usize, at: Vector, bone: Option<(Vector, Vector)> },
     #[error("seed {seed} of segment `{segment}` is on the other side of cut `{cut}`")]
@@ -30,12 +30,8 @@ pub enum LabelError {
 /// Where bone lies.
 pub(crate) fn extent(bone: Option<&(Vector, Vector)>) -> String {
     bone.map_or("there is no bone".to_owned(), |(low, high)| {
-        format!("bone reaches from {} to {} mm", place(low), place(high))
+        format!("bone reaches from {} to {} mm", place(low, 0), place(high, 0))
     })
-}
-
-fn place(at: &Vector) -> String {
-    format!("({:.0}, {:.0}, {:.0})", at.x, at.y, at.z)
 }
 
 /// A place beyond all bone is mostly one of another frame.

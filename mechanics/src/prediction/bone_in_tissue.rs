@@ -1,7 +1,7 @@
 //! Bone that goes into tissue where contact, which would hold them apart, is not solved.
 
 use super::scene::Scene;
-use crate::boundary::contact::{BoneInside, bones_inside};
+use crate::boundary::contact::{BoneInside, Embedded, bones_inside};
 use crate::mesh::{Vector, Warning};
 
 /// Without contact bones that lie deeper in tissue than this, in mm, are reported: beside a cut tissue is joined to neither side.
@@ -23,5 +23,6 @@ pub(super) fn bones_in_tissue(scene: &Scene, displacement: &[Vector]) -> Vec<War
         let warning = warning.with("points", points as f64);
         warning.with("x_mm", at.x).with("y_mm", at.y).with("z_mm", at.z)
     };
-    bones_inside([&rest, &moved], &scene.bones, IN_TISSUE_MM, false).into_iter().map(told).collect()
+    let inside = bones_inside([&rest, &moved], &scene.bones, IN_TISSUE_MM, Embedded::Never);
+    inside.into_iter().map(told).collect()
 }

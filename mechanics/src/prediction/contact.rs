@@ -7,7 +7,7 @@ use super::numerical_error::{ErrorOrReason, at_last_tangent, estimate_in_contact
 use super::scene::Scene;
 use super::skin_overlap::{Deepest, deepest_overlap};
 use crate::boundary::NodeClass;
-use crate::boundary::contact::{BoneInside, FacingSurfaces, bones_inside};
+use crate::boundary::contact::{BoneInside, Embedded, FacingSurfaces, bones_inside};
 use crate::mesh::{Vector, Warning};
 use crate::model::fem::contact::{
     Contact, ContactProblem, Effort, PressedStep, PressingRow, SETTLED_MM, forces_of,
@@ -190,7 +190,8 @@ fn pressed(
     let moved = surfaces.after(&equilibrium.displacement);
     let overlap = deepest_overlap(&moved).filter(|deepest| deepest.depth > at_rest + DEEP_MM);
     // What of bone lies between the nodes of tissue may enter: edges, narrow parts, roundings that cells span as chords.
-    let bones_inside = bones_inside([surfaces.rest(), &moved], &scene.bones, DEEP_MM, true);
+    let boundaries = [surfaces.rest(), &moved];
+    let bones_inside = bones_inside(boundaries, &scene.bones, DEEP_MM, Embedded::IfMoved);
     if nothing_presses && overlap.is_none() && bones_inside.is_empty() {
         return Ok(None);
     }

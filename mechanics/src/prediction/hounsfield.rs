@@ -13,7 +13,7 @@ use super::imaged_tissue::{ImagedTissue, TissueShare};
 use crate::image::{SampledCells, SamplingRule, Windows, sample_cells};
 use crate::material::LinearElastic;
 use crate::material::mixture::{MixingRule, mixture};
-use crate::mesh::{Vector, VolumeMesh, Warning};
+use crate::mesh::{VolumeMesh, Warning, place};
 use std::collections::BTreeMap;
 
 /// Cells name their material in 16 bits.
@@ -94,16 +94,12 @@ impl Check<'_> {
         let (low, high) = hounsfield.image.bounds();
         let detail = format!(
             "no cell lies inside the image, which reaches from {} to {} mm: are both in the same frame?",
-            shown(&low),
-            shown(&high)
+            place(&low, 1),
+            place(&high, 1)
         );
         self.problems.add(format!("{PLACE}/image"), SceneErrorCode::OutsideImage, detail);
         None
     }
-}
-
-fn shown(x: &Vector) -> String {
-    format!("({:.1}, {:.1}, {:.1})", x.x, x.y, x.z)
 }
 
 impl TissueOfCells {

@@ -25,48 +25,61 @@ impl Scene {
     pub fn second_order_locking(&self) -> Option<Warning> {
         let counts = |material: &LinearElastic| {
             let series = material.stated_law().and_then(LawSeries::of);
-            material.poisson_ratio() > LOCKING
-                && series.is_some_and(|law| law.volume_term().abs() > VOLUME_COUNTS)
+            series.is_some_and(|law| law.volume_term().abs() > VOLUME_COUNTS)
         };
         let counts: Vec<bool> = self.materials.iter().map(counts).collect();
-        let dilatation = self.tissue().dilatation;
-        let is_plain = |shape: CellShape| match shape {
-            CellShape::Tet4 => self.tetrahedron() == Tetrahedron::Plain,
-            CellShape::Hex8 | CellShape::Wedge6 => dilatation(shape) == Dilatation::Pointwise,
-        };
-        let cells = self.mesh.cells.iter().zip(&self.material_of_cell);
-        let count = cells
-            .filter(|((shape, _), material)| counts[usize::from(**material)] && !is_plain(*shape))
-            .count();
+        let locks = |shape, material: usize| counts[material] && !self.is_pointwise(shape);
         let detail = format!(
-            "{count} cells have a law whose energy of volume is not that of ln J, and a Poisson ratio above {LOCKING}: their second order \
+            "have a law whose energy of volume is not that of ln J, and a Poisson ratio above {LOCKING}: their second order \
              takes it point by point, and may be several times too large"
         );
-        let warning = Warning::new("locking", detail).with("cells", count as f64);
-        let largest = self.materials.iter().map(LinearElastic::poisson_ratio).fold(0.0, f64::max);
-        (count > 0).then(|| warning.with("largest_poisson_ratio", largest))
+        self.warning_of(locks, &detail)
     }
 
     /// The warning of cells that lock.
     pub(super) fn locking(&self) -> Option<Warning> {
-        let dilatation = self.tissue().dilatation;
-        let cells = self.mesh.cells.iter().zip(&self.material_of_cell);
-        let locks = |shape: CellShape, material: u16| {
-            let nu = self.materials[material as usize].poisson_ratio();
-            let tetrahedron = (shape == CellShape::Tet4).then(|| self.tetrahedron());
-            let is_plain = tetrahedron.is_none_or(|own| own == Tetrahedron::Plain);
-            let is_pointwise = is_plain && dilatation(shape) == Dilatation::Pointwise;
-            nu > LOCKING
-                && tetrahedron != Some(Tetrahedron::Quadratic)
-                && (is_pointwise || !self.shares_volume(&self.materials[material as usize]))
+        if self.settings.method.properties().unknowns != Unknowns::Elements {
+            return None;
+        }
+        let locks = |shape, material: usize| {
+            let is_quadratic =
+                shape == CellShape::Tet4 && self.tetrahedron() == Tetrahedron::Quadratic;
+            let shares = self.shares_volume(&self.materials[material]);
+            !is_quadratic && (self.is_pointwise(shape) || !shares)
         };
-        let has_elements = self.settings.method.properties().unknowns == Unknowns::Elements;
-        let locking = cells.filter(|((shape, _), material)| locks(*shape, **material)).count();
-        let largest = self.materials.iter().map(LinearElastic::poisson_ratio).fold(0.0, f64::max);
         let detail = format!(
-            "{locking} cells of plain elements have a Poisson ratio above {LOCKING}: they lock, and the skin moves too little"
+            "of plain elements have a Poisson ratio above {LOCKING}: they lock, and the skin moves too little"
         );
-        let warning = Warning::new("locking", detail).with("cells", locking as f64);
-        (locking > 0 && has_elements).then(|| warning.with("largest_poisson_ratio", largest))
+        self.warning_of(locks, &detail)
+    }
+
+    /// Whether linear cells of a shape take volume point by point at first order.
+    fn is_pointwise(&self, shape: CellShape) -> bool {
+        match shape {
+            CellShape::Tet4 => self.tetrahedron() == Tetrahedron::Plain,
+            CellShape::Hex8 | CellShape::Wedge6 => {
+                (self.tissue().dilatation)(shape) == Dilatation::Pointwise
+            }
+        }
+    }
+
+    /// The warning of those cells near the incompressible limit that lock, by shape and material.
+    fn warning_of(
+        &self,
+        locks: impl Fn(CellShape, usize) -> bool,
+        detail: &str,
+    ) -> Option<Warning> {
+        let ratios: Vec<f64> = self.materials.iter().map(LinearElastic::poisson_ratio).collect();
+        let cells = self.mesh.cells.iter().zip(&self.material_of_cell);
+        let cells = cells.map(|((shape, _), material)| (shape, usize::from(*material)));
+        let count =
+            cells.filter(|&(shape, own)| ratios[own] > LOCKING && locks(shape, own)).count();
+        let largest = ratios.into_iter().fold(0.0, f64::max);
+        let warning = || {
+            Warning::new("locking", format!("{count} cells {detail}"))
+                .with("cells", count as f64)
+                .with("largest_poisson_ratio", largest)
+        };
+        (count > 0).then(warning)
     }
 }

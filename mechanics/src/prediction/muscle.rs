@@ -19,7 +19,7 @@ use super::muscle_field::{MuscleBody, MuscleField, MuscleTissue, elsewhere};
 use super::muscle_lines::{Lines, PullShare};
 use super::scene::Scene;
 use crate::mesh::ignored::listed;
-use crate::mesh::{ArrayUse, TriangleSurface, Vector, VolumeMesh, Warning};
+use crate::mesh::{ArrayUse, TriangleSurface, Vector, VolumeMesh, Warning, place};
 use crate::model::fem::inner_stress::{CellStress, InnerStress};
 use crate::muscle::lines::nearest;
 use crate::muscle::share::shares_inside;
@@ -330,8 +330,7 @@ fn not_a_strap(name: &str, strap: &Strap) -> Option<Warning> {
 
 /// `reaches from (0.0, 0.0, 0.0) to (1.0, 1.0, 1.0) mm`.
 fn reach(points: &[Vector]) -> String {
-    let shown = |x: Vector| format!("({:.1}, {:.1}, {:.1})", x.x, x.y, x.z);
     let Some(&first) = points.first() else { return "has no points".to_owned() };
     let (low, high) = points.iter().fold((first, first), |(l, h), x| (l.inf(x), h.sup(x)));
-    format!("reaches from {} to {} mm", shown(low), shown(high))
+    format!("reaches from {} to {} mm", place(&low, 1), place(&high, 1))
 }

@@ -145,6 +145,7 @@ fn deepest(surface: &TriangleSurface, pairs: &[TrianglePair]) -> Option<Deepest>
         let at = surface.points[point as usize];
         let closest = search.closest_where(&at, is_other)?;
         let behind = (closest.point - at).dot(&search.pseudo_normal(&closest));
+        let behind = Some(behind).filter(|behind| *behind > 0.0)?;
         let body = |triangle: usize| body_of[surface.triangles[triangle][0] as usize];
         let other = body(closest.triangle);
         let faces = |triangle: usize| {
@@ -152,8 +153,8 @@ fn deepest(surface: &TriangleSurface, pairs: &[TrianglePair]) -> Option<Deepest>
                 && surface.area_vector(triangle).dot(&normals[point as usize]) < 0.0
         };
         let is_of_other = other != body_of[point as usize];
-        let facing = is_of_other.then(|| search.closest_where(&at, faces)).flatten();
-        let depth = facing.map_or(behind, |facing| behind.min(facing.distance));
+        let nearer = is_of_other.then(|| search.closest_within_where(&at, behind, faces)).flatten();
+        let depth = nearer.map_or(behind, |facing| facing.distance);
         (depth > 0.0).then_some(Deepest { depth, at, area })
     };
     let step = inside.len().div_ceil(MEASURED_POINTS).max(1);

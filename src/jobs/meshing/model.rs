@@ -22,6 +22,9 @@ use mechanics::meshing::MeshingError;
 
 const MM3_IN_ML: f64 = 1000.0;
 
+/// What a mesh of a scan without bone need not be told beside that.
+const OF_BONE: [&str; 3] = ["nodes-off-bone", "thin-bone-lost", "no-cuts"];
+
 impl PreparedMeshing {
     /// The body with its bone in segments; refused if it does not contain them, or a cut leaves a bridge.
     pub fn part(&self, clock: &Observed) -> Result<PartedBody, JobError> {
@@ -111,6 +114,9 @@ impl PreparedMeshing {
                 AnatomyError::Meshing(MeshingError::Cancelled) => clock.stopped(),
                 other => JobError::Anatomy(other),
             })?;
+        if warnings.iter().any(|warning| warning.code == "no-bone") {
+            anatomy.warnings.retain(|warning| !OF_BONE.contains(&warning.code));
+        }
         anatomy.warnings.splice(0..0, warnings);
         Ok(anatomy)
     }

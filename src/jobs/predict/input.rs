@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::facing::frame_mismatch;
 use super::fitted_model::FittedModel;
 use super::refinable::check_refinable;
+use super::unknown_names::unknown_names;
 use crate::jobs::compare::{ComparedMeshes, admit};
 use crate::jobs::failure::JobError;
 use crate::jobs::source::{MeshSource, SourceError, StoredMesh, StoredShape};
@@ -182,6 +183,9 @@ impl PredictInput {
             }
         }
         self.spec.check_element(&mut faults);
+        if !faults.is_empty() {
+            unknown_names((&self.case, &self.plan), &case, &mut faults);
+        }
         faults.into_result()?;
         Ok(Converted { case, plan, settings, warnings, repair })
     }

@@ -16,6 +16,7 @@ mod overlap;
 mod planned;
 mod publish;
 mod refinable;
+mod unknown_names;
 
 pub use check::{CheckReport, check};
 pub use input::{PredictInput, Prepared};

@@ -1,6 +1,6 @@
 //! The documents of a study as scenes, variants and references; all faults are reported with their places.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use serde_json::Value;
 
@@ -60,12 +60,14 @@ impl Documents<'_> {
                     .collect()
             }
         };
-        for (index, variant) in variants.iter().enumerate() {
-            if variants[..index].iter().any(|other| other.label == variant.label) {
-                let detail =
-                    format!("two variants have the name {:?}; give one a `label`", variant.label);
-                faults.add(&at, ErrorCode::DuplicateName, detail);
-            }
+        let labels: Vec<&String> = variants.iter().map(|variant| &variant.label).collect();
+        let is_twice = |(index, label): &(usize, &&String)| labels[..*index].contains(*label);
+        let twice = labels.iter().enumerate().filter(is_twice).map(|(_, label)| label);
+        let twice: BTreeSet<_> = twice.collect();
+        if !twice.is_empty() {
+            let names = listed(twice);
+            let detail = format!("two variants have the same name: {names}; give one a `label`");
+            faults.add(&at, ErrorCode::DuplicateName, detail);
         }
         self.bound(&mut variants, faults);
         variants

@@ -329,7 +329,10 @@ pub fn centre(volume: &VolumeMesh) -> Vector {
 
 /// The regions of a mesh by name. None if their array is missing: that is refused, with the existing arrays, when the scene
 /// is built.
-fn region_names(regions: &Option<RegionNames>, volume: &VolumeMesh) -> Option<BTreeSet<String>> {
+pub fn region_names(
+    regions: &Option<RegionNames>,
+    volume: &VolumeMesh,
+) -> Option<BTreeSet<String>> {
     let Some(regions) = regions else { return Some(BTreeSet::from(["tissue".to_owned()])) };
     let labels = volume.cell_labels.get(&regions.array)?;
     let values: BTreeSet<i64> = labels.iter().copied().collect();

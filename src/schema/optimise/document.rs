@@ -293,7 +293,8 @@ impl BoundsDocument {
         }
         let farthest = self.translation_mm.0.map(|[low, high]| low.abs().max(high.abs()));
         let (length, longest) = (Vector::from(farthest).norm(), limits.translation_mm);
-        if length > longest {
+        // One that overflows has been refused at its place.
+        if length > longest && length.is_finite() {
             let detail = format!(
                 "the farthest corner is at {length:.3} mm, at most {longest} mm are allowed"
             );

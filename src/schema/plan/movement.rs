@@ -121,11 +121,16 @@ impl MovementContext<'_> {
             faults.add(at, ErrorCode::PlanOutOfRange, detail);
         }
         let Some(centre) = self.centre else { return };
-        let distance = movement.displacement(&centre).norm();
+        let displacement = movement.displacement(&centre);
+        let distance = displacement.norm();
         let limit = self.limits.centre_displacement_mm;
         if distance.is_nan() || distance > limit {
+            let told = match distance.is_finite() {
+                true => format!("{distance:.3}"),
+                false => components(displacement),
+            };
             let detail = format!(
-                "displaces the centre of the mesh by {distance:.3} mm, at most {limit} mm are allowed"
+                "displaces the centre of the mesh by {told} mm, at most {limit} mm are allowed"
             );
             faults.add(at, ErrorCode::PlanOutOfRange, detail);
         }
@@ -186,7 +191,8 @@ impl MovementDocument {
             );
         }
         let pivot = Vector::from(self.pivot_mm.unwrap_or_default());
-        if pivot.amax() > FARTHEST_PIVOT_MM {
+        let is_near = pivot.amax() <= FARTHEST_PIVOT_MM;
+        if !is_near {
             let detail =
                 format!("a coordinate is {:e} mm, at most 1e8 mm are allowed", pivot.amax());
             faults.add(&at.key("pivot_mm"), ErrorCode::PlanOutOfRange, detail);
@@ -196,13 +202,18 @@ impl MovementDocument {
         let angles = degrees.map(f64::to_radians);
         let restriction =
             self.restrict_to.map(|to| to.to_restriction(&at.key("restrict_to"), faults));
-        if !inside || !known || restriction == Some(None) {
+        if !inside || !known || !is_near || restriction == Some(None) {
             return None;
         }
         let movement = RigidMovement::about_pivot(angles, pivot, translation);
         let restricted = restriction.flatten().map(|to| movement.restricted(&pivot, to));
         Some(restricted.unwrap_or(movement))
     }
+}
+
+/// What a vector is told by whose length is more than the largest number.
+fn components(vector: Vector) -> String {
+    format!("({}, {}, {})", vector.x, vector.y, vector.z)
 }
 
 fn within_limits(
@@ -214,7 +225,8 @@ fn within_limits(
 ) -> bool {
     let (length, longest) = (translation.norm(), limits.translation_mm);
     if length > longest {
-        let detail = format!("moves by {length} mm, at most {longest} mm are allowed");
+        let told = if length.is_finite() { length.to_string() } else { components(translation) };
+        let detail = format!("moves by {told} mm, at most {longest} mm are allowed");
         faults.add(&at.key("translation_mm"), ErrorCode::PlanOutOfRange, detail);
     }
     let (angle, largest) = (degrees.amax(), limits.rotation_deg);

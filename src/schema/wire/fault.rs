@@ -2,6 +2,8 @@
 
 use std::ops::RangeInclusive;
 
+use serde_json::Map;
+
 use super::numbers::with_short_numbers;
 pub use super::pointer::{FieldError, Pointer};
 use super::problem::Problem;
@@ -44,7 +46,10 @@ pub struct Faults {
 impl Faults {
     pub fn add(&mut self, at: &Pointer, code: ErrorCode, detail: impl Into<String>) {
         let detail = with_short_numbers(&detail.into());
-        let error = FieldError { pointer: at.to_string(), code, detail };
+        self.push(FieldError { pointer: at.to_string(), code, detail });
+    }
+
+    fn push(&mut self, error: FieldError) {
         if self.is_told(&error) {
             return;
         }
@@ -91,21 +96,17 @@ impl Faults {
             1 => first,
             _ => format!("{count} mistakes, the first at {first}"),
         };
-        let mut problem =
-            Problem::new(shared.copied().unwrap_or(ErrorCode::ValidationFailed), detail);
-        problem.errors = self.errors;
-        problem
+        let code = shared.copied().unwrap_or(ErrorCode::ValidationFailed);
+        Problem { code, detail, errors: self.errors, members: Map::new() }
     }
 
     /// Adds the faults of a problem; one without places is a mistake of the whole document.
     pub fn join(&mut self, problem: Problem) {
-        if problem.errors.is_empty() {
-            self.add(&Pointer::root(), problem.code, problem.detail);
-        } else {
-            for error in problem.errors {
-                self.add(&Pointer::from_text(&error.pointer), error.code, error.detail);
-            }
+        let Problem { code, detail, errors, .. } = problem;
+        if errors.is_empty() {
+            self.push(FieldError { pointer: Pointer::root().to_string(), code, detail });
         }
+        errors.into_iter().for_each(|error| self.push(error));
     }
 
     /// Refuses a number outside a closed range, and NaN.

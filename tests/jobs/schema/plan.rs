@@ -41,10 +41,13 @@ fn movements_beyond_the_published_limits_are_out_of_range() {
         (r#""rotation_deg":[400,0,0],"pivot_mm":[0,0,0]"#, "/rotation_deg"),
         (r#""rotation_deg":[0,1e308,0],"pivot_mm":[0,0,0]"#, "/rotation_deg"),
         (r#""rotation_deg":[0,60,0],"pivot_mm":[500,0,0]"#, ""),
+        (r#""rotation_deg":[0,5,0],"pivot_mm":[1e300,0,0]"#, "/pivot_mm"),
         (r#""matrix4x4":[1,0,0,1e308,0,1,0,0,0,0,1,0,0,0,0,1]"#, ""),
         (r#""matrix4x4":[-1,0,0,0,0,-1,0,0,0,0,1,0,0,0,0,1]"#, ""),
     ] {
         let text = format!(r#"{{"segments":[{{"name":"jaw",{movement}}}]}}"#);
+        let told = plan(&text).map_err(|problem| problem.detail).expect_err("refused");
+        assert!(!movement.contains("1e308,") || told.contains("1e308"), "{told}");
         assert_eq!(refused(plan(&text)), one(out, out, &format!("{at}{place}")), "{movement}");
     }
 }

@@ -287,6 +287,7 @@ export const de: Words = {
     "out-of-distribution": "der Fall gleicht denen nicht, aus denen gelernt wurde", "outside-image": "Zellen reichen über das Bild hinaus",
     "outside-linear-range": "zu groß für eine lineare Antwort", "outside-second-order-range": "zu groß für die zweite Ordnung",
     "outside-windows": "Zellen liegen in keinem Fenster des Bilds", "partial-coverage": "die wirkliche Haut bedeckt nur einen Teil",
+    "padding-replaced": "Füllwerte um das Messfeld gelten als Luft",
     "plan-units-suspect": "Bewegungen sind vielleicht in Metern oder Radiant", "polygons-triangulated": "Vielecke wurden in Dreiecke zerlegt",
     "preset-doubt": "gegen ein Material spricht etwas", "repair-needed": "Zellen brauchen eine Reparatur",
     "rotation-resisted": "der Spline widersteht einer Drehung allen Gewebes", "scan-coarse": "die Aufnahme ist grob",

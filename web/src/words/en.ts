@@ -281,6 +281,7 @@ export const en = {
     "out-of-distribution": "the case is unlike those that were learned from", "outside-image": "cells reach beyond the image",
     "outside-linear-range": "too large for a linear response", "outside-second-order-range": "too large for the second order",
     "outside-windows": "cells lie in no window of the image", "partial-coverage": "the real skin covers a part only",
+    "padding-replaced": "padding around the scanned field is taken as air",
     "plan-units-suspect": "movements may be in metres or radians", "polygons-triangulated": "polygons were cut into triangles",
     "preset-doubt": "something speaks against a material", "repair-needed": "cells need a repair",
     "rotation-resisted": "the spline resists a rotation of all tissue", "scan-coarse": "the scan is coarse",

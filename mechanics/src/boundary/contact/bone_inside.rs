@@ -25,14 +25,21 @@ pub struct BoneInside {
     pub points: usize,
 }
 
+/// Whether points of bone that lie in tissue at rest, as those of bone that meshes of tissue contain, count.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Embedded {
+    /// Those that have moved as much themselves as they lie deeper.
+    IfMoved,
+    Never,
+}
+
 /// The bones that lie more than so many mm deeper in tissue after all movement than at rest, of the boundary of the tissue then
-/// and at rest; of points that lie in tissue at rest those that have moved as much themselves, or none where bone that meshes of tissue
-/// contain is not meant. Corners are looked at, and points between them where edges of bone are longer than those of tissue.
+/// and at rest. Corners are looked at, and points between them where edges of bone are longer than those of tissue.
 pub fn bones_inside(
     [rest, moved]: [&TriangleSurface; 2],
     bones: &[BoneSurface],
     deeper_mm: f64,
-    with_embedded: bool,
+    embedded: Embedded,
 ) -> Vec<BoneInside> {
     let searches = [rest, moved].map(SurfaceSearch::new);
     let [Ok(at_rest), Ok(after)] = &searches else { return Vec::new() };
@@ -51,7 +58,8 @@ pub fn bones_inside(
             }
             let before = depth(at_rest, x);
             // Where bone lies in tissue that bulges, it has not gone in.
-            let has_gone = before <= deeper_mm || with_embedded && by.norm() >= deep - before;
+            let has_gone =
+                before <= deeper_mm || embedded == Embedded::IfMoved && by.norm() >= deep - before;
             (has_gone && deep > before + deeper_mm).then_some((deep, at))
         };
         let points = points_of(&bone.surface, spacing);

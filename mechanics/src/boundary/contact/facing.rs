@@ -45,7 +45,7 @@ pub struct FacingSurfaces<'a> {
     /// For each point, whether its node is held in every direction.
     is_held: Vec<bool>,
     /// Those of the boundary.
-    faces: Vec<BoundaryFace>,
+    faces: &'a [BoundaryFace],
     folds: Folds<'a>,
     /// For each point, how far it is looked for what it faces, in mm: the longest edge around it.
     reach: Vec<f64>,
@@ -76,7 +76,7 @@ impl<'a> FacingSurfaces<'a> {
     /// The boundary of a mesh under some holds, and bones beside it; those without area are left out.
     pub fn new(
         mesh: &'a VolumeMesh,
-        boundary: &[BoundaryFace],
+        boundary: &'a [BoundaryFace],
         constraints: &[Constraint],
         bones: &[BoneSurface],
     ) -> Self {
@@ -91,7 +91,7 @@ impl<'a> FacingSurfaces<'a> {
             mesh,
             rest_normals: rest.point_normals(),
             is_held: nodes.iter().map(|&node| held[node as usize]).collect(),
-            faces: boundary.to_vec(),
+            faces: boundary,
             folds: Folds::new(mesh),
             reach: longest_edges(&rest),
             at_rest: vec![0.0; rest.points.len()],
@@ -107,7 +107,7 @@ impl<'a> FacingSurfaces<'a> {
     /// along the force.
     pub fn areas(&self, forces: &[Vector], positions: &[Vector]) -> BTreeMap<u32, f64> {
         let mut areas = BTreeMap::new();
-        for face in &self.faces {
+        for face in self.faces {
             let share = face.area_vector(positions) / face.nodes().len() as f64;
             for node in face.nodes() {
                 if let Some(along) = forces[*node as usize].try_normalize(f64::MIN_POSITIVE) {

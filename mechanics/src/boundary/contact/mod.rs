@@ -9,6 +9,6 @@ mod moved_boundary;
 mod row;
 
 pub use bone::BoneSurface;
-pub use bone_inside::{BoneInside, bones_inside};
+pub use bone_inside::{BoneInside, Embedded, bones_inside};
 pub use facing::{CLOSED_MM, FacingSurfaces};
 pub use row::{ContactRow, OnBone, with_pressing};

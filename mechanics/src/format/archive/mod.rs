@@ -79,8 +79,7 @@ fn read_series(
 ) -> Result<ReadMesh, FormatError> {
     let read = |entry: &&Entry| {
         let bytes = archive.bytes(entry)?;
-        let part = dicom::read_part(&bytes, limits).map_err(|error| entry.placed(error))?;
-        Ok(part.of_file(entry.number))
+        dicom::read_part(&bytes, entry.number, limits).map_err(|error| entry.placed(error))
     };
     let parts = entries.par_iter().map(read).collect::<Result<Vec<Part>, FormatError>>()?;
     let mut read = dicom::assemble(parts, limits)?;

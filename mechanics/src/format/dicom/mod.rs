@@ -33,7 +33,7 @@ pub(super) fn is_dicom(bytes: &[u8]) -> bool {
 
 /// One file, which is an image in space only where it holds more than one slice.
 pub(super) fn read(bytes: &[u8], limits: &ReadLimits) -> Result<ReadMesh, FormatError> {
-    assemble(vec![read_part(bytes, limits)?], limits)
+    assemble(vec![read_part(bytes, 1, limits)?], limits)
 }
 
 fn bad(at: u64, detail: impl Into<String>) -> FormatError {

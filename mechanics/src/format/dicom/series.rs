@@ -41,6 +41,7 @@ pub(in crate::format) fn assemble(
         let detail = "the modality of the series is not CT: its values may be no Hounsfield units";
         warnings.push(Warning::new("no-hounsfield", detail));
     }
+    warnings.extend(padding_replaced(&slices));
     let stack = Stack::of(&slices, &plane)?;
     let [right, down] = [0, 1].map(|axis| plane.directions[axis] * plane.spacing[axis]);
     let placement = Placement { origin: stack.origin, steps: [right, down, stack.step] };
@@ -92,6 +93,19 @@ fn select_series(parts: Vec<Part>) -> Result<Sorted, FormatError> {
         format!("{left_out} {FORMAT} files are scout views or no slices, and are left out");
     let warning = || Warning::new("files-passed-over", detail).with("files", left_out as f64);
     Ok(Sorted { slices, warnings: (left_out > 0).then(warning).into_iter().collect() })
+}
+
+/// That padding counts as air; nothing where its number says so itself.
+fn padding_replaced(slices: &[Slice]) -> Option<Warning> {
+    let of = slices.iter().filter(|slice| slice.padded > 0).count();
+    let pixels: usize = slices.iter().map(|slice| slice.padded).sum();
+    let detail = format!(
+        "{pixels} pixels at the border of {of} of {} slices are declared as padding (Pixel Padding Value) and have values above air: \
+         they are taken as air, no measurement of the scanner is changed",
+        slices.len()
+    );
+    let warning = || Warning::new("padding-replaced", detail).with("pixels", pixels as f64);
+    (pixels > 0).then(|| warning().with("slices", of as f64))
 }
 
 /// The plane of all slices, which differ in their place only.

@@ -46,16 +46,8 @@ pub(in crate::format) struct Slice {
     pub(super) position: Vector,
     /// Rescaled.
     pub(super) voxels: Voxels,
-}
-
-impl Part {
-    /// As the file of that number.
-    pub fn of_file(self, file: usize) -> Part {
-        match self {
-            Part::Slice(slice) => Part::Slice(Box::new(Slice { file, ..*slice })),
-            other @ (Part::Localiser | Part::NoImage) => other,
-        }
-    }
+    /// Pixels of padding that count as air in place of their number.
+    pub(super) padded: usize,
 }
 
 impl Plane {
@@ -86,8 +78,12 @@ impl Plane {
     }
 }
 
-/// Reads one file with all its pixels.
-pub(in crate::format) fn read_part(bytes: &[u8], limits: &ReadLimits) -> Result<Part, FormatError> {
+/// Reads one file with all its pixels; `file` is its number in an archive, from 1.
+pub(in crate::format) fn read_part(
+    bytes: &[u8],
+    file: usize,
+    limits: &ReadLimits,
+) -> Result<Part, FormatError> {
     let attributes = Attributes::read(bytes)?;
     let Some(pixels) = &attributes.pixels else { return Ok(Part::NoImage) };
     if attributes.has_word(tag::IMAGE_TYPE, "LOCALIZER") {
@@ -98,11 +94,11 @@ pub(in crate::format) fn read_part(bytes: &[u8], limits: &ReadLimits) -> Result<
     let count = plane.size[0] as u64 * plane.size[1] as u64;
     limits.check_voxels(count)?;
     let position = Vector::from(attributes.needed::<3>(tag::POSITION)?);
-    let voxels = voxels(&attributes, pixels, plane.size)?;
+    let (voxels, padded) = voxels(&attributes, pixels, plane.size)?;
     let word = |tag| attributes.word(tag).unwrap_or_default();
     let (series, modality) = (word(tag::SERIES), word(tag::MODALITY));
     let identity = Identity::read(&attributes);
-    let slice = Slice { file: 1, series, identity, modality, plane, position, voxels };
+    let slice = Slice { file, series, identity, modality, plane, position, voxels, padded };
     Ok(Part::Slice(Box::new(slice)))
 }
 
@@ -128,11 +124,12 @@ fn check_kind(attributes: &Attributes<'_>) -> Result<(), FormatError> {
     }
 }
 
+/// The values of a slice, and how many of them are air in place of padding.
 fn voxels(
     attributes: &Attributes<'_>,
     pixels: &StoredPixels<'_>,
     size: [usize; 2],
-) -> Result<Voxels, FormatError> {
+) -> Result<(Voxels, usize), FormatError> {
     let layout = PixelLayout {
         size,
         bits_allocated: attributes.count(tag::BITS_ALLOCATED)?,
@@ -153,7 +150,7 @@ fn voxels(
         for pixel in stored {
             builder.push_integer(layout.number(pixel), rescale)?;
         }
-        return Ok(builder.finish());
+        return Ok((builder.finish(), 0));
     };
     let numbers: Vec<i64> = stored.into_iter().map(|pixel| layout.number(pixel)).collect();
     let is_padding = padding.of(&numbers, size);
@@ -161,11 +158,14 @@ fn voxels(
     let measured = numbers.iter().zip(&is_padding).filter(|(_, padded)| !**padded);
     let is_ct = attributes.word(tag::MODALITY).is_none_or(|modality| modality == "CT");
     let air = air(measured.map(|(&number, _)| value(number)), is_ct);
+    let mut replaced = 0;
     for (&number, padded) in numbers.iter().zip(is_padding) {
-        match padded && value(number) > air {
-            true => builder.push_integer(air as i64, Rescale::NONE)?,
-            false => builder.push_integer(number, rescale)?,
+        if padded && value(number) > air {
+            builder.push_integer(air as i64, Rescale::NONE)?;
+            replaced += 1;
+        } else {
+            builder.push_integer(number, rescale)?;
         }
     }
-    Ok(builder.finish())
+    Ok((builder.finish(), replaced))
 }

@@ -265,10 +265,14 @@ fn padding_around_the_circle_of_the_scanner_is_air_whatever_its_number() {
             [&row, &below, &within].into_iter().for_each(|at| slice.stored[at.clone()].fill(value));
             slice.padding = padding.to_vec();
         }
-        match image(read(&slices)).voxels() {
+        let read = read(&slices);
+        let told = read.warnings.iter().find(|own| own.code == "padding-replaced");
+        let told = told.map_or(0.0, |own| own.numbers[0].1);
+        let values = match image(read).voxels() {
             Voxels::I16(values) => values[..20].to_vec(),
             Voxels::F32(values) => values[..20].iter().map(|&value| value as i16).collect(),
-        }
+        };
+        (values, told)
     };
     let wanted = |around: i16, alone: i16| {
         let mut values = vec![40; 20];
@@ -276,12 +280,13 @@ fn padding_around_the_circle_of_the_scanner_is_air_whatever_its_number() {
         values[within.clone()].fill(alone);
         values
     };
-    assert_eq!(padded(3000, true, &[3000]), wanted(-1000, 3000));
-    assert_eq!(padded(4095, false, &[4095]), wanted(-1000, 3071));
-    assert_eq!(padded(3000, true, &[3100, 2900]), wanted(-1000, 3000));
+    // Six pixels in each of eight slices.
+    assert_eq!(padded(3000, true, &[3000]), (wanted(-1000, 3000), 48.0));
+    assert_eq!(padded(4095, false, &[4095]), (wanted(-1000, 3071), 48.0));
+    assert_eq!(padded(3000, true, &[3100, 2900]), (wanted(-1000, 3000), 48.0));
     // Below air it is left as it is, and without a declaration nothing is padding.
-    assert_eq!(padded(-2000_i16 as u16, true, &[-2000_i16 as u16]), wanted(-2000, -2000));
-    assert_eq!(padded(3000, true, &[]), wanted(3000, 3000));
+    assert_eq!(padded(-2000_i16 as u16, true, &[-2000_i16 as u16]), (wanted(-2000, -2000), 0.0));
+    assert_eq!(padded(3000, true, &[]), (wanted(3000, 3000), 0.0));
 }
 
 #[test]

@@ -44,7 +44,9 @@ fn coordinates_that_are_not_finite_are_counted() {
             "mesh-nonfinite"
         );
     }
-    assert_eq!(code_of(OBJ.replace("v 100 0", "v 1e300 0").as_bytes()), "mesh-limits");
+    let far = OBJ.replace("v 100 0", "v 1e300 0");
+    assert_eq!(code_of(far.as_bytes()), "mesh-limits");
+    assert!(error_of(far.as_bytes()).starts_with("a coordinate is 1e300, and 1e15"));
 }
 
 #[test]

@@ -155,7 +155,7 @@ fn a_header_that_is_wrong_is_refused_with_its_line() {
         ("(30,0,0)", "(30,0)", 7, "three finite numbers"),
         ("(30,0,0)", "(30,0,0,0)", 7, "three finite numbers"),
         ("(30,0,0)", "(0,0,0)", 7, "voxels are 0 mm apart along axis 0"),
-        ("(30,0,0)", "(1e300,0,0)", 7, "mm apart along axis 0"),
+        ("(30,0,0)", "(1e300,0,0)", 7, "00 mm apart along axis 0"),
         ("(30,0,0)", "(0,30,0)", 7, "the three directions lie in one plane"),
         ("endian: little", "endian: middle", 9, "endian is little or big, not \"middle\""),
         ("encoding: raw", "encoding: bzip2", 10, "raw and gzip are read here, \"bzip2\" is asked"),

@@ -24,22 +24,6 @@ fn a_body_without_tissue_is_refused_by_name() {
 }
 
 #[test]
-fn a_sheet_between_the_middles_of_coarse_cells_is_meshed_or_refused_for_its_tissue() {
-    // Cells of 2 mm have their middles in the sheet, as the search begins; those of 3 mm, nearer to the number that is wanted, have not.
-    let half = Vector::new(32.0, 32.0, 1.0);
-    let sheet = Body::skin(32.0, move |x| (half - x.abs()).min());
-    let sheet = Body { low: -half, high: half, ..sheet };
-    let settings = MeshingSettings { target: Some(4000), ..uniform(2.0) };
-    match mesh(&sheet, &settings, &Unobserved) {
-        Ok(tissue) => assert!(tissue.report.volume > 4000.0, "{:?}", tissue.report),
-        Err(refused) => assert!(
-            matches!(refused, MeshingError::Empty { .. } | MeshingError::TooFew { .. }),
-            "{refused}"
-        ),
-    }
-}
-
-#[test]
 fn more_tetrahedra_than_allowed_are_refused_before_they_are_made() {
     for finest in [0.5, 1e-2] {
         let refused = refusal(&ball(40.0), &uniform(finest));

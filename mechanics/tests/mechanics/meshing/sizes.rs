@@ -179,3 +179,13 @@ fn a_number_of_tetrahedra_is_met_within_fifteen_per_cent() {
         }
     }
 }
+
+#[test]
+fn a_sheet_between_the_middles_of_cells_of_the_wanted_number_is_meshed_whole_with_finer_ones() {
+    // Cells of 2 mm have their middles in the sheet, as the search begins; those of 3 mm, nearer to the number that is wanted, have not.
+    let half = Vector::new(32.0, 32.0, 1.0);
+    let sheet = Body::skin(32.0, move |x| (half - x.abs()).min());
+    let sheet = Body { low: -half, high: half, ..sheet };
+    let made = meshed(&sheet, &MeshingSettings { target: Some(4000), ..uniform(2.0) }).report;
+    assert!((made.volume / (8.0 * half.product()) - 1.0).abs() < 0.01, "{made:?}");
+}

@@ -139,14 +139,17 @@ fn a_load_on_held_nodes_alone_is_reported() {
     }
 }
 
-/// The top has three rows of three nodes: one of them fills no face, two do. The bottom is held.
+/// The top has seven rows of three nodes: one of them fills no face, two do. The bottom is held.
 #[test]
 fn a_force_at_nodes_without_a_face_is_reported() {
-    let mut mesh = block(Vector::new(4.0, 5.0, 6.0), [2, 2, 3], CellShape::Hex8);
+    let mut mesh = block(Vector::new(4.0, 5.0, 6.0), [2, 6, 3], CellShape::Hex8);
     let top: Vec<u32> = mesh.node_sets["z_max"].clone();
-    mesh.node_sets.insert("point".to_owned(), vec![top[4]]);
-    mesh.node_sets.insert("row".to_owned(), top[3..6].to_vec());
-    mesh.node_sets.insert("rows".to_owned(), top[..6].to_vec());
+    let mut add = |name: &str, nodes: Vec<u32>| mesh.node_sets.insert(name.to_owned(), nodes);
+    add("point", vec![top[4]]);
+    add("row", top[3..6].to_vec());
+    add("rows", top[..6].to_vec());
+    add("rows and a node beside", top[..7].to_vec());
+    add("rows and one apart", [&top[..6], &top[18..]].concat());
     let mut case = case_of(mesh, material(15.0, 0.3));
     case.fixed.push(set("z_min"));
     let told = |nodes: &str| {
@@ -156,8 +159,9 @@ fn a_force_at_nodes_without_a_face_is_reported() {
         let told = warnings.iter().find(|warning| warning.code == "point-force")?;
         Some(told.numbers[0].1)
     };
-    assert_eq!(["point", "row"].map(told), [Some(1.0), Some(3.0)]);
-    assert_eq!(["rows", "z_max", "z_min"].map(told), [None; 3]);
+    let points = ["point", "row", "rows and one apart"];
+    assert_eq!(points.map(told), [Some(1.0), Some(3.0), Some(3.0)]);
+    assert_eq!(["rows", "rows and a node beside", "z_max", "z_min"].map(told), [None; 4]);
 }
 
 #[test]
