@@ -67,7 +67,7 @@ fn free_tissue_that_hardly_changes_its_volume_grows_in_few_steps() {
             let strain = linear_strain(change);
             let error = largest_error(&case.volume, &answer.displacement, |x| x * strain);
             let steps = answer.solver.iterations;
-            assert!(error < 1e-5, "{shape:?} {nu} {change}: {error:e} mm in {steps} steps");
+            assert!(error < 1e-4, "{shape:?} {nu} {change}: {error:e} mm in {steps} steps");
             assert!(steps <= 80, "{shape:?} {nu} {change}: {steps} steps");
         }
     }

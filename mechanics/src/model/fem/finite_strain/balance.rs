@@ -68,3 +68,22 @@ impl Balance {
         self.residual = if scale > 0.0 { self.unbalanced / scale } else { 0.0 };
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A method that begins anew just before the end of a movement has a sliver of it to make, and much out of balance.
+    #[test]
+    fn what_is_out_of_balance_is_not_taken_for_what_a_movement_exerts() {
+        let after = |unbalanced: f64, load: f64, part: f64| {
+            let mut balance = Balance::new(0.0);
+            balance.at_first = Some(2.0);
+            balance.unbalanced = unbalanced;
+            balance.moved(load, part);
+            balance.at_first
+        };
+        assert_eq!(after(5.0, 5.0, 1e-11), Some(2.0));
+        assert_eq!(after(0.0, 3.0, 0.5), Some(6.0));
+    }
+}
