@@ -79,6 +79,11 @@ pub enum ArrayUse {
     CellVectors,
 }
 
+/// What is said of a region that is asked for and not there.
+pub fn missing_region(name: &str, known: impl IntoIterator<Item = impl AsRef<str>>) -> String {
+    format!("no region is called {name:?}; there are: {}", listed(known))
+}
+
 /// Up to 20 names, so that a message stays one line; `none` where there are none.
 pub fn listed(names: impl IntoIterator<Item = impl AsRef<str>>) -> String {
     let mut names: Vec<String> = names.into_iter().map(|name| name.as_ref().to_owned()).collect();

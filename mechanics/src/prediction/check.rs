@@ -14,7 +14,7 @@ use crate::boundary::conditions::combine;
 use crate::boundary::support::loose_parts;
 use crate::boundary::{Conditions, Constraint, HeldNodes, NodeClass, NodeSelection, Selector};
 use crate::material::LinearElastic;
-use crate::mesh::ignored::listed;
+use crate::mesh::ignored::missing_region;
 use crate::mesh::volume::BoundaryFace;
 use crate::mesh::{ArrayUse, CellShape, Vector, Warning};
 use crate::model::fem::edge_nodes::EdgeNodes;
@@ -97,8 +97,7 @@ impl<'a> Check<'a> {
         let stated = &self.case.materials;
         let known: HashSet<&String> = regions.iter().collect();
         for name in stated.keys().filter(|name| *name != "*" && !known.contains(name)) {
-            let there = listed(regions.iter());
-            let detail = format!("no region is called {name:?}; there are: {there}");
+            let detail = missing_region(name, regions.iter());
             self.problems.add(
                 format!("/case/materials/{name}"),
                 SceneErrorCode::UnknownRegion,

@@ -11,7 +11,7 @@ use super::error_code::SceneErrorCode;
 use super::method::MethodKind;
 use super::scene::{Scene, Tetrahedron};
 use crate::mesh::Vector;
-use crate::mesh::ignored::listed;
+use crate::mesh::ignored::{listed, missing_region};
 use crate::model::fem::inner_stress::{InnerStress, StressedTissue};
 use crate::model::problem::InvertedCell;
 
@@ -107,10 +107,7 @@ impl Check<'_> {
             };
             let meant: Vec<bool> = names.map(|name| is_meant(name)).collect();
             if !meant.contains(&true) {
-                let unknown = || {
-                    let known = listed(scene.regions.iter());
-                    format!("no region is called {region:?}; there are: {known}")
-                };
+                let unknown = || missing_region(region, scene.regions.iter());
                 let nothing_left = nothing_left(stated.iter().copied(), &scene.regions);
                 let nothing_left = nothing_left.filter(|_| region == "*");
                 let detail = nothing_left.unwrap_or_else(unknown);

@@ -18,7 +18,7 @@ use super::method::Method;
 use super::muscle_field::{MuscleBody, MuscleField, MuscleTissue, elsewhere};
 use super::muscle_lines::{Lines, PullShare};
 use super::scene::Scene;
-use crate::mesh::ignored::listed;
+use crate::mesh::ignored::{listed, missing_region};
 use crate::mesh::{ArrayUse, TriangleSurface, Vector, VolumeMesh, Warning, place};
 use crate::model::fem::inner_stress::{CellStress, InnerStress};
 use crate::muscle::lines::nearest;
@@ -118,8 +118,7 @@ impl<'a> Check<'a> {
         pointer: &str,
     ) -> Vec<usize> {
         let Some(number) = regions.iter().position(|name| name == region) else {
-            let known = listed(regions.iter());
-            let detail = format!("no region is called {region:?}; there are: {known}");
+            let detail = missing_region(region, regions.iter());
             let at = format!("{pointer}/region");
             self.problems.add(at, SceneErrorCode::UnknownRegion, detail);
             return Vec::new();

@@ -7,7 +7,7 @@ use crate::schema::plan::document::PlanDocument;
 use crate::schema::wire::canonical;
 use crate::schema::{CaseDocument, ErrorCode, Faults, Pointer};
 use mechanics::mesh::VolumeMesh;
-use mechanics::mesh::ignored::listed;
+use mechanics::mesh::ignored::missing_region;
 use mechanics::prediction::Case;
 
 /// Adds the names of a case and a plan that the mesh of the case lacks, in the words of a scene.
@@ -23,10 +23,8 @@ pub(super) fn unknown_names(
     for (index, growth) in plan.growth.iter().enumerate() {
         let name = growth.region.trim();
         if name != "*" && !regions.contains(name) {
-            let known = listed(&regions);
-            let detail = format!("no region is called {name:?}; there are: {known}");
             let at = root.key("plan").key("growth").index(index).key("region");
-            faults.add(&at, ErrorCode::UnknownRegion, detail);
+            faults.add(&at, ErrorCode::UnknownRegion, missing_region(name, &regions));
         }
     }
 }

@@ -202,11 +202,8 @@ impl<'a> Bricks<'a> {
         DeformedBricks { bricks: self, deformed }
     }
 
-    /// The mean volume changes of positions; empty where no cell takes volume as a mean.
+    /// The mean volume changes of positions.
     pub fn means_at(&self, x: &[Vector]) -> Vec<f64> {
-        if self.means_at_rest().is_empty() {
-            return Vec::new();
-        }
         let deformed = self.at(x, &[]).deformed.into_iter();
         deformed.map(|brick| brick.mean.map_or(1.0, |mean| mean.volume)).collect()
     }
