@@ -22,6 +22,7 @@ use super::audit::{self, AuditParameters};
 use super::audited::{audited_admin_action, carry_out, erased};
 use super::body::BodyState;
 use super::caller::{bearer, unauthorized};
+use super::content_digest::ContentDigest;
 use super::error::{ApiError, ApiResult};
 use super::hosts::{Hosts, check_named_once};
 use super::middleware::named;
@@ -195,6 +196,10 @@ async fn noted(store: &Store, audited: AuditedAction, request: Request, next: Ne
 /// A document, read like those of clients, so that each error is reported with its place.
 fn document<T: DeserializeOwned>(headers: &HeaderMap, body: &Bytes) -> ApiResult<T> {
     body::require_json(headers)?;
+    if let Some(mut digest) = ContentDigest::of(headers)? {
+        digest.push(body);
+        digest.check()?;
+    }
     Ok(strict::parse(body, &Limits::default())?)
 }
 

@@ -8,24 +8,23 @@ use axum::BoxError;
 use axum::body::{Body, BodyDataStream};
 use axum::extract::{FromRequest, Multipart, Request};
 use axum::http::{HeaderMap, HeaderValue, header};
-use base64::Engine;
-use base64::engine::general_purpose::STANDARD;
 use bytes::Bytes;
 use futures::{Stream, StreamExt};
 
 use super::Service;
 use super::budget::ByteReservation;
+use super::content_digest::ContentDigest;
 use super::error::{ApiError, ApiResult};
 use super::pace::Pace;
 use super::spool::{IN_MEMORY, Spool, SpooledBody};
 use crate::schema::ErrorCode;
 use crate::schema::wire::problem::Problem;
 
-/// Limits of size and pace of a body.
-#[derive(Clone, Copy)]
+/// Limits of size and pace of a body, and its digest where one is stated.
 struct Bounds {
     bytes: usize,
     idle: Duration,
+    digest: Option<ContentDigest>,
 }
 
 /// The amount and the time that a client may still send after its request was refused: one that still
@@ -68,6 +67,12 @@ pub fn held(body: Body) -> (Body, Unread) {
 impl Unread {
     pub fn coming(&self) -> BodyState {
         self.coming.clone()
+    }
+
+    /// Reads and discards what is left of a body within its own bounds.
+    async fn finish(self) {
+        let mut frames = self.frames.lock().await;
+        while let Some(Ok(_)) = frames.next().await {}
     }
 
     /// Reads and discards the remainder, within bounds.
@@ -124,21 +129,15 @@ pub async fn document(service: &Service, part: SpooledBody) -> ApiResult<Bytes> 
     }
 }
 
-/// The whole body of an upload, equal to its Content-Digest if it has one.
+/// The whole body of an upload.
 pub async fn upload(service: &Service, request: Request) -> ApiResult<SpooledBody> {
-    let digest = content_digest(request.headers())?;
-    let received = whole(service, request, service.config.upload_bytes).await?;
-    if digest.is_none_or(|digest| digest == received.sha256) {
-        return Ok(received);
-    }
-    let found = format!("sha-256=:{}:", STANDARD.encode(received.sha256));
-    let detail = format!("{} bytes came, and their digest is {found}", received.bytes);
-    Err(Problem::new(ErrorCode::DigestMismatch, detail).with("digest", found).into())
+    whole(service, request, service.config.upload_bytes).await
 }
 
 async fn whole(service: &Service, request: Request, most: usize) -> ApiResult<SpooledBody> {
     let held = begun(service, request.headers(), most)?;
-    let bounds = Bounds { bytes: most, idle: service.config.body_idle };
+    let digest = ContentDigest::of(request.headers())?;
+    let bounds = Bounds { bytes: most, idle: service.config.body_idle, digest };
     let mut spool = Spool::new(service.ground(), held.clone());
     let mut frames = std::pin::pin!(bounded(request.into_body(), bounds, held));
     while let Some(frame) = frames.next().await {
@@ -167,7 +166,9 @@ fn begun(service: &Service, headers: &HeaderMap, most: usize) -> ApiResult<Arc<B
 pub async fn parts(service: &Service, request: Request) -> ApiResult<Vec<(String, SpooledBody)>> {
     let most = service.config.upload_bytes;
     let held = begun(service, request.headers(), most)?;
-    let bounds = Bounds { bytes: most, idle: service.config.body_idle };
+    let digest = ContentDigest::of(request.headers())?;
+    let is_digested = digest.is_some();
+    let bounds = Bounds { bytes: most, idle: service.config.body_idle, digest };
     // The multipart reader wraps what it meets, so the reason for the end of the stream is kept beside it.
     let reason: Arc<Mutex<Option<ApiError>>> = Arc::default();
     let kept = reason.clone();
@@ -178,12 +179,16 @@ pub async fn parts(service: &Service, request: Request) -> ApiResult<Vec<(String
             std::io::Error::other("the body ended early")
         })
     });
-    let request = Request::from_parts(head, Body::from_stream(frames));
-    let found = read_parts(request, service, held).await;
-    match reason.lock().unwrap_or_else(PoisonError::into_inner).take() {
-        Some(error) => Err(error),
-        None => found,
+    let (body, unread) = self::held(Body::from_stream(frames.fuse()));
+    let mut found = read_parts(Request::from_parts(head, body), service, held).await;
+    if is_digested && found.is_ok() {
+        // What follows the last part belongs to the digest.
+        unread.finish().await;
     }
+    if let Some(error) = reason.lock().unwrap_or_else(PoisonError::into_inner).take() {
+        found = Err(error);
+    }
+    found
 }
 
 async fn read_parts(
@@ -250,19 +255,14 @@ fn too_large(most: usize) -> ApiError {
     Problem::new(ErrorCode::PayloadTooLarge, detail).with("limit", most).into()
 }
 
-/// The frames of a body until it is too large or too slow, or its client has too many bytes in flight.
+/// The frames of a body until it ends, is too large, too slow or not that of its digest, or its client has too many bytes in flight.
 fn bounded(
     body: Body,
     bounds: Bounds,
     held: Arc<ByteReservation>,
 ) -> impl Stream<Item = ApiResult<Bytes>> {
-    let incoming = Incoming {
-        frames: body.into_data_stream(),
-        bounds,
-        held,
-        pace: Pace::new(bounds.idle),
-        count: 0,
-    };
+    let pace = Pace::new(bounds.idle);
+    let incoming = Incoming { frames: body.into_data_stream(), bounds, held, pace, count: 0 };
     futures::stream::unfold(Some(incoming), |incoming| async move {
         let mut incoming = incoming?;
         match incoming.next().await {
@@ -288,13 +288,19 @@ impl Incoming {
         let next = tokio::time::timeout(self.bounds.idle, self.frames.next()).await;
         let frame = match next {
             Err(_) => return Err(too_slow(self.count)),
-            Ok(None) => return Ok(None),
+            Ok(None) => {
+                let digest = self.bounds.digest.take();
+                return digest.map_or(Ok(None), |digest| digest.check().map(|()| None));
+            }
             Ok(Some(Err(_))) => return Err(broken_off(self.count)),
             Ok(Some(Ok(frame))) => frame,
         };
         self.count += frame.len();
         if self.count > self.bounds.bytes {
             return Err(too_large(self.bounds.bytes));
+        }
+        if let Some(digest) = &mut self.bounds.digest {
+            digest.push(&frame);
         }
         self.held.at_least(self.count as u64)?;
         // What is done with a frame does not count as time of the client's.
@@ -329,24 +335,4 @@ fn too_slow(count: usize) -> ApiError {
         format!("the body came too slowly: {count} bytes so far"),
     )
     .header(header::CONNECTION, HeaderValue::from_static("close"))
-}
-
-/// The SHA-256 of a Content-Digest (RFC 9530); other algorithms are ignored.
-fn content_digest(headers: &HeaderMap) -> ApiResult<Option<Vec<u8>>> {
-    let Some(value) = headers.get("content-digest") else {
-        return Ok(None);
-    };
-    let wrong = || {
-        ApiError::invalid_parameter(
-            "Content-Digest",
-            "the header Content-Digest has the form sha-256=:BASE64:",
-        )
-    };
-    let value = value.to_str().map_err(|_| wrong())?;
-    let entry = value.split(',').find_map(|entry| entry.trim().strip_prefix("sha-256="));
-    let Some(entry) = entry else { return Ok(None) };
-    let inner =
-        entry.strip_prefix(':').and_then(|entry| entry.split(':').next()).ok_or_else(wrong)?;
-    let digest = STANDARD.decode(inner).map_err(|_| wrong())?;
-    if digest.len() == 32 { Ok(Some(digest)) } else { Err(wrong()) }
 }

@@ -84,12 +84,7 @@ pub fn meshing_view(meshing: &CaseMeshing, state: CaseState) -> ApiResult<CaseMe
 }
 
 fn error_of(meshing: &CaseMeshing) -> ApiResult<JobErrorDocument> {
-    let ended = |how: &str| JobErrorDocument {
-        kind: ErrorCode::Cancelled.name().to_owned(),
-        class: ErrorClass::Cancelled,
-        detail: format!("the meshing was {how} before it made a mesh"),
-        members: serde_json::Map::new(),
-    };
+    let ended = JobErrorDocument::of_unended_meshing;
     match (&meshing.error, meshing.status) {
         (Some(error), _) => serde_json::from_str(error).map_err(ApiError::internal),
         (None, None) => Ok(ended("removed")),

@@ -18,7 +18,7 @@ use super::idempotency::KeyedRequest;
 use super::meshes::document_of;
 use super::middleware::check_accept;
 use super::paging::Page;
-use super::parameters::{Id, Parameters};
+use super::parameters::{Id, Parameters, listed_tag};
 use super::prefer::{requested_wait, wait_for_end, with_wait};
 use super::resources::Resources;
 use super::{Service, accepted, body, case_state, conditional, job_input, json, time, with_header};
@@ -94,6 +94,7 @@ struct CreateParameters {
 #[into_params(parameter_in = Query)]
 struct ListParameters {
     /// Only cases with this tag.
+    #[param(min_length = 1)]
     tag: Option<String>,
     cursor: Option<String>,
     /// Default: 50.
@@ -235,7 +236,7 @@ async fn answer(service: &Service, status: StatusCode, row: &CaseRow) -> ApiResu
 )]
 async fn list(service: Service, Parameters(parameters): Parameters<ListParameters>) -> ApiResult {
     let page = Page::new(parameters.cursor.as_deref(), parameters.limit)?;
-    let tag = parameters.tag.unwrap_or_default();
+    let tag = listed_tag(parameters.tag)?;
     let mut rows = service.store.cases(&tag, page.after.as_deref(), page.rows()).await?;
     let next = page.cut(&mut rows, |row| &row.id);
     let items = rows.iter().map(view).collect::<ApiResult<_>>()?;

@@ -41,7 +41,7 @@ pub fn router() -> Resources {
 
 /// The events of a job, from the first or from the one after `Last-Event-ID`, to the end of the job. `event` is
 /// `state` when a job is accepted or an attempt begins, `progress` for its progress, and `end`; `id` counts from 1
-/// without gaps; `data` is a `JobEvent`. The last thousand events of a job are kept. A broken stream is resumed
+/// without gaps; `data` is a `JobEvent`. If the job is removed meanwhile, the `end` says so (`removed`). The last thousand events of a job are kept. A broken stream is resumed
 /// with the last id that was read; if there are no more events, the response is 204: do not reconnect.
 #[utoipa::path(
     get, path = "/v1/jobs/{id}/events", operation_id = "follow_job", tag = "jobs",
@@ -79,6 +79,7 @@ async fn follow(
         store: service.store,
         job,
         after,
+        last: None,
         waiting: VecDeque::from([Event::default().retry(RETRY)]),
         ended: false,
         looked: Instant::now(),
@@ -107,6 +108,7 @@ struct EventStream {
     job: String,
     /// The number of the last event sent.
     after: i64,
+    last: Option<EventRow>,
     waiting: VecDeque<Event>,
     ended: bool,
     looked: Instant,
@@ -147,28 +149,51 @@ impl EventStream {
         self.looked = Instant::now();
         match self.store.job_events(&self.job, self.after).await? {
             Some(events) => self.take(&events),
-            // It was removed.
-            None => self.ended = true,
+            None => self.end_removed().await?,
         }
+        Ok(())
+    }
+
+    /// The end of a job that was removed, with the events that this stream did not read.
+    async fn end_removed(&mut self) -> Result<(), StoreError> {
+        self.ended = true;
+        let Some(at) = self.store.erased(&self.job).await? else { return Ok(()) };
+        let before = self.last.as_ref();
+        let end = EventRow {
+            number: self.after + 1,
+            at,
+            status: JobStatus::Dismissed,
+            phase: None,
+            progress: before.map_or(0, |row| row.progress),
+            iteration: None,
+            residual: None,
+            attempt: before.map_or(0, |row| row.attempt),
+        };
+        self.put(&end, true);
         Ok(())
     }
 
     fn take(&mut self, rows: &[EventRow]) {
         for row in rows {
-            self.after = row.number;
-            match event(row) {
-                Ok(event) => self.waiting.push_back(event),
-                Err(error) => tracing::error!(job.id = %self.job, %error, "an event was not sent"),
-            }
+            self.put(row, false);
         }
+        self.last = rows.last().cloned().or(self.last.take());
         // A job that failed may have been accepted once more, so only its last state can be the end.
         if rows.last().is_some_and(|row| row.status.is_terminal()) {
             self.ended = true;
         }
     }
+
+    fn put(&mut self, row: &EventRow, removed: bool) {
+        self.after = row.number;
+        match event(row, removed) {
+            Ok(event) => self.waiting.push_back(event),
+            Err(error) => tracing::error!(job.id = %self.job, %error, "an event was not sent"),
+        }
+    }
 }
 
-fn event(row: &EventRow) -> Result<Event, axum::Error> {
+fn event(row: &EventRow, removed: bool) -> Result<Event, axum::Error> {
     let name = match row.status {
         status if status.is_terminal() => "end",
         JobStatus::Running if row.phase.is_some() => "progress",
@@ -184,6 +209,35 @@ fn event(row: &EventRow) -> Result<Event, axum::Error> {
         iteration: row.iteration.map(unsigned),
         residual: row.residual,
         attempt: u32::try_from(row.attempt).unwrap_or(u32::MAX),
+        removed,
     };
     Event::default().event(name).id(row.number.to_string()).json_data(data)
+}
+
+#[cfg(test)]
+mod tests {
+    use axum::body::to_bytes;
+
+    use super::*;
+    use crate::config::Config;
+    use crate::library::meshes::Library;
+    use crate::store::NewJob;
+
+    #[tokio::test]
+    async fn the_stream_of_a_job_that_is_dismissed_and_removed_at_once_ends_with_that() {
+        let folder = tempfile::tempdir().unwrap();
+        let store = Store::open(folder.path()).await.unwrap();
+        let config = Config::new(|_| None).unwrap();
+        let service = Service::new(config, store.clone(), Library::new(store.clone(), 0));
+        let job = NewJob::example("01890000-0000-7000-8000-000000000001");
+        store.enqueue(&job, 10).await.unwrap();
+        let followed = follow(service, Id(job.id.clone()), None, HeaderMap::new()).await.unwrap();
+        for _ in 0..2 {
+            store.dismiss(&job.id).await.unwrap();
+        }
+        let told = to_bytes(followed.into_body(), 1 << 16).await.unwrap();
+        let told = String::from_utf8(told.to_vec()).unwrap();
+        let (_, end) = told.split_once("event: end").expect("an end");
+        assert!(end.contains("id: 2") && end.contains(r#""removed":true"#), "{told}");
+    }
 }

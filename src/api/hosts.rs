@@ -71,8 +71,13 @@ impl Hosts {
     }
 }
 
-/// Refuses a request of HTTP/1.1 without a host, or with several (RFC 9112, section 3.2).
+/// Refuses a request of HTTP/1.1 without a host, or with several (RFC 9112, section 3.2), and one with several keys.
 pub fn check_named_once(request: &Request) -> ApiResult<()> {
+    let keys = request.headers().get_all(header::AUTHORIZATION).iter().count();
+    if keys > 1 {
+        let detail = format!("a request has one header Authorization, and this one has {keys}");
+        return Err(Problem::new(ErrorCode::MalformedRequest, detail).into());
+    }
     let count = request.headers().get_all(header::HOST).iter().count();
     if count == 1 || request.version() != Version::HTTP_11 {
         return Ok(());

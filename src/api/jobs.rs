@@ -10,10 +10,11 @@ use utoipa_axum::routes;
 use super::accepted::{LONGEST_QUEUE, queue_full};
 use super::caller::Caller;
 use super::error::{ApiError, ApiResult};
-use super::idempotency::KeyedRequest;
+use super::gone::gone;
+use super::idempotency::{KeyedRequest, NewId};
 use super::job_view::status_info;
 use super::paging::Page;
-use super::parameters::{Id, Parameters, id, no_such_job};
+use super::parameters::{Id, Parameters, id, listed_tag, no_such_job};
 use super::prefer::{RETRY_AFTER_S, requested_wait, wait_for_end, with_wait};
 use super::resources::Resources;
 
@@ -26,8 +27,11 @@ use crate::schema::{ErrorCode, Faults, Pointer};
 use super::{Service, body, conditional, job_input, json, with_header};
 use crate::schema::job::{JobStatus, StatusInfo};
 use crate::schema::job_document::{JobDocument, JobKind};
-use crate::store::{Dismissal, Enqueued, JobFilter, JobRow, Tagged};
+use crate::store::{Dismissal, Enqueued, JobFilter, JobRow, NewJob, Tagged};
 use crate::traces::TraceParent;
+
+/// Equal jobs that are found and gone again before one more is tried.
+const REMOVED_MEANWHILE: usize = 10;
 
 pub fn router() -> Resources {
     Resources::new()
@@ -56,6 +60,7 @@ struct ListParameters {
     /// Only jobs of this kind.
     kind: Option<JobKind>,
     /// Only jobs with this tag.
+    #[param(min_length = 1)]
     tag: Option<String>,
     /// Only jobs of this case, and those that read it among others: all that is erased with it, such as models learned from it.
     #[param(format = Uuid)]
@@ -112,34 +117,56 @@ async fn create(service: Service, caller: Caller, request: Request) -> ApiResult
     }
     accepted.id.clone_from(&new.id);
     accepted.traceparent = place.map(|place| place.to_string());
-    let (id, deduplicated) = match service.store.enqueue(&accepted, LONGEST_QUEUE).await? {
-        Enqueued::Accepted => (accepted.id, false),
-        Enqueued::Known(id) => {
-            let deduplicated = id != accepted.id;
-            if deduplicated {
-                tag(&service, &id, &accepted.tags, &[]).await?;
-                new.found(&service, &id).await?;
-            }
-            (id, deduplicated)
-        }
-        Enqueued::QueueFull => return Err(queue_full()),
-        Enqueued::NotMeshed => {
-            let detail = "the meshing of the case ended meanwhile without a mesh";
-            return Err(ApiError::new(ErrorCode::CaseNotReady, detail));
-        }
-        Enqueued::InputGone => {
-            let detail = "the case or a mesh of the job was deleted meanwhile";
-            return Err(ApiError::new(ErrorCode::Conflict, detail));
-        }
-    };
+    let (id, deduplicated) = enqueued(&service, &accepted, &new).await?;
     tracing::info!(job.id = %id, deduplicated, "job accepted");
     created(&service, &id, deduplicated, wait).await
 }
 
+/// The job of a request, and whether it was there before. One that is removed before it has the tags of the request was not.
+async fn enqueued(service: &Service, accepted: &NewJob, new: &NewId) -> ApiResult<(String, bool)> {
+    for _ in 0..REMOVED_MEANWHILE {
+        match service.store.enqueue(accepted, LONGEST_QUEUE).await? {
+            Enqueued::Accepted => return Ok((accepted.id.clone(), false)),
+            Enqueued::Known(id) if id == accepted.id => return Ok((id, false)),
+            Enqueued::Known(id) => {
+                if found(service, &id, &accepted.tags, new).await? {
+                    return Ok((id, true));
+                }
+            }
+            Enqueued::QueueFull => return Err(queue_full()),
+            Enqueued::NotMeshed => {
+                let detail = "the meshing of the case ended meanwhile without a mesh";
+                return Err(ApiError::new(ErrorCode::CaseNotReady, detail));
+            }
+            Enqueued::InputGone => {
+                let detail = "the case or a mesh of the job was deleted meanwhile";
+                return Err(ApiError::new(ErrorCode::Conflict, detail));
+            }
+        }
+    }
+    let detail =
+        "equal jobs of other clients are removed as fast as they are found; send the request again";
+    Err(ApiError::new(ErrorCode::Conflict, detail))
+}
+
+/// Gives a job that was found the tags of the request; false where it was removed meanwhile.
+async fn found(service: &Service, id: &str, tags: &[String], new: &NewId) -> ApiResult<bool> {
+    match tag(service, id, tags, &[]).await {
+        Err(error) if error.problem.code == ErrorCode::NoSuchJob => Ok(false),
+        tagged => {
+            tagged?;
+            new.found(service, id).await?;
+            Ok(true)
+        }
+    }
+}
+
 /// The response to a request that created a job, or found it.
 async fn created(service: &Service, id: &str, deduplicated: bool, wait: Option<u32>) -> ApiResult {
-    let job = wait_for_end(service, id, wait.unwrap_or(0)).await?;
-    let job = job.ok_or_else(no_such_job)?;
+    let Some(job) = wait_for_end(service, id, wait.unwrap_or(0)).await? else {
+        let erased = service.store.erased(id).await?;
+        return Err(erased.map_or_else(no_such_job, |at| gone(id, at)));
+    };
     let location = format!("/v1/jobs/{id}");
     let answer = if deduplicated || job.status == JobStatus::Successful {
         let answer = answer(StatusCode::OK, &job, deduplicated, wait)?;
@@ -248,7 +275,7 @@ async fn list(service: Service, Parameters(parameters): Parameters<ListParameter
     let filter = JobFilter {
         status: parameters.status.map_or("", JobStatus::name).to_owned(),
         kind: parameters.kind.map_or("", JobKind::name).to_owned(),
-        tag: parameters.tag.unwrap_or_default(),
+        tag: listed_tag(parameters.tag)?,
         case_id: case_id.transpose()?.unwrap_or_default(),
         cursor: page.after.clone(),
         limit: page.rows(),
@@ -301,6 +328,27 @@ mod tests {
         let (status, kind, tag, case, cursor, limit) = (None, None, None, None, None, None);
         let parameters = ListParameters { status, kind, tag, case, cursor, limit };
         list(service.clone(), Parameters(parameters)).boxed()
+    }
+
+    #[tokio::test]
+    async fn a_job_that_is_removed_as_it_is_found_is_made_anew_and_one_removed_later_is_gone() {
+        let folder = tempfile::tempdir().unwrap();
+        let store = Store::open(folder.path()).await.unwrap();
+        let config = Config::new(|_| None).unwrap();
+        let service = Service::new(config, store.clone(), Library::new(store.clone(), 0));
+        let asked = KeyedRequest::at(&service, &HeaderMap::new(), "/v1/jobs", &[]).unwrap();
+        let new = asked.reserve(&service).await.unwrap();
+        let job = NewJob::example(&new.id);
+        assert_eq!(enqueued(&service, &job, &new).await.unwrap(), (new.id.clone(), false));
+        let again = NewJob::example("01890000-0000-7000-8000-000000000001");
+        assert_eq!(enqueued(&service, &again, &new).await.unwrap(), (new.id.clone(), true));
+        for _ in 0..2 {
+            store.dismiss(&new.id).await.unwrap();
+        }
+        assert!(!found(&service, &new.id, &[], &new).await.unwrap());
+        assert_eq!(enqueued(&service, &again, &new).await.unwrap(), (again.id.clone(), false));
+        let removed = created(&service, &new.id, true, None).await.unwrap_err();
+        assert_eq!(removed.problem.code, ErrorCode::Gone);
     }
 
     #[tokio::test]

@@ -18,6 +18,7 @@ mod cohort_input;
 mod cohort_members;
 mod cohorts;
 mod conditional;
+mod content_digest;
 mod download;
 mod drawn;
 mod error;

@@ -86,6 +86,7 @@ fn described() -> OpenApi {
         .description(Some(
             "Predicts how a face will look after the bones under it are moved. Not a medical device. \
              Lengths are mm, angles degrees, stresses kPa, forces mN. \
+             Any body may be sent with `Content-Digest` (RFC 9530, `sha-256` or `sha-512`), and is refused with 400 if it is another. \
              Every error is application/problem+json (RFC 9457) with a stable `code`.",
         ))
         .build();

@@ -114,6 +114,14 @@ impl<S: Send + Sync> FromRequestParts<S> for FileName {
     }
 }
 
+/// The tag of a list, empty if none was asked for: an empty one would be a silent default.
+pub fn listed_tag(tag: Option<String>) -> ApiResult<String> {
+    match tag.as_deref().map(str::trim) {
+        Some("") => Err(ApiError::invalid_parameter("tag", "no tag is empty")),
+        Some(_) | None => Ok(tag.unwrap_or_default()),
+    }
+}
+
 pub fn no_such_job() -> ApiError {
     ApiError::new(ErrorCode::NoSuchJob, "there is no such job")
 }

@@ -21,14 +21,15 @@ use crate::jobs::response::{
     COLUMNS_FILE, COLUMNS_MEDIA_TYPE, DESCRIPTION_FILE, DESCRIPTION_MEDIA_TYPE, SECOND_ORDER_FILE,
 };
 use crate::library::applied::Applied;
-use crate::library::responses::{FoundResponse, LoadedResponse, MissingResponse};
+use crate::library::loaded_response::LoadedResponse;
+use crate::library::responses::{FoundResponse, MissingResponse, ResponseChoice};
 use crate::library::upload::not_written;
-use crate::schema::ErrorCode;
 use crate::schema::applied::{AppliedDocument, ApplyDocument};
 use crate::schema::key::Scope;
 use crate::schema::predict::document::{RANGES_MM, USUAL_RANGE_MM};
 use crate::schema::response_description::ResponseDescription;
 use crate::schema::wire::strict;
+use crate::schema::{ErrorCode, PlanDocument};
 use mechanics::format::WriteError;
 
 const GLB_MEDIA_TYPE: &str = "model/gltf-binary";
@@ -41,8 +42,9 @@ pub fn router() -> Resources {
 #[serde(deny_unknown_fields)]
 #[into_params(parameter_in = Query)]
 struct ResponseParameters {
-    /// The job that built the response. Default: the newest for the present version of the case, with the materials of the
-    /// case, no membrane and the usual element if there is one, of any order and segments; the response to the request says which.
+    /// The job that built the response. Default: the newest for the present version of the case, by `fem_linear` with the usual element, the
+    /// materials of the case, no membrane and a tolerance of 1e-8 or less, of any order; of these first one with all segments. Only if there is none
+    /// is another one taken; the response to the request says which.
     #[param(format = Uuid)]
     job: Option<String>,
     /// 2: the columns of second order instead, little-endian i16 [column][node][xyz], which `second_order` of
@@ -69,8 +71,9 @@ impl ResponseParameters {
 #[serde(deny_unknown_fields)]
 #[into_params(parameter_in = Query)]
 struct ApplyParameters {
-    /// The job that built the response. Default: the newest for the present version of the case, with the materials of the
-    /// case, no membrane and the usual element if there is one, of any order and segments; the response to the request says which.
+    /// The job that built the response. Default: the newest for the present version of the case, by `fem_linear` with the usual element, the
+    /// materials of the case, no membrane and a tolerance of 1e-8 or less, of any order; of these first one with all columns that the plan needs. Only if there is none
+    /// is another one taken, with the warning `other-response`; the response to the request says which.
     #[param(format = Uuid)]
     job: Option<String>,
     /// The displacement in mm at which the colours of `model/gltf-binary` end; they begin at 0. Default: 10.
@@ -99,11 +102,12 @@ impl ApplyParameters {
 struct ResponseReference<'a> {
     case: &'a str,
     job: Option<&'a str>,
+    plan: Option<&'a PlanDocument>,
     foreseen: Option<ResponseLookup>,
 }
 
 async fn find(service: &Service, meant: ResponseReference<'_>) -> ApiResult<FoundResponse> {
-    let ResponseReference { case, job, foreseen } = meant;
+    let ResponseReference { case, job, plan, foreseen } = meant;
     let job = match job {
         Some(text) => {
             let unknown = || refusal(MissingResponse::NotOfCase { job: text.to_owned() });
@@ -111,9 +115,10 @@ async fn find(service: &Service, meant: ResponseReference<'_>) -> ApiResult<Foun
         }
         None => None,
     };
+    let wanted = ResponseChoice { job: job.as_deref(), plan };
     let found = match foreseen.and_then(ResponseLookup::fresh) {
-        Some(built) => service.responses.find_among(built, case, job.as_deref()).await,
-        None => service.responses.find(case, job.as_deref()).await,
+        Some(built) => service.responses.find_among(built, case, wanted).await,
+        None => service.responses.find(case, wanted).await,
     };
     match found {
         Err(missing @ MissingResponse::NotBuilt) => {
@@ -163,7 +168,8 @@ async fn show(
     let offered = [DESCRIPTION_MEDIA_TYPE, COLUMNS_MEDIA_TYPE, GLB_MEDIA_TYPE];
     let wanted = preferred(&headers, &offered)?;
     let columns_file = parameters.columns_file()?;
-    let meant = ResponseReference { case: &id, job: parameters.job.as_deref(), foreseen: None };
+    let job = parameters.job.as_deref();
+    let meant = ResponseReference { case: &id, job, plan: None, foreseen: None };
     let found = find(&service, meant).await?;
     let files = [DESCRIPTION_FILE, columns_file];
     let Some(file) = files.get(wanted) else {
@@ -221,7 +227,7 @@ async fn rest(service: &Service, found: &FoundResponse, headers: &HeaderMap) -> 
                 ("Facies-Order" = u8, description = "that of the response: 2 if the displacement includes the second-order term"),
                 ("Facies-Nonlinearity-Estimate-Mm" = f64, description = "the linearisation error: of order 1 the second-order term, of order 2 the third-order term, from samples; absent if tissue grows or muscles pull"),
                 ("Facies-Within-Linear-Range" = bool, description = "as `within_linear_range`"),
-                ("Facies-Warning" = Option<String>, description = "the codes of the warnings: outside-linear-range, outside-second-order-range, nonlinearity-unknown, nothing-moves, plan-units-suspect, sliding-normal-turned, tearing, skin-overlaps, and those of the case as the response was built"),
+                ("Facies-Warning" = Option<String>, description = "the codes of the warnings: outside-linear-range, outside-second-order-range, nonlinearity-unknown, nothing-moves, plan-units-suspect, sliding-normal-turned, tearing, skin-overlaps, other-response, solved-loosely, and those of the case as the response was built"),
                 ("Facies-Not-Measured" = Option<String>, description = "codes of warnings that were not checked, as `not_measured`"),
                 ("Server-Timing" = String, description = "milliseconds to find the response, to add up its columns, to check the skin, and to write the result"))),
         (status = 404, description = "there is no such case, or no response was built"),
@@ -246,7 +252,8 @@ async fn apply(
     let foreseen = request.extensions().get::<ResponseLookup>().cloned();
     let bytes = body::json(&service, request).await?;
     let document: ApplyDocument = strict::parse(&bytes, &service.limits)?;
-    let meant = ResponseReference { case: &id, job: parameters.job.as_deref(), foreseen };
+    let (job, plan) = (parameters.job.as_deref(), Some(&document.plan));
+    let meant = ResponseReference { case: &id, job, plan, foreseen };
     let found = find(&service, meant).await?;
     let loaded = service.responses.load(&found).await?;
     let amounts = loaded.description.amounts(&document.plan, &service.limits)?;
@@ -254,10 +261,10 @@ async fn apply(
 
     // Numerics keep off the threads that answer; a turn on one that may block costs some 20 µs. No permit is
     // asked for: a parse of a large mesh would hold it for seconds.
-    let job = found.job.clone();
+    let (job, other) = (found.job.clone(), found.warning());
     let computed = tokio::task::spawn_blocking(move || {
         let started = Instant::now();
-        let mut applied = loaded.apply(&amounts);
+        let mut applied = loaded.apply(&amounts).warned(other.into_iter().collect());
         let applying = started.elapsed();
         if wanted.check_skin {
             applied = loaded.check_skin(applied);

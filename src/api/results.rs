@@ -61,7 +61,7 @@ struct FileParameters {
     ),
     responses(
         (status = 200, description = "the file, with the media type in the manifest", content((Vec<u8> = "*/*"))),
-        (status = 206, description = "the requested range", content((Vec<u8> = "*/*"))),
+        (status = 206, description = "the requested range of a file; a picture or report that is drawn is sent whole", content((Vec<u8> = "*/*"))),
         (status = 304, description = "the client has it already"),
         (status = 404, description = "there is no such job or file, or the job has not ended"),
         (status = 416, description = "the range is outside the file"),

@@ -4,11 +4,12 @@ use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
 
+pub use super::deployment::AdminError;
+use super::deployment::{export, import, open, open_or_make};
 use super::settings::Arguments as Settings;
-use crate::config::Config;
 use crate::schema::key::{KeyDocument, RETENTION_DAYS, TENANT_NAMES, is_tenant, scopes_of};
 use crate::schema::wire::problem::Problem;
-use crate::store::{AuditRow, AuditedAction, Chain, DEFAULT_TENANT, Findings, Store, StoreError};
+use crate::store::{AuditRow, AuditedAction, Chain, DEFAULT_TENANT, Findings, Store};
 
 /// Rows of the audit log that are read together.
 const AUDIT_ROWS: i64 = 1000;
@@ -131,47 +132,17 @@ fn tenant(text: &str) -> Result<String, String> {
     }
 }
 
-#[derive(Debug, thiserror::Error)]
-pub enum AdminError {
-    #[error("{0}")]
-    Setting(#[from] crate::config::ConfigError),
-    #[error("{0}")]
-    Store(#[from] StoreError),
-    #[error("{0}")]
-    Io(#[from] std::io::Error),
-    #[error("{0}")]
-    Refused(String),
-    #[error("the audit log was changed: row {at} does not follow from those before it")]
-    Audit { at: i64 },
-    #[error(
-        "{dangling} blobs are lost or damaged, {orphans} are known to no row; {unreached} meshes are reached by nothing"
-    )]
-    Findings { dangling: usize, orphans: usize, unreached: usize },
-}
-
-impl AdminError {
-    /// Whether another setting would help.
-    pub fn is_setting(&self) -> bool {
-        match self {
-            AdminError::Setting(_) => true,
-            AdminError::Store(StoreError::Files(_)) => false,
-            AdminError::Store(error) => error.is_setting(),
-            _ => false,
-        }
-    }
-}
-
 pub fn run(arguments: &Arguments) -> Result<(), AdminError> {
     let runtime = tokio::runtime::Builder::new_multi_thread().enable_all().build()?;
     runtime.block_on(async {
         match &arguments.command {
             Command::Export { to, settings } => {
-                let moved = open(settings).await?.export(to).await?;
+                let moved = export(to, settings).await?;
                 println!("exported {} rows and {} blobs", moved.rows, moved.blobs);
                 Ok(())
             }
             Command::Import { from, settings } => {
-                let moved = open(settings).await?.import(from).await?;
+                let moved = import(from, settings).await?;
                 println!("imported {} rows and {} blobs", moved.rows, moved.blobs);
                 Ok(())
             }
@@ -188,16 +159,12 @@ pub fn run(arguments: &Arguments) -> Result<(), AdminError> {
             }
             Command::Audit { after, settings } => audit(&open(settings).await?, *after).await,
             Command::Fsck { read_all, repair, settings } => {
-                check(&open(settings).await?, *read_all, *repair).await
+                let store = open(settings).await?;
+                store.check_owner().await?;
+                check(&store, *read_all, *repair).await
             }
         }
     })
-}
-
-async fn open(settings: &Settings) -> Result<Store, AdminError> {
-    let given = settings.given()?;
-    let config = Config::without_listener(|name| given.get(name))?;
-    Ok(Store::connect(&config.places).await?.with_key_limit(config.most_keys))
 }
 
 async fn key(command: &KeyCommand) -> Result<(), AdminError> {
@@ -207,7 +174,8 @@ async fn key(command: &KeyCommand) -> Result<(), AdminError> {
                 .map_err(|word| AdminError::Refused(format!("there is no scope {word:?}")))?;
             let wanted = KeyDocument { label: label.clone(), scopes, days: *days };
             wanted.check().map_err(|problem| AdminError::Refused(lines(&problem)))?;
-            let store = open(settings).await?.of_tenant(tenant);
+            // The first key may be made before a service is started.
+            let store = open_or_make(settings).await?.of_tenant(tenant);
             let made = store.make_key(&wanted);
             let key = store
                 .noted(store.audited_action(COMMAND, "admin key new", ""), made, |key| {

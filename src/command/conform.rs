@@ -37,7 +37,8 @@ pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
         *id = folder.join(&*id).to_string_lossy().into_owned();
     }
     let limits = Limits::default();
-    let sources = FileSource::new(&PathBuf::new(), arguments.units.unit(), arguments.scale);
+    let sources = FileSource::new(&PathBuf::new(), arguments.units.unit(), arguments.scale)
+        .beside(&[CASE_FILE]);
     let input = JobInput::Conform(ConformInput { job: None, queue_s: None, spec });
     let place = JobContext { sources: &sources, limits: &limits, out: &arguments.out };
     let claim = Claim::of(&arguments.out, &[CASE_FILE])?;

@@ -1,5 +1,6 @@
 //! The case, the plan and the spec in one file, as the command line reads and writes them.
 
+use std::os::unix::fs::MetadataExt;
 use std::path::{Path, PathBuf};
 
 use serde::de::DeserializeOwned;
@@ -97,9 +98,10 @@ fn refuse(stated: &Map<String, Value>, why: &str, path: &Path) -> Result<(), Com
     faults.into_result().map_err(refused)
 }
 
-/// Whether two paths lead to one file.
+/// Whether two paths lead to one file, by links too.
 pub fn is_same(one: &Path, other: &Path) -> bool {
-    one.canonicalize().is_ok_and(|one| other.canonicalize().is_ok_and(|other| one == other))
+    let file = |path: &Path| Some(path.metadata().ok()?).map(|found| (found.dev(), found.ino()));
+    file(one).is_some_and(|one| file(other) == Some(one))
 }
 
 /// Writes a file, and the folder it is in.

@@ -70,6 +70,7 @@ impl CommandError {
             CommandError::Serve(error) if error.is_setting() => CONFIGURATION,
             CommandError::Health(error) if error.is_setting() => CONFIGURATION,
             CommandError::Admin(error) if error.is_setting() => CONFIGURATION,
+            CommandError::Admin(error) if error.is_refused() => REFUSED,
             CommandError::Admin(AdminError::Findings { .. } | AdminError::Audit { .. }) => FAILED,
             CommandError::Config(_) => CONFIGURATION,
             CommandError::Demo(_)

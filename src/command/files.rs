@@ -53,6 +53,8 @@ pub struct FileSource {
     units: FileUnits,
     allow_any_scale: bool,
     read: Mutex<BTreeMap<String, StoredMesh>>,
+    /// The documents that the command writes beside its result.
+    beside: Vec<String>,
 }
 
 impl FileSource {
@@ -62,7 +64,13 @@ impl FileSource {
             units: FileUnits::All(units),
             allow_any_scale: scale.allow_any_scale,
             read: Mutex::default(),
+            beside: Vec::new(),
         }
+    }
+
+    /// The same for a command that writes documents beside its result.
+    pub fn beside(self, documents: &[&str]) -> Self {
+        FileSource { beside: documents.iter().map(|&name| name.to_owned()).collect(), ..self }
     }
 
     /// The same with meshes that need not be read.
@@ -138,9 +146,17 @@ impl MeshSource for FileSource {
         Err(SourceError::Unknown { id: job.to_owned() })
     }
 
+    fn takes_any_scale(&self) -> bool {
+        self.allow_any_scale
+    }
+
     fn files(&self) -> Vec<PathBuf> {
         let read = self.read.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
         read.keys().map(|id| self.folder.join(id)).collect()
+    }
+
+    fn beside_result(&self) -> Vec<String> {
+        self.beside.clone()
     }
 }
 

@@ -145,7 +145,7 @@ impl ScanArguments {
         let (spec, plan) = self.spec(beside.skin, plan)?;
         let limits = Limits::default();
         let units = beside.units.unwrap_or_default().unit();
-        let sources = FileSource::new(Path::new(""), units, beside.scale);
+        let sources = FileSource::new(Path::new(""), units, beside.scale).beside(&[CASE_FILE]);
         let place = JobContext { sources: &sources, limits: &limits, out };
         let input = MeshingInput { job: None, queue_s: None, spec, case: None };
         let _watch = Watch::start(&input.spec.budget);

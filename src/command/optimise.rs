@@ -40,7 +40,8 @@ pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
     let case = asked.file.case;
     let input = JobInput::Optimise(OptimiseInput { job: None, queue_s: None, case, spec });
     let limits = Limits::default();
-    let place = JobContext { sources: &asked.sources, limits: &limits, out: &arguments.out };
+    let sources = asked.sources.beside(&[PLAN_FILE]);
+    let place = JobContext { sources: &sources, limits: &limits, out: &arguments.out };
     let claim = Claim::of(&arguments.out, &[PLAN_FILE])?;
     let done = run_with_progress(&input, &place)?;
     if let Some(found) = &done.result.optimisation {

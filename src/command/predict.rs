@@ -124,6 +124,7 @@ pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
     if asked.file.plan.is_none() {
         return Err(CommandError::Usage(NO_PLAN.to_owned()));
     }
+    asked.sources = asked.sources.beside(written);
     let limits = Limits::default();
     let input = asked.file.to_input();
     let _watch = Watch::start(&input.spec.budget);

@@ -6,7 +6,7 @@ use std::time::Instant;
 use clap::Args;
 use serde_json::{Value, json};
 
-use super::documents::write;
+use super::documents::{is_same, write};
 use super::failure::CommandError;
 use super::files::{FileSource, ScaleArguments, UnitArgument};
 use crate::jobs::{JobError, MeshSource};
@@ -99,7 +99,28 @@ fn check(arguments: &Arguments) -> Result<(), CommandError> {
             return Err(CommandError::Usage(detail));
         }
     }
-    ending(&arguments.out).map(|_| ())
+    ending(&arguments.out)?;
+    refuse_inputs(arguments)
+}
+
+/// Refuses to write into what is read, and two files into one.
+fn refuse_inputs(arguments: &Arguments) -> Result<(), CommandError> {
+    let Arguments { surface, out, thickness_to, report, .. } = arguments;
+    let read = std::iter::once(surface).chain(thickness_to);
+    let written = || std::iter::once(out).chain(report);
+    if let Some(file) = read.flat_map(|read| written().filter(move |own| is_same(read, own))).next()
+    {
+        let detail =
+            format!("{} is read, and would be replaced: give another file", file.display());
+        return Err(CommandError::Usage(detail));
+    }
+    match report {
+        Some(report) if report == out || is_same(report, out) => Err(CommandError::Usage(format!(
+            "--out and --report are both {}: give two files",
+            out.display()
+        ))),
+        _ => Ok(()),
+    }
 }
 
 /// The ending of a file that can be written.

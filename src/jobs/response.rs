@@ -24,6 +24,7 @@ use crate::schema::{
 };
 use mechanics::format::SurfaceOutput;
 use mechanics::format::vtk::vtp;
+use mechanics::prediction::solved_loosely;
 use mechanics::progress::{Phase, Progress};
 use mechanics::response::{
     COLUMNS_PER_SEGMENT, ColumnRequest, Columns, InnerLoad, QuadraticForm, ResponseError,
@@ -148,20 +149,26 @@ pub fn response_job(
     let mut provenance = origin.provenance(&clock);
     let mesh = mesh_summary(&prepared.scene.mesh, &prepared.quality);
     add_method(&mut provenance, input.spec.method, mesh, solver);
-    let warnings = warnings_of(&prepared, order);
+    let warnings = warnings_of(&prepared, &columns, order);
     let result = ResultDocument::new(input.job.clone(), &folder.files, provenance, warnings);
     folder.add(OutputName::ResultJson, &encode_result(&result)?)?;
     Ok(JobOutput { result, files: folder.files, meshes: Vec::new() })
 }
 
-/// Of the case and its mesh, and of what its law makes of the second order.
-fn warnings_of(prepared: &Prepared, order: ResponseOrder) -> Vec<WarningDocument> {
+/// Of the case and its mesh, of what its law makes of the second order, and of how its columns were solved.
+fn warnings_of(
+    prepared: &Prepared,
+    columns: &Columns,
+    order: ResponseOrder,
+) -> Vec<WarningDocument> {
     let of_order = match order {
         ResponseOrder::First => None,
         ResponseOrder::Second => prepared.scene.second_order_locking(),
     };
     let of_case = prepared.warnings.iter().chain(&prepared.scene.warnings);
-    warnings_after(&prepared.told, of_case.chain(&of_order))
+    let wanted = prepared.scene.settings.relative_residual;
+    let loosely = solved_loosely(wanted, columns.solver.relative_residual);
+    warnings_after(&prepared.told, of_case.chain(&of_order).chain(&loosely))
 }
 
 /// The columns and their description.
@@ -196,7 +203,7 @@ fn write_columns(
             sha256: canonical::sha256_hex(&bytes),
         },
         second_order,
-        warnings: warnings_of(prepared, input.spec.response_order()),
+        warnings: warnings_of(prepared, columns, input.spec.response_order()),
     };
     let description = ResponseDescription::new(columns, origin);
     let text = serde_json::to_vec(&description)

@@ -22,8 +22,18 @@ pub trait MeshSource {
         Err(SourceError::Unknown { id: job.to_owned() })
     }
 
+    /// Whether who sends a mesh says that it may have any size: none is told to be unusual.
+    fn takes_any_scale(&self) -> bool {
+        false
+    }
+
     /// The files that were read, which no result may take the place of; a store has none.
     fn files(&self) -> Vec<PathBuf> {
+        Vec::new()
+    }
+
+    /// The documents that are written beside the result after it: earlier ones go with the earlier result. A store has none.
+    fn beside_result(&self) -> Vec<String> {
         Vec::new()
     }
 }

@@ -2,6 +2,7 @@
 
 pub mod applied;
 pub mod cache;
+pub mod loaded_response;
 pub mod mesh_report;
 pub mod meshes;
 pub mod pictures;

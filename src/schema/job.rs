@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 use utoipa::ToSchema;
 
+use crate::schema::code::ErrorCode;
 use crate::schema::job_document::JobKind;
 use crate::schema::link::Link;
 use crate::schema::predict::result::{EngineDocument, ResultDocument};
@@ -130,6 +131,10 @@ pub struct JobEvent {
     pub residual: Option<f64>,
     /// The number of starts.
     pub attempt: u32,
+    /// True if the job was removed before this stream had its end: `status` is `dismissed` whatever the end was.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    #[schema(required = false)]
+    pub removed: bool,
 }
 
 /// Why a job failed.
@@ -144,6 +149,18 @@ pub struct JobErrorDocument {
     #[serde(flatten)]
     #[schema(value_type = Object)]
     pub members: Map<String, Value>,
+}
+
+impl JobErrorDocument {
+    /// That of a meshing which was dismissed or removed before its end.
+    pub fn of_unended_meshing(how: &str) -> Self {
+        JobErrorDocument {
+            kind: ErrorCode::Cancelled.name().to_owned(),
+            class: ErrorClass::Cancelled,
+            detail: format!("the meshing was {how} before it made a mesh"),
+            members: Map::new(),
+        }
+    }
 }
 
 /// The cause of a failure; only `infrastructure` is retried.

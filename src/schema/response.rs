@@ -7,6 +7,7 @@ use super::code::ErrorCode;
 use super::methods::{self, ElementName, MethodName};
 use crate::schema::case::material::{MaterialDocument, MaterialDocuments};
 use crate::schema::case::membrane::MembraneDocument;
+use crate::schema::plan::document::PlanDocument;
 use crate::schema::predict::budget::BudgetDocument;
 use crate::schema::predict::document::PredictDocument;
 use crate::schema::predict::tolerance::ToleranceDocument;
@@ -92,10 +93,30 @@ impl ResponseDocument {
         }
     }
 
-    /// Whether tissue is that of the case, without other materials, a membrane or an element of the spec's own.
-    pub fn is_of_case_alone(&self) -> bool {
-        let is_usual = self.element == ElementName::default();
-        is_usual && self.materials.is_none() && self.membrane.is_none()
+    /// The members that make its skin another than that of `fem_linear` on the tissue of the case, with the usual element and tolerance.
+    pub fn unusual(&self) -> Vec<&'static str> {
+        let usual = ResponseDocument::default();
+        let loose = usual.tolerance.relative_residual < self.tolerance.relative_residual;
+        let members = [
+            ("method", self.method.chosen() != usual.method.chosen()),
+            ("element", self.element != usual.element),
+            ("materials", self.materials.is_some()),
+            ("membrane", self.membrane.is_some()),
+            ("tolerance", loose),
+        ];
+        members.into_iter().filter(|(_, is_own)| *is_own).map(|(name, _)| name).collect()
+    }
+
+    /// Whether it has the columns that a plan names; without a plan, those of all segments.
+    pub fn follows(&self, plan: Option<&PlanDocument>) -> bool {
+        let Some(plan) = plan else { return self.segments.is_empty() };
+        let has = |names: &[String], name: &str| names.iter().any(|own| own.trim() == name.trim());
+        let all_muscles = self.muscles.is_none() && self.response_order() == ResponseOrder::First;
+        let muscles = self.muscles.as_deref().unwrap_or_default();
+        let moves = |name: &str| self.segments.is_empty() || has(&self.segments, name);
+        plan.segments.iter().all(|of| moves(&of.name))
+            && plan.growth.iter().all(|of| has(&self.growth, &of.region))
+            && plan.activations.iter().all(|of| all_muscles || has(muscles, &of.muscle))
     }
 
     /// Everything that determines the numbers, for the key: no tags, segments unordered.

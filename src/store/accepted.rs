@@ -39,6 +39,30 @@ pub struct NewJob {
     pub waits_for: Option<String>,
 }
 
+#[cfg(test)]
+impl NewJob {
+    /// A job of this id, with the inputs of every other such job.
+    pub fn example(id: &str) -> NewJob {
+        NewJob {
+            id: id.to_owned(),
+            kind: "study",
+            priority: 0,
+            case_id: None,
+            shared_cases: Vec::new(),
+            document: "{}".to_owned(),
+            spec_hash: "same".to_owned(),
+            rows_key: None,
+            truths: None,
+            engine: "{}".to_owned(),
+            tags: Vec::new(),
+            mesh_ids: Vec::new(),
+            learns_from: None,
+            traceparent: None,
+            waits_for: None,
+        }
+    }
+}
+
 /// Outcome of the acceptance of a job.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Enqueued {

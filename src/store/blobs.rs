@@ -5,13 +5,14 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use bytes::Bytes;
-use futures::TryStreamExt;
+use futures::{StreamExt, TryStreamExt};
 use object_store::aws::AmazonS3Builder;
 use object_store::local::LocalFileSystem;
 use object_store::prefix::PrefixStore;
 use object_store::{ClientOptions, ObjectStore, ObjectStoreExt, PutPayload, RetryConfig};
 
 use super::StoreError;
+use super::error::at;
 use super::files::FoundBlob;
 use crate::config::{BlobLocation, Secret, StorageLocations};
 use crate::schema::wire::canonical::sha256_hex;
@@ -23,17 +24,24 @@ const REQUEST_TIMEOUT: Duration = Duration::from_secs(300);
 const RETRY_TIMEOUT: Duration = Duration::from_secs(10);
 const RETRIES: usize = 3;
 
+/// The place that says whose blobs these are.
+const OWNER: &str = "facies-owner";
+
 /// Blobs, each complete or absent: the folder writes beside the place, flushes and renames; S3 shows an object
 /// when all of it is there.
 #[derive(Clone)]
 pub struct Blobs {
     objects: Arc<dyn ObjectStore>,
+    in_data: bool,
 }
 
 impl Blobs {
     pub fn open(places: &StorageLocations) -> Result<Blobs, StoreError> {
         match &places.blobs {
-            BlobLocation::InData => Blobs::in_folder(&places.data.join("blobs")),
+            BlobLocation::InData => {
+                let blobs = Blobs::in_folder(&places.data.join("blobs"))?;
+                Ok(Blobs { in_data: true, ..blobs })
+            }
             BlobLocation::Folder(folder) => Blobs::in_folder(folder),
             BlobLocation::Bucket { bucket, prefix, settings } => {
                 Blobs::in_bucket(bucket, prefix, settings)
@@ -42,9 +50,9 @@ impl Blobs {
     }
 
     fn in_folder(folder: &Path) -> Result<Blobs, StoreError> {
-        std::fs::create_dir_all(folder)?;
+        std::fs::create_dir_all(folder).map_err(at(folder))?;
         let objects = LocalFileSystem::new_with_prefix(folder)?.with_fsync(true);
-        Ok(Blobs { objects: Arc::new(objects) })
+        Ok(Blobs { objects: Arc::new(objects), in_data: false })
     }
 
     fn in_bucket(
@@ -74,7 +82,7 @@ impl Blobs {
             "" => Arc::new(objects),
             prefix => Arc::new(PrefixStore::new(objects, prefix)),
         };
-        Ok(Blobs { objects })
+        Ok(Blobs { objects, in_data: false })
     }
 
     /// Stores bytes durably, at a place that never holds other bytes.
@@ -127,10 +135,43 @@ impl Blobs {
         }
     }
 
-    /// All places that hold bytes.
+    /// All places that hold bytes, without the mark and without folders that bear a mark of their own.
     pub async fn list(&self) -> Result<Vec<String>, StoreError> {
         let found = self.objects.list(None).try_collect::<Vec<_>>().await?;
-        Ok(found.iter().map(|object| object.location.to_string()).collect())
+        let places = found.iter().map(|object| object.location.to_string());
+        Ok(own_places(places.collect()))
+    }
+
+    /// Whether they are in the data folder, which has one owner.
+    pub fn are_in_data(&self) -> bool {
+        self.in_data
+    }
+
+    /// The identity of the database whose blobs these are, if it is written there.
+    pub async fn owner(&self) -> Result<Option<String>, StoreError> {
+        match self.objects.get(&OWNER.into()).await {
+            Ok(found) => {
+                let bytes = found.bytes().await?;
+                Ok(Some(String::from_utf8_lossy(&bytes).trim().to_owned()))
+            }
+            Err(object_store::Error::NotFound { .. }) => Ok(None),
+            Err(error) => Err(error.into()),
+        }
+    }
+
+    pub async fn set_owner(&self, identity: &str) -> Result<(), StoreError> {
+        self.put(OWNER, format!("{identity}\n").into()).await
+    }
+
+    /// Whether nothing is there but the mark. A folder that cannot be read, as `lost+found` of a disk, is none of ours.
+    pub async fn is_empty(&self) -> bool {
+        let mut found = self.objects.list(None);
+        while let Some(object) = found.next().await {
+            if object.is_ok_and(|object| object.location != OWNER.into()) {
+                return false;
+            }
+        }
+        true
     }
 
     /// Whether the store answers, and its bucket exists, which a list tells: an object that is not there has the same status as a
@@ -145,6 +186,17 @@ impl Blobs {
     }
 }
 
+/// Places without the mark and what another one owns.
+fn own_places(places: Vec<String>) -> Vec<String> {
+    let marked = places.iter().filter_map(|place| place.strip_suffix(OWNER));
+    let of_others: Vec<String> =
+        marked.filter(|folder| folder.ends_with('/')).map(str::to_owned).collect();
+    let is_own = |place: &String| {
+        place != OWNER && !of_others.iter().any(|folder| place.starts_with(folder.as_str()))
+    };
+    places.into_iter().filter(is_own).collect()
+}
+
 /// Whether an error is that of a bucket that does not exist, which has the same status as that of an object.
 fn tells_of_no_bucket(error: &object_store::Error) -> bool {
     let mut cause: Option<&(dyn std::error::Error + 'static)> = Some(error);
@@ -155,4 +207,17 @@ fn tells_of_no_bucket(error: &object_store::Error) -> bool {
         cause = error.source();
     }
     false
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn places_of_a_store_within_another_are_none_of_its_own() {
+        let places =
+            ["ab/1", "facies-owner", "b/facies-owner", "b/cd/2", "bc/3", "not-facies-owner"];
+        let own = own_places(places.map(str::to_owned).into());
+        assert_eq!(own, ["ab/1", "bc/3", "not-facies-owner"]);
+    }
 }

@@ -13,6 +13,10 @@ pub enum StoreError {
         "the database at {server} cannot be used: {source}. The setting `database` names server, port, user and database"
     )]
     CannotConnect { server: String, source: sqlx::Error },
+    #[error(
+        "the database {place} can be read and not written: {source}. Its file and its folder have to be writable for the account of the service, and a server has to be no replica"
+    )]
+    ReadOnly { place: String, source: sqlx::Error },
     #[error("blobs: {0}")]
     Blobs(#[from] object_store::Error),
     #[error("the bucket of the setting `blobs` does not exist: create it, or name another one")]
@@ -21,6 +25,10 @@ pub enum StoreError {
         "none of the {meshes} newest meshes of the database is in these blobs: all hosts of a database keep theirs in one place. The setting `blobs` (FACIES_BLOBS) has to name the folder, or the bucket and prefix, of the other hosts; without it blobs are in the data folder of each"
     )]
     OtherBlobs { meshes: usize },
+    #[error(
+        "the blobs of the setting `blobs` (FACIES_BLOBS) are not those of this database: they hold {owner}. Name a place that no other deployment has; if they are those of this database all the same, as after a restore, write {identity} into the file `facies-owner` there"
+    )]
+    ForeignBlobs { owner: String, identity: String },
     #[error("file system: {0}")]
     Files(#[from] std::io::Error),
     #[error(
@@ -121,7 +129,9 @@ impl StoreError {
             | StoreError::ServedAlready { .. }
             | StoreError::NoBucket
             | StoreError::OtherBlobs { .. }
+            | StoreError::ForeignBlobs { .. }
             | StoreError::CannotOpen { .. }
+            | StoreError::ReadOnly { .. }
             | StoreError::Files(_)
             | StoreError::SchemaTooNew { .. }
             | StoreError::SchemaTooOld { .. }
@@ -132,6 +142,11 @@ impl StoreError {
             _ => false,
         }
     }
+}
+
+/// An error of the file system with the path that it is of.
+pub(super) fn at(path: &std::path::Path) -> impl Fn(std::io::Error) -> std::io::Error {
+    move |error| std::io::Error::new(error.kind(), format!("{}: {error}", path.display()))
 }
 
 fn is_full(error: &std::io::Error) -> bool {

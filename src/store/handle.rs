@@ -2,7 +2,7 @@
 
 use super::blobs::Blobs;
 use super::database::{Address, Database};
-use super::error::StoreError;
+use super::error::{StoreError, at};
 use super::notes::Notes;
 use super::open_actions::OpenActions;
 use super::spare::Spare;
@@ -61,7 +61,8 @@ impl Store {
 
     /// Opens the store. The data folder is that of this process alone.
     pub async fn connect(places: &StorageLocations) -> Result<Store, StoreError> {
-        std::fs::create_dir_all(places.data.join("tmp"))?;
+        let temporary = places.data.join("tmp");
+        std::fs::create_dir_all(&temporary).map_err(at(&temporary))?;
         let lock = lock(&places.data).await?;
         let shared = matches!(places.database, DatabaseLocation::Server { .. });
         // Before the database is opened, which may need the room.
@@ -88,6 +89,13 @@ impl Store {
         })
     }
 
+    /// The file of the embedded database, where nothing was ever stored.
+    pub fn missing(places: &StorageLocations) -> Option<PathBuf> {
+        let is_embedded = matches!(places.database, DatabaseLocation::Embedded);
+        let file = embedded(places);
+        (is_embedded && matches!(file.try_exists(), Ok(false))).then_some(file)
+    }
+
     /// The same store with another bound on the keys of a tenant.
     pub fn with_key_limit(self, most_keys: u32) -> Store {
         Store { most_keys: most_keys.into(), ..self }
@@ -104,7 +112,7 @@ impl Store {
         let _lock = match places.database {
             DatabaseLocation::Server { .. } => None,
             DatabaseLocation::Embedded => {
-                std::fs::create_dir_all(&places.data)?;
+                std::fs::create_dir_all(&places.data).map_err(at(&places.data))?;
                 let locked = lock(&places.data).await;
                 Some(locked.map_err(|error| match error {
                     StoreError::InUse { folder } => StoreError::ServedAlready { folder },
@@ -227,7 +235,8 @@ const LOCK_WITHIN: Duration = Duration::from_secs(3);
 const LOCK_PAUSE: Duration = Duration::from_millis(50);
 
 async fn lock(folder: &Path) -> Result<File, StoreError> {
-    let lock = File::create(folder.join("lock"))?;
+    let file = folder.join("lock");
+    let lock = File::create(&file).map_err(at(&file))?;
     let until = Instant::now() + LOCK_WITHIN;
     while lock.try_lock().is_err() {
         if Instant::now() >= until {
@@ -238,9 +247,13 @@ async fn lock(folder: &Path) -> Result<File, StoreError> {
     Ok(lock)
 }
 
+fn embedded(places: &StorageLocations) -> PathBuf {
+    places.data.join("facies.db")
+}
+
 fn address(places: &StorageLocations) -> Result<Address, StoreError> {
     Ok(match &places.database {
-        DatabaseLocation::Embedded => Address::File(places.data.join("facies.db")),
+        DatabaseLocation::Embedded => Address::File(embedded(places)),
         DatabaseLocation::Server { address, connections } => {
             Address::server(address.reveal(), *connections)?
         }

@@ -2,17 +2,13 @@
 
 use std::time::{Duration, Instant};
 
-use super::database::query;
+use super::database::{is_read_only, query};
 use super::{Store, StoreError};
 
 const CLOCK: &str = "SELECT now_ms FROM clock";
 /// A row that is gone again when it is committed, in a table that nothing refers to.
 const WRITE: &str = "INSERT INTO unfinished_blobs (id, place, begun) VALUES ($1, '', 0)";
 const TAKE_BACK: &str = "DELETE FROM unfinished_blobs WHERE id = $1";
-
-/// The places of the meshes that were stored last.
-const NEWEST: &str = "SELECT blobs.place FROM meshes JOIN blobs ON blobs.sha256 = meshes.blob \
-     ORDER BY meshes.id DESC LIMIT 5";
 
 /// More frequent requests get the last result.
 const WRITTEN_EVERY: Duration = Duration::from_secs(1);
@@ -35,23 +31,27 @@ impl Store {
         Ok(())
     }
 
-    /// Whether the blobs can be reached and, where other hosts share the database, are those that it names: what is kept elsewhere is lost
-    /// to the others.
+    /// Whether the database takes a row, for a start: one that can only be read serves nobody.
+    pub async fn check_writable(&self) -> Result<(), StoreError> {
+        match self.ping().await {
+            Err(StoreError::Database(source)) if is_read_only(&source) => {
+                Err(StoreError::ReadOnly { place: self.database.place(), source })
+            }
+            tried => tried,
+        }
+    }
+
+    /// Whether the blobs can be reached, are those of this database and, where other hosts share it, those that they name: what is kept
+    /// elsewhere is lost to the others.
     pub async fn check_blobs(&self) -> Result<(), StoreError> {
         self.blobs.ping().await?;
-        if !self.shared {
-            return Ok(());
-        }
-        let rows = query(NEWEST).fetch_all(self.database.reader()).await?;
-        for row in &rows {
-            if self.blobs.exists(&row.try_get::<String, _>(0)?).await? {
-                return Ok(());
+        if self.shared {
+            let newest = self.newest().await?;
+            if newest.meshes > 0 && !newest.is_there {
+                return Err(StoreError::OtherBlobs { meshes: newest.meshes });
             }
         }
-        match rows.len() {
-            0 => Ok(()),
-            meshes => Err(StoreError::OtherBlobs { meshes }),
-        }
+        self.check_owner().await
     }
 
     /// Whether blobs are in order and the data folder takes a file.

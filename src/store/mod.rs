@@ -29,6 +29,7 @@ mod meshes;
 mod note_rows;
 mod notes;
 mod open_actions;
+mod owner;
 mod plans;
 mod queue;
 mod references;

@@ -5,7 +5,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs::{DirBuilder, File};
-use std::io::{BufRead, BufReader, BufWriter, Write};
+use std::io::{BufRead, BufReader, BufWriter, ErrorKind, Write};
 use std::os::unix::fs::DirBuilderExt;
 use std::path::Path;
 
@@ -78,7 +78,9 @@ enum Kind {
 /// The bytes of an exported blob, whose file has their hash for its name.
 fn read_exported(folder: &Path, sha256: &str) -> Result<Vec<u8>, StoreError> {
     let file = folder.join("blobs").join(sha256);
-    let bytes = std::fs::read(&file).map_err(at(&file, "the manifest of the export names it"))?;
+    let bytes = std::fs::read(&file)
+        .map_err(at(&file, "the manifest of the export names it"))
+        .map_err(absent)?;
     let found = sha256_hex(&bytes);
     if found == *sha256 {
         return Ok(bytes);
@@ -119,8 +121,9 @@ impl Store {
     /// Takes in what was exported, all of it or nothing. Only into a deployment in which there is nothing.
     pub async fn import(&self, folder: &Path) -> Result<TransferCounts, StoreError> {
         let file = folder.join(MANIFEST);
-        let text =
-            std::fs::read(&file).map_err(at(&file, "it has to be what `admin export` wrote"))?;
+        let text = std::fs::read(&file)
+            .map_err(at(&file, "it has to be what `admin export` wrote"))
+            .map_err(absent)?;
         let manifest: Manifest = serde_json::from_slice(&text).map_err(unreadable)?;
         if manifest.schema != newest_step() {
             let (found, known) = (manifest.schema, newest_step());
@@ -173,6 +176,14 @@ fn at(path: &Path, wanted: &'static str) -> impl Fn(std::io::Error) -> std::io::
     move |error| std::io::Error::new(error.kind(), format!("{path}: {error}; {wanted}"))
 }
 
+/// What an export lacks is a fault of the export, and not of the disk.
+fn absent(error: std::io::Error) -> StoreError {
+    match error.kind() {
+        ErrorKind::NotFound => StoreError::Export(error.to_string()),
+        _ => StoreError::Files(error),
+    }
+}
+
 async fn export_table(
     snapshot: &mut Transaction,
     table: &'static str,
@@ -199,7 +210,8 @@ async fn import_table(
     table: &'static str,
     file: &Path,
 ) -> Result<usize, StoreError> {
-    let mut lines = BufReader::new(File::open(file)?).lines();
+    let opened = File::open(file).map_err(at(file, "the manifest of the export names it"));
+    let mut lines = BufReader::new(opened.map_err(absent)?).lines();
     let Some(head) = lines.next() else { return Ok(0) };
     let Head { columns } = serde_json::from_str(&head?).map_err(unreadable)?;
     let names: Vec<&str> = columns.iter().map(|(name, _)| name.as_str()).collect();

@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 use super::cases::refer;
 use super::database::{Row, Transaction, query};
 use crate::schema::ErrorCode;
-use crate::schema::job::ErrorClass;
+use crate::schema::job::JobErrorDocument;
 
 /// A case whose mesh was made.
 #[derive(Clone, Debug)]
@@ -101,18 +101,22 @@ async fn changed(
     rows.iter().map(|row| row.try_get(0)).collect()
 }
 
-/// The error of a job whose case got no mesh: that of the meshing, by name.
+/// The error of a job whose case got no mesh: that of the meshing, by name. One that was dismissed has none of its own.
 fn without_mesh(meshing: &str, error: Option<Value>) -> Value {
-    let (class, why) = match &error {
+    let (error, why) = match error {
         Some(error) => {
             let text = |member: &str| error[member].as_str().unwrap_or_default().to_owned();
-            (error["class"].clone(), format!("failed with {}: {}", text("type"), text("detail")))
+            let why = format!("failed with {}: {}", text("type"), text("detail"));
+            (error, why)
         }
-        None => (json!(ErrorClass::Cancelled), "was dismissed".to_owned()),
+        None => {
+            let dismissed = JobErrorDocument::of_unended_meshing("dismissed");
+            (json!(dismissed), "was dismissed".to_owned())
+        }
     };
     json!({
         "type": ErrorCode::CaseNotReady,
-        "class": class,
+        "class": error["class"],
         "detail": format!("the case has no mesh: its meshing {meshing} {why}"),
         "meshing": { "job": meshing, "error": error },
     })

@@ -441,12 +441,14 @@ fn the_help_lists_every_command_once_in_its_group_and_arguments_in_theirs() {
 
 #[test]
 fn a_reader_who_goes_ends_a_command_without_a_panic() {
-    let (reader, writer) = std::io::pipe().unwrap();
-    drop(reader);
-    let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_facies"));
-    let output = command.arg("materials").stdout(writer).output().unwrap();
-    let told = String::from_utf8_lossy(&output.stderr);
-    assert_eq!((output.status.code(), told.as_ref()), (Some(141), ""));
+    for command in ["materials", "openapi"] {
+        let (reader, writer) = std::io::pipe().unwrap();
+        drop(reader);
+        let mut program = std::process::Command::new(env!("CARGO_BIN_EXE_facies"));
+        let output = program.arg(command).stdout(writer).output().unwrap();
+        let told = String::from_utf8_lossy(&output.stderr);
+        assert_eq!((output.status.code(), told.as_ref()), (Some(141), ""), "{command}");
+    }
 }
 
 #[test]

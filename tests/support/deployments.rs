@@ -265,7 +265,7 @@ impl Deployment {
         }
     }
 
-    /// The files in which the bytes lie.
+    /// The files in which the bytes lie, without the mark of their owner.
     pub fn objects(&self) -> Vec<PathBuf> {
         let root = match &self.places.blobs {
             BlobLocation::Bucket { prefix, .. } => objects_root().join(BUCKET).join(prefix),
@@ -276,7 +276,11 @@ impl Deployment {
         while let Some(folder) = folders.pop() {
             for entry in std::fs::read_dir(&folder).into_iter().flatten() {
                 let path = entry.unwrap().path();
-                if path.is_dir() { folders.push(path) } else { found.push(path) }
+                if path.is_dir() {
+                    folders.push(path);
+                } else if !path.ends_with("facies-owner") {
+                    found.push(path);
+                }
             }
         }
         found

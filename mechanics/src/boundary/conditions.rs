@@ -126,8 +126,9 @@ pub fn combine(positions: &[Vector], held: &HeldNodes) -> Result<Conditions, Con
         .map(|(node, conditions)| (node, conditions.walls.clone()))
         .collect();
     let numbered = (0_u32..).zip(&nodes);
-    let shared = numbered.filter(|(_, node)| node.segments > 1).map(|(node, _)| node).collect();
-    let warnings = overlaps(&nodes).into_iter().collect();
+    let shared = numbered.filter(|(_, node)| node.segments > 1).map(|(node, _)| node);
+    let shared: Vec<u32> = shared.collect();
+    let warnings = overlaps(&nodes).into_iter().chain(joined_twice(&shared)).collect();
     Ok(Conditions { classes, constraints, walls, shared, warnings })
 }
 
@@ -299,4 +300,14 @@ fn overlaps(nodes: &[NodeConditions]) -> Option<Warning> {
         }
     }
     (!warning.numbers.is_empty()).then_some(warning)
+}
+
+/// A warning on the nodes of several segments, none of which a plan can move without the others.
+fn joined_twice(shared: &[u32]) -> Option<Warning> {
+    let (first, count) = (shared.first()?, shared.len());
+    let detail = format!(
+        "{count} nodes, the first of them {first}, belong to more than one segment: plans have to move these segments alike, and no response \
+         can be built"
+    );
+    Some(Warning::new("conditions-overlap", detail).with("joined_twice", count as f64))
 }

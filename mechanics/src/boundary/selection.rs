@@ -43,6 +43,8 @@ pub struct Selector<'a> {
     pub surfaces: &'a BTreeMap<String, Arc<TriangleSurface>>,
     /// Nodes of boundary faces, ascending.
     pub boundary_nodes: &'a [u32],
+    /// For each node of the mesh whether it belongs to a cell; others are never selected.
+    pub is_in_cell: &'a [bool],
 }
 
 impl Selector<'_> {
@@ -51,9 +53,14 @@ impl Selector<'_> {
         let mut nodes = self.collect(selection)?;
         nodes.sort_unstable();
         nodes.dedup();
-        match nodes.is_empty() {
-            true => Err(SelectionError::Empty(self.emptiness(selection))),
-            false => Ok(nodes),
+        let named = nodes.len();
+        nodes.retain(|&node| self.is_in_cell[node as usize]);
+        match (nodes.is_empty(), named) {
+            (true, 0) => Err(SelectionError::Empty(self.emptiness(selection))),
+            (true, _) => Err(SelectionError::Empty(format!(
+                "none of the {named} nodes of the selection belongs to a cell"
+            ))),
+            (false, _) => Ok(nodes),
         }
     }
 

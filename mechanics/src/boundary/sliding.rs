@@ -7,6 +7,10 @@ use crate::mesh::{Vector, VolumeMesh};
 /// the node is held across both. Smaller differences are one curved wall and are averaged.
 pub const SAME_WALL: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
+/// Directions of which this is the cosine, 5 degrees apart, are one: an edge thinner than that has one wall on its two sides,
+/// and sets whose normals differ by less hold a node once.
+pub const SAME_DIRECTION: f64 = 0.9962;
+
 /// For each of the nodes the unit normals of its walls: at most three, none where no face is near.
 ///
 /// The walls are the boundary faces all of whose nodes are listed, and beside these, less than 45 degrees apart, the faces whose
@@ -55,13 +59,18 @@ pub fn wall_normals(
 fn group_by_wall(faces: &[Vector]) -> Vec<Vector> {
     let mut walls: Vec<Vector> = Vec::new();
     for face in faces.iter().filter(|face| face.norm() > 0.0) {
-        match walls.iter_mut().find(|wall| cosine(wall, face).abs() > SAME_WALL) {
+        match walls.iter_mut().find(|wall| is_same_wall(cosine(wall, face))) {
             Some(wall) => *wall += face * cosine(wall, face).signum(),
             None => walls.push(*face),
         }
     }
     walls.truncate(3);
     walls.iter().map(|wall| wall.normalize()).collect()
+}
+
+/// Whether two area vectors that point out of the tissue are of one wall, from their cosine.
+fn is_same_wall(cosine: f64) -> bool {
+    !(-SAME_DIRECTION..=SAME_WALL).contains(&cosine)
 }
 
 /// Of the angle between two area vectors.
@@ -76,12 +85,15 @@ mod tests {
     use crate::mesh::sample::block;
 
     #[test]
-    fn the_two_sides_of_a_thin_edge_are_one_wall() {
-        let above = Vector::new(0.1, 0.0, 1.0);
-        let below = Vector::new(0.1, 0.0, -1.0);
-        let walls = group_by_wall(&[above, below]);
-        assert_eq!(walls.len(), 1);
-        assert!((walls[0] - Vector::z()).norm() < 1e-15, "{}", walls[0]);
+    fn the_two_sides_of_an_edge_are_two_walls_unless_it_is_thinner_than_five_degrees() {
+        let sides = |slope: f64| [Vector::new(slope, 0.0, 1.0), Vector::new(slope, 0.0, -1.0)];
+        // Edges of 40, 20, 10 and 4 degrees.
+        for (degrees, expected) in [(40.0_f64, 2), (20.0, 2), (10.0, 2), (4.0, 1)] {
+            let walls = group_by_wall(&sides((degrees / 2.0).to_radians().tan()));
+            assert_eq!(walls.len(), expected, "{degrees} degrees: {walls:?}");
+        }
+        let one = group_by_wall(&sides(0.01));
+        assert!((one[0] - Vector::z()).norm() < 1e-15, "{}", one[0]);
     }
 
     /// A curved floor that ends in bone at x = 0.

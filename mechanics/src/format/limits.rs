@@ -18,8 +18,8 @@ pub struct ReadLimits {
     /// The same as a multiple of the whole file. No ratio is asked of a single array: a constant
     /// array of a good file reaches 1000:1.
     pub decoded_ratio: f64,
-    /// Files that decode to no more than this pass whatever their ratio: a small regular block compresses far better
-    /// than 10:1 and is harmless.
+    /// Files that decode to no more than this pass whatever their ratio: sets of few nodes are almost all zeros, and a mesh with
+    /// dozens of them compresses far better than 10:1.
     pub decoded_floor_bytes: u64,
     /// The same for the voxels of an image: a label map of a whole head compresses a hundred times.
     pub image_floor_bytes: u64,
@@ -40,7 +40,7 @@ impl Default for ReadLimits {
             voxels: 1 << 27,
             decoded_bytes: 512 << 20,
             decoded_ratio: 10.0,
-            decoded_floor_bytes: 16 << 20,
+            decoded_floor_bytes: 256 << 20,
             image_floor_bytes: 128 << 20,
             polygon_corners: 64,
             name_length: 128,
@@ -119,4 +119,21 @@ pub(super) fn room_for<T>(count: usize) -> Result<Vec<T>, FormatError> {
     let mut values = Vec::new();
     values.try_reserve_exact(count).map_err(|_| FormatError::Memory { values: count as u64 })?;
     Ok(values)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_decodes_to_what_is_harmless_to_ten_times_itself_and_never_to_more_than_any_file() {
+        let limits = ReadLimits::default();
+        for (file, most) in [(1000, 256 << 20), (40 << 20, 400 << 20), (200 << 20, 512 << 20)] {
+            assert_eq!(limits.decode_budget(file).charge(most), Ok(()), "{file}");
+            let refused = FormatError::DecompressionLimit { declared: most + 1, limit: most };
+            assert_eq!(limits.decode_budget(file).charge(most + 1), Err(refused), "{file}");
+        }
+        // 4.2 MB of 30 sparse sets.
+        assert_eq!(limits.decode_budget(4_200_000).charge(43_600_000), Ok(()));
+    }
 }

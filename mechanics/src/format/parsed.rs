@@ -8,7 +8,7 @@ use super::limits::ReadLimits;
 use super::surface_cleaning::clean;
 use super::{Mesh, MeshFormat, ReadMesh};
 use crate::mesh::check::referenced;
-use crate::mesh::duplicate_cells::duplicate_cells;
+use crate::mesh::duplicate_cells::{cells_of_two_shapes, duplicate_cells};
 use crate::mesh::orientation::CellJacobian;
 use crate::mesh::{
     CellShape, Cells, Frame, TriangleSurface, ValuesOf, Vector, VolumeMesh, Warning,
@@ -203,6 +203,7 @@ impl Parsed {
             orient(&mut mesh, shape, warnings)?;
         }
         warnings.extend(duplicate_cells(&mesh));
+        warnings.extend(cells_of_two_shapes(&mesh));
         let referenced = mesh.cells.iter().flat_map(|(_, nodes)| nodes);
         self.warn_of_unreferenced(mesh.nodes.len(), referenced);
         Ok(mesh)

@@ -204,6 +204,14 @@ impl VolumeMesh {
         used.fold([first, first], |[low, high], x| [low.inf(&x), high.sup(&x)])
     }
 
+    /// For each node whether it belongs to a cell; others are no part of the tissue, and nothing holds or moves them.
+    pub fn is_in_cell(&self) -> Vec<bool> {
+        let mut is_in_cell = vec![false; self.nodes.len()];
+        let nodes = self.cells.iter().flat_map(|(_, nodes)| nodes);
+        nodes.for_each(|&node| is_in_cell[node as usize] = true);
+        is_in_cell
+    }
+
     /// The corner positions of a cell, as many as its shape has nodes.
     pub fn corners(&self, cell: usize) -> impl ExactSizeIterator<Item = Vector> + '_ {
         self.cells.nodes(cell).iter().map(|&node| self.nodes[node as usize])

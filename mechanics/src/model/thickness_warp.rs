@@ -71,7 +71,11 @@ impl Warped<'_> {
         if bones.is_empty() {
             return Err(ModelError::NoBone);
         }
-        let follow = |node: usize| self.follow(&bones, &held, node, warp.blend_radius);
+        let is_in_cell = self.mesh.is_in_cell();
+        let follow = |node: usize| match is_in_cell[node] {
+            true => self.follow(&bones, &held, node, warp.blend_radius),
+            false => Followed { displacement: Vector::zeros(), bone: 0 },
+        };
         let followed: Vec<Followed> =
             (0..self.mesh.nodes.len()).into_par_iter().map(follow).collect();
         let warnings = [self.ignored(), self.off_bone(&bones, &held), self.jumps(&followed)];

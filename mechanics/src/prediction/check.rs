@@ -29,6 +29,7 @@ pub(super) struct Check<'a> {
     pub(super) case: &'a Case,
     pub(super) boundary: &'a [BoundaryFace],
     pub(super) boundary_nodes: Vec<u32>,
+    is_in_cell: Vec<bool>,
     pub(super) problems: Problems,
     pub(super) warnings: Vec<Warning>,
     /// The conditions so far.
@@ -43,7 +44,8 @@ impl<'a> Check<'a> {
         boundary_nodes.dedup();
         let problems = Problems::default();
         let (warnings, stated) = (Vec::new(), Vec::new());
-        Check { case, boundary, boundary_nodes, problems, warnings, stated }
+        let is_in_cell = case.volume.is_in_cell();
+        Check { case, boundary, boundary_nodes, is_in_cell, problems, warnings, stated }
     }
 
     pub(super) fn select(&mut self, selection: &NodeSelection, pointer: &str) -> Vec<u32> {
@@ -51,6 +53,7 @@ impl<'a> Check<'a> {
             mesh: &self.case.volume,
             surfaces: &self.case.surfaces,
             boundary_nodes: &self.boundary_nodes,
+            is_in_cell: &self.is_in_cell,
         };
         let selected = selector.select(selection);
         selected.unwrap_or_else(|error| {

@@ -4,7 +4,7 @@ use super::case::{Plan, Prescribed, Settings};
 use super::check::Check;
 use super::error_code::SceneErrorCode;
 use super::stated::{StatedCondition, StatedHold};
-use crate::boundary::HeldNodes;
+use crate::boundary::{HeldNodes, NodeSelection};
 use crate::mesh::ArrayUse;
 use crate::mesh::ignored::listed;
 use crate::plan::doubt::{MovedSegment, beyond_face, suspect_units};
@@ -68,7 +68,9 @@ impl Check<'_> {
             } else if !segments.iter().any(|segment| segment.name == planned.name) {
                 match self.case.volume.node_set(&planned.name) {
                     Some(nodes) if !nodes.is_empty() => {
-                        let (nodes, number) = (nodes.to_vec(), Some(segments.len() as u32));
+                        let own = NodeSelection::NodeSet(planned.name.clone());
+                        let nodes = self.select(&own, &pointer);
+                        let number = Some(segments.len() as u32);
                         let pointer = format!("/plan/segments/{index}");
                         self.state(pointer, number, nodes.clone(), StatedHold::Joined);
                         held.joined.push((nodes, planned.movement));

@@ -42,6 +42,7 @@ mod skin;
 mod skin_check;
 mod skin_overlap;
 mod small_strain;
+mod solved_loosely;
 mod stated;
 mod states;
 mod stiff_layer;
@@ -73,6 +74,7 @@ pub use refined_scene::NotRefined;
 pub use scene::Scene;
 pub use skin::{Skin, least_moving};
 pub use skin_overlap::{SKIN_OVERLAPS, skin_overlap};
+pub use solved_loosely::solved_loosely;
 pub use stated::{StatedCondition, StatedHold};
 pub use suspect_constants::suspect_growth_and_pull;
 pub use unconstrained::{NOTHING_HELD, RigidlyCarried, rigidly_carried};
@@ -198,6 +200,7 @@ fn described(scene: &Scene, answer: Answer, progress: &dyn Progress) -> Predicti
     let mut warnings = scene.warnings.clone();
     warnings.extend(scene.nothing_moves());
     warnings.extend(equilibrium.warnings.iter().cloned());
+    warnings.extend(loosely(scene, &equilibrium.solver));
     warnings.extend(contact.iter().flat_map(|touch| touch.warnings(scene)));
     let at_corners = determinants_at_corners(&scene.mesh, &equilibrium.displacement);
     let pairs = deformation.iter().zip(at_corners);
@@ -240,6 +243,11 @@ fn described(scene: &Scene, answer: Answer, progress: &dyn Progress) -> Predicti
         deformation,
         warnings,
     }
+}
+
+/// What was asked of the equations of a scene, if little.
+fn loosely(scene: &Scene, solver: &SolveReport) -> Option<Warning> {
+    solved_loosely(scene.settings.relative_residual, solver.relative_residual)
 }
 
 fn far_landmarks(landmarks: &BTreeMap<String, (Vector, f64)>) -> Vec<Warning> {

@@ -13,6 +13,10 @@ use crate::mesh::{TriangleSurface, Vector, Warning};
 /// Shares of the skin above which it is reported: a few nodes are held where a scan ends.
 const MOST_HELD: f64 = 0.1;
 const MOST_INWARDS: f64 = 0.1;
+/// The same of a named region, which is small and may end where the skin does.
+const MOST_HELD_OF_REGION: f64 = 0.5;
+
+const SKIN_HELD: &str = "skin-held";
 
 /// The cosine between two faces that meet in a sharp edge: more than 60 degrees apart.
 const SHARP: f64 = 0.5;
@@ -26,7 +30,8 @@ const MEASURED_FACES: usize = 250;
 /// Warnings of a skin that is no skin.
 pub(super) fn suspect_skin(scene: &Scene, is_stated: bool) -> Vec<Warning> {
     let unnamed = (!is_stated).then(|| unnamed_skin(&scene.skin.surface));
-    [unnamed, held_skin(scene), inward_skin(scene)].into_iter().flatten().collect()
+    let warnings = [unnamed, held_skin(scene), held_regions(scene), inward_skin(scene)];
+    warnings.into_iter().flatten().collect()
 }
 
 /// Skin nodes that do not move freely.
@@ -43,7 +48,7 @@ fn held_skin(scene: &Scene) -> Option<Warning> {
          bone does to it",
         nodes.len()
     );
-    let warning = Warning::new("skin-held", detail)
+    let warning = Warning::new(SKIN_HELD, detail)
         .with("nodes", held as f64)
         .with("share", share)
         .with("joined", count(&|class| matches!(class, NodeClass::Joined(_))) as f64)
@@ -51,6 +56,30 @@ fn held_skin(scene: &Scene) -> Option<Warning> {
         .with("sliding", count(&|class| class == NodeClass::Sliding) as f64)
         .with("prescribed", count(&|class| class == NodeClass::Prescribed) as f64);
     (share > MOST_HELD).then_some(warning)
+}
+
+/// Named regions of the skin that are held for the most part, and move as what holds them does.
+fn held_regions(scene: &Scene) -> Option<Warning> {
+    let nodes = scene.skin.nodes();
+    let is_held = |point: &&u32| {
+        scene.conditions.classes[nodes[**point as usize] as usize] != NodeClass::Free
+    };
+    let counted = scene.skin.regions.iter().map(|(name, points)| {
+        let held = points.iter().filter(is_held).count();
+        (name, held, points.len())
+    });
+    let found: Vec<(&String, usize, usize)> =
+        counted.filter(|(_, held, all)| *held as f64 > MOST_HELD_OF_REGION * *all as f64).collect();
+    let shown: Vec<String> =
+        found.iter().map(|(name, held, all)| format!("{held} of {all} of {name:?}")).collect();
+    let detail = format!(
+        "nodes of named regions of the skin are held, {}: these regions move as what holds them does, and show nothing of what bone \
+         does to them",
+        shown.join(", ")
+    );
+    let held: usize = found.iter().map(|(_, held, _)| held).sum();
+    let warning = || Warning::new(SKIN_HELD, detail).with("nodes", held as f64);
+    (!found.is_empty()).then(|| warning().with("regions", found.len() as f64))
 }
 
 /// Skin that faces what holds the tissue: the inner side of lips and cheeks.

@@ -50,8 +50,10 @@ const FORCE: UsualRange =
 /// Tongue and lips exert 1 to 50 kPa.
 const TRACTION: UsualRange = UsualRange { what: "traction", unit: "kPa", least: 1e-2, most: 500.0 };
 const PRESSURE: UsualRange = UsualRange { what: "pressure", ..TRACTION };
-/// In mm/ms^2: the earth has 9.81e-3, and 9810 mm/s^2 is no m/s^2.
-const GRAVITY: UsualRange = UsualRange { what: "gravity", unit: "mm/ms2", least: 1e-5, most: 0.1 };
+/// The earth has 9.81, and 9810 mm/s^2 is no m/s^2.
+const GRAVITY: UsualRange = UsualRange { what: "gravity", unit: "m/s2", least: 1e-2, most: 100.0 };
+/// Of a scene it is in mm/ms^2.
+const M_PER_S2: f64 = 1e3;
 
 /// Of skeletal muscle some 100 to 400 kPa at most (Powell et al. 1984).
 const PULL: UsualRange = UsualRange { what: "the stress", unit: "kPa", least: 0.1, most: 1e3 };
@@ -173,6 +175,6 @@ fn of_load(index: usize, load: &Load) -> Option<Warning> {
         Load::Force { force, .. } => FORCE.doubt(size(force), &of),
         Load::Traction { traction, .. } => TRACTION.doubt(size(traction), &of),
         Load::Pressure { pressure, .. } => PRESSURE.doubt(pressure.abs(), &of),
-        Load::Gravity { acceleration } => GRAVITY.doubt(size(acceleration), &of),
+        Load::Gravity { acceleration } => GRAVITY.doubt(M_PER_S2 * size(acceleration), &of),
     }
 }

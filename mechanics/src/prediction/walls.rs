@@ -10,11 +10,10 @@ use super::check::Check;
 use super::error_code::SceneErrorCode;
 use super::scene::Scene;
 use super::stated::StatedHold;
-use crate::boundary::sliding::SAME_WALL;
+use crate::boundary::sliding::{SAME_DIRECTION, SAME_WALL};
 use crate::boundary::{HeldNodes, NodeSelection, WallNode, sliding};
-use crate::mesh::check::referenced;
 use crate::mesh::ignored::listed;
-use crate::mesh::{Vector, VolumeMesh, Warning};
+use crate::mesh::{Vector, Warning};
 use crate::plan::{PlannedSegment, RigidMovement};
 
 /// Above this turn of a segment, in degrees, small strain is told to keep the normals of its walls.
@@ -55,14 +54,7 @@ impl Check<'_> {
         let mut on_bone = vec![false; self.case.volume.nodes.len()];
         let of_segments = held.joined.iter().flat_map(|(nodes, _)| nodes);
         held.fixed.iter().chain(of_segments).for_each(|&node| on_bone[node as usize] = true);
-        let entries = self.case.sliding.iter().enumerate().zip(carriers);
-        let walls: Vec<Wall> = entries
-            .map(|((index, entry), carrier)| Wall {
-                index,
-                carrier,
-                nodes: self.normals(index, entry, &on_bone),
-            })
-            .collect();
+        let walls = self.with_normals(&carriers, &on_bone);
         self.two_carriers(&walls, segments);
         self.two_bones(&walls, segments, held);
         self.warn_of_walls_at_moving_bone(&walls, segments, held);
@@ -111,34 +103,87 @@ impl Check<'_> {
         place.map(|place| place as u32)
     }
 
-    fn normals(
-        &mut self,
-        index: usize,
-        entry: &Sliding,
-        on_bone: &[bool],
-    ) -> Vec<(u32, Vec<Vector>)> {
-        let nodes = self.select(&entry.nodes, &format!("/case/sliding/{index}/nodes"));
-        let mut normals = match entry.normal {
-            SlidingNormal::Surface => {
+    /// The walls of all sets. Sets with the normals of their faces and the same carrier are one surface: it makes no difference
+    /// whether a wall is stated in one piece or in several.
+    fn with_normals(&mut self, carriers: &[Option<u32>], on_bone: &[bool]) -> Vec<Wall> {
+        let entries = self.case.sliding.iter().enumerate().zip(carriers);
+        let mut walls: Vec<Wall> = entries
+            .map(|((index, entry), &carrier)| {
+                let nodes = self.select(&entry.nodes, &format!("/case/sliding/{index}/nodes"));
+                let given: Vec<Vector> = match entry.normal {
+                    SlidingNormal::Surface => Vec::new(),
+                    SlidingNormal::Direction(n) => n.try_normalize(1e-12).into_iter().collect(),
+                };
+                let nodes = nodes.into_iter().map(|node| (node, given.clone())).collect();
+                Wall { index, carrier, nodes }
+            })
+            .collect();
+        let is_surface =
+            |wall: &Wall| matches!(self.case.sliding[wall.index].normal, SlidingNormal::Surface);
+        for carrier in carriers.iter().collect::<BTreeSet<_>>() {
+            let own = |wall: &&Wall| wall.carrier == *carrier && is_surface(wall);
+            let nodes = walls.iter().filter(own).flat_map(|wall| &wall.nodes);
+            let nodes: BTreeSet<u32> = nodes.map(|(node, _)| *node).collect();
+            let nodes: Vec<u32> = nodes.into_iter().collect();
+            let normals: BTreeMap<u32, Vec<Vector>> =
                 sliding::wall_normals(&self.case.volume, self.boundary, &nodes, on_bone)
+                    .into_iter()
+                    .collect();
+            for wall in walls.iter_mut().filter(|wall| own(&&**wall)) {
+                wall.nodes.iter_mut().for_each(|(node, own)| *own = normals[node].clone());
             }
-            SlidingNormal::Direction(direction) => {
-                let unit: Vec<Vector> = direction.try_normalize(1e-12).into_iter().collect();
-                nodes.iter().map(|&node| (node, unit.clone())).collect()
-            }
-        };
-        if normals.iter().any(|(_, normals)| normals.is_empty()) {
-            // Nodes of no cell are warned of, and move nothing.
-            let VolumeMesh { nodes, cells, .. } = &*self.case.volume;
-            let is_used = referenced(nodes.len(), cells.iter().flat_map(|(_, nodes)| nodes));
-            normals.retain(|(node, normals)| !normals.is_empty() || is_used[*node as usize]);
         }
+        walls.iter().for_each(|wall| self.refuse_without_normal(wall));
+        walls.sort_by_key(is_surface);
+        self.join_near_directions(&mut walls);
+        walls.sort_by_key(|wall| wall.index);
+        walls
+    }
+
+    /// Gives walls of one node and one carrier that are less than 5 degrees apart the same direction, that of the first, since two would leave
+    /// the node free along their line only; warns of those up to 45 degrees apart.
+    fn join_near_directions(&mut self, walls: &mut [Wall]) {
+        let mut known: BTreeMap<(u32, Option<u32>), Vec<Vector>> = BTreeMap::new();
+        let (mut both, mut nearest): (BTreeSet<u32>, f64) = (BTreeSet::new(), 0.0);
+        for Wall { carrier, nodes, .. } in walls {
+            for (node, normals) in nodes {
+                let others = known.entry((*node, *carrier)).or_default();
+                for normal in normals.iter_mut() {
+                    let cosines = others.iter().map(|other| (normal.dot(other), *other));
+                    let Some((cosine, other)) =
+                        cosines.max_by(|(one, _), (other, _)| one.abs().total_cmp(&other.abs()))
+                    else {
+                        continue;
+                    };
+                    if cosine.abs() > SAME_DIRECTION {
+                        *normal = other * cosine.signum();
+                    } else if cosine.abs() > SAME_WALL {
+                        both.insert(*node);
+                        nearest = nearest.max(cosine.abs());
+                    }
+                }
+                others.extend(normals.iter());
+            }
+        }
+        let Some(first) = both.first() else { return };
+        let degrees = nearest.acos().to_degrees();
+        let detail = format!(
+            "{} nodes, the first is node {first}, slide on walls of two sets that are {degrees:.0} to 45 degrees apart and \
+             are held across both, free along one line only: where these are one curved wall, let both sets have \
+             \"normal\": \"surface\", or give each node to one of them",
+            both.len()
+        );
+        let warning = Warning::new("walls-nearly-parallel", detail);
+        self.warnings.push(warning.with("nodes", both.len() as f64).with("apart_deg", degrees));
+    }
+
+    /// Refuses nodes of a wall without a normal.
+    fn refuse_without_normal(&mut self, Wall { index, nodes: normals, .. }: &Wall) {
         if let Some((node, _)) = normals.iter().find(|(_, normals)| normals.is_empty()) {
             let detail = format!("node {node} has no normal for its sliding condition");
             let pointer = format!("/case/sliding/{index}/normal");
             self.problems.add(pointer, SceneErrorCode::SlidingNormalZero, detail);
         }
-        normals
     }
 
     /// Refuses nodes that two walls of nearly one direction hold while different things carry these.

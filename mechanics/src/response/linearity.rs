@@ -152,14 +152,11 @@ fn thickness(scene: &Scene) -> f64 {
     distances.sort_by(f64::total_cmp);
     match distances.get(distances.len() / 2) {
         Some(&median) if median > 0.0 && median.is_finite() => median,
-        _ => 0.1 * diagonal(&scene.mesh.nodes),
+        _ => {
+            let [low, high] = scene.mesh.bounds();
+            0.1 * (high - low).norm()
+        }
     }
-}
-
-fn diagonal(places: &[Vector]) -> f64 {
-    let first = places.first().copied().unwrap_or_else(Vector::zeros);
-    let (low, high) = places.iter().fold((first, first), |(l, h), x| (l.inf(x), h.sup(x)));
-    (high - low).norm()
 }
 
 /// The places of the nodes that a segment holds.

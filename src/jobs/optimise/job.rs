@@ -24,7 +24,7 @@ use crate::schema::predict::result::{ResultDocument, SolverDocument};
 use mechanics::mesh::{Vector, Warning};
 use mechanics::optimisation::{ConstantBounds, Optimum, Search, SearchError, SearchResult, search};
 use mechanics::plan::doubt::PLAN_UNITS_SUSPECT;
-use mechanics::prediction::{MethodKind, Prediction, predict};
+use mechanics::prediction::{MethodKind, Prediction, predict, solved_loosely};
 use mechanics::progress::{Phase, Progress};
 use mechanics::response::linearity::LINEAR_RANGE_MM;
 use mechanics::response::{
@@ -221,11 +221,13 @@ impl OptimisedPlan {
                 folder.add(name, &bytes)?;
             }
         }
+        let loosely =
+            solved_loosely(scene.settings.relative_residual, self.solver.relative_residual);
         let mut provenance = origin.provenance(clock);
         let mesh = mesh_summary(&scene.mesh, &planned.quality);
         add_method(&mut provenance, input.spec.method, mesh, self.solver);
-        let warnings =
-            warnings_after(&planned.told, planned.warnings.iter().chain(&scene.warnings));
+        let warnings = planned.warnings.iter().chain(&scene.warnings).chain(&loosely);
+        let warnings = warnings_after(&planned.told, warnings);
         let mut result = ResultDocument {
             statistics: Some(statistics),
             optimisation: Some(self.document),

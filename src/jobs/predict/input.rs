@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use super::facing::frame_mismatch;
+use super::far_from_origin::far_from_origin;
 use super::fitted_model::FittedModel;
 use super::refinable::check_refinable;
 use super::unknown_names::unknown_names;
@@ -98,8 +99,10 @@ impl PredictInput {
         let mut warnings: Vec<Warning> =
             meshes_read.flat_map(|mesh| mesh.warnings.iter().cloned()).collect();
         let told = stored.values().flat_map(|mesh| mesh.told.iter().cloned()).collect();
-        warnings.extend(converted.warnings);
+        let is_meant = |own: &Warning| own.code == "units-suspect" && sources.takes_any_scale();
+        warnings.extend(converted.warnings.into_iter().filter(|own| !is_meant(own)));
         warnings.extend(quality.warnings());
+        warnings.extend(far_from_origin(&converted.case.volume));
         warnings.extend(frame_mismatch(converted.case.frame, &scene.skin.surface));
         Ok(Prepared {
             case: converted.case,

@@ -28,6 +28,10 @@ impl MeshSource for MadeBeside<'_> {
         self.stored.model(job)
     }
 
+    fn takes_any_scale(&self) -> bool {
+        self.stored.takes_any_scale()
+    }
+
     fn predicted_skin(&self, job: &str) -> Result<StoredMesh, SourceError> {
         self.stored.predicted_skin(job)
     }

@@ -7,6 +7,7 @@ mod cost;
 mod density;
 mod expectation;
 mod facing;
+mod far_from_origin;
 mod files;
 mod fitted_model;
 mod input;

@@ -1,24 +1,20 @@
 //! The folder of a result: each file with its size and hash.
 
-use std::collections::BTreeMap;
-use std::io::ErrorKind;
+use std::fs::File;
+use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
 use serde_json::Value;
 
 use crate::jobs::failure::JobError;
 use crate::jobs::output::JobContext;
+use crate::jobs::result::record::{self, Record, RecordedFile, refused};
 use crate::schema::predict::document::OutputName;
 use crate::schema::predict::result::FileDocument;
 use crate::schema::wire::canonical;
-use crate::schema::{ErrorCode, Problem};
 
 /// The manifest of a result.
 const MANIFEST: &str = "result.json";
-
-/// All files that were ever written into a folder, a line each, as `sha256sum` writes it: no other is replaced, and none that has other
-/// bytes by now. Without a hash: one that is being written, and those of earlier versions.
-const RECORD: &str = ".facies";
 
 /// Documents beside results that have no record, of earlier versions.
 const BESIDE: [&str; 2] = ["case.json", "plan.json"];
@@ -30,13 +26,6 @@ pub const CHECK_PICTURE: &str = "classes.svg";
 /// The ends of names of movements, which a check writes and nothing else.
 const MOVEMENTS: [&str; 2] = [".txt", ".tfm"];
 
-/// The length of a hash in a record, and what follows it.
-const HASH: usize = 64;
-const BETWEEN: &str = "  ";
-
-/// Hashes of files by name.
-type Hashes = BTreeMap<String, Option<String>>;
-
 /// The manifest in a folder, unless it is one that no job wrote.
 fn manifest(folder: &Path) -> Option<Value> {
     let manifest = std::fs::read(folder.join(MANIFEST)).ok()?;
@@ -45,61 +34,54 @@ fn manifest(folder: &Path) -> Option<Value> {
 }
 
 /// The files that the manifest in a folder names, and itself.
-fn earlier(folder: &Path) -> Hashes {
-    let Some(result) = manifest(folder) else { return Hashes::new() };
+fn earlier(folder: &Path) -> Record {
+    let Some(result) = manifest(folder) else { return Record::new() };
     let files = result.get("files").and_then(|files| files.as_array()).into_iter().flatten();
     let member = |file: &Value, name: &str| Some(file.get(name)?.as_str()?.to_owned());
     let named = files.filter_map(|file| Some((member(file, "name")?, member(file, "sha256"))));
-    // A name with a folder in it is none of ours.
-    let own = named.filter(|(name, _)| Path::new(name).components().count() == 1 && *name != "..");
-    std::iter::once((MANIFEST.to_owned(), None)).chain(own).collect()
-}
-
-/// The file that a line of a record is of.
-fn recorded(line: &str) -> (String, Option<String>) {
-    let of_hash = line.split_at_checked(HASH).and_then(|(hash, rest)| {
-        let is_hash = hash.bytes().all(|digit| digit.is_ascii_hexdigit());
-        Some((rest.strip_prefix(BETWEEN)?, hash)).filter(|_| is_hash)
-    });
-    match of_hash {
-        Some((name, hash)) => (name.to_owned(), Some(hash.to_owned())),
-        None => (line.to_owned(), None),
-    }
+    let own = named.filter(|(name, _)| record::is_plain(name));
+    let all = std::iter::once((MANIFEST.to_owned(), None)).chain(own);
+    all.map(|(name, hash)| (name, RecordedFile { hash, of_result: true })).collect()
 }
 
 /// The files in a folder that may be replaced.
-fn own(folder: &Path) -> Hashes {
+fn own(folder: &Path) -> Result<Record, JobError> {
     let mut own = earlier(folder);
-    match std::fs::read_to_string(folder.join(RECORD)) {
-        Ok(record) => own.extend(record.lines().map(recorded)),
-        Err(_) if own.is_empty() => {}
-        Err(_) => own.extend(BESIDE.map(|name| (name.to_owned(), None))),
+    match record::read(folder)? {
+        Some(record) => own.extend(record),
+        None if own.is_empty() => {}
+        None => own.extend(BESIDE.map(|name| (name.to_owned(), RecordedFile::default()))),
     }
-    own
+    Ok(own)
 }
 
 fn is_of_check(name: &str) -> bool {
     [CHECK, CHECK_PICTURE].contains(&name) || MOVEMENTS.iter().any(|end| name.ends_with(end))
 }
 
-/// What would be taken for the answer in a folder: the files of a result and of a check.
-fn answer(folder: &Path) -> Vec<String> {
+/// What would be taken for the answer in a folder: the files of a result, be it a whole one, and of a check. The manifest is the first:
+/// without it nothing is an answer.
+fn answer(folder: &Path) -> Result<Vec<String>, JobError> {
     let earlier = earlier(folder);
-    let names = own(folder).into_keys();
-    names.filter(|name| earlier.contains_key(name) || is_of_check(name)).collect()
+    let is_of_answer = |name: &str, recorded: &RecordedFile| {
+        recorded.of_result || earlier.contains_key(name) || is_of_check(name)
+    };
+    let own = own(folder)?.into_iter();
+    let names = own.filter(|(name, recorded)| is_of_answer(name, recorded)).map(|(name, _)| name);
+    let mut names: Vec<String> = names.collect();
+    names.sort_by_key(|name| name != MANIFEST);
+    Ok(names)
 }
 
-/// Why a file is not to be replaced, if it is there and not as a command wrote it.
-fn foreign(file: &Path, own: Option<&Option<String>>) -> Option<&'static str> {
+/// Why a file is not to be replaced, if it is there and not as a command wrote it, as a link is not.
+fn foreign(file: &Path, own: Option<&RecordedFile>) -> Option<&'static str> {
+    let found = std::fs::symlink_metadata(file).ok()?;
+    let Some(own) = own else { return Some("is there, and no result of facies") };
     let is_changed = |hash: &String| {
         std::fs::read(file).is_ok_and(|bytes| canonical::sha256_hex(&bytes) != *hash)
     };
-    match own {
-        _ if !file.exists() => None,
-        None => Some("is there, and no result of facies"),
-        Some(Some(hash)) if is_changed(hash) => Some("was changed since facies wrote it"),
-        Some(_) => None,
-    }
+    let is_foreign = !found.is_file() || own.hash.as_ref().is_some_and(is_changed);
+    is_foreign.then_some("was changed since facies wrote it")
 }
 
 /// Refuses names of files that are there and that no command wrote, or something else changed since.
@@ -107,7 +89,7 @@ pub fn refuse_foreign<'a>(
     folder: &Path,
     names: impl IntoIterator<Item = &'a str>,
 ) -> Result<(), JobError> {
-    let own = own(folder);
+    let own = own(folder)?;
     let why = |name: &'a str| Some((name, foreign(&folder.join(name), own.get(name))?));
     match names.into_iter().find_map(why) {
         None => Ok(()),
@@ -130,56 +112,47 @@ pub fn refuse_other_plan(folder: &Path, plan: &Value) -> Result<(), JobError> {
     }
 }
 
-fn refused(detail: String) -> JobError {
-    JobError::Refused(Problem::new(ErrorCode::ValidationFailed, detail))
+/// Writes a file beside a result, unless one that no command wrote would be replaced.
+pub fn put(folder: &Path, file: &str, bytes: &[u8]) -> Result<(), JobError> {
+    put_as(folder, file, bytes, false).map(|_| ())
 }
 
-/// Adds files to the record of a folder.
-fn remember(
-    folder: &Path,
-    files: impl IntoIterator<Item = (String, Option<String>)>,
-) -> std::io::Result<()> {
-    let path = folder.join(RECORD);
-    let before = std::fs::read_to_string(&path).unwrap_or_default();
-    let mut record: Hashes = before.lines().map(recorded).collect();
-    record.extend(files);
-    let line = |(name, hash): (&String, &Option<String>)| match hash {
-        Some(hash) => format!("{hash}{BETWEEN}{name}\n"),
-        None => format!("{name}\n"),
-    };
-    let record: String = record.iter().map(line).collect();
-    if record == before { Ok(()) } else { std::fs::write(path, record) }
-}
-
-/// Writes a file, unless one that no command wrote would be replaced; its hash.
-pub fn put(folder: &Path, file: &str, bytes: &[u8]) -> Result<String, JobError> {
+/// Writes a file; its hash.
+fn put_as(folder: &Path, file: &str, bytes: &[u8], of_result: bool) -> Result<String, JobError> {
     refuse_foreign(folder, [file])?;
     let hash = canonical::sha256_hex(bytes);
+    let written = |hash| [(file.to_owned(), RecordedFile { hash, of_result })];
     // The name first, so that half of a file is ours too.
-    remember(folder, [(file.to_owned(), None)])
-        .and_then(|()| std::fs::write(folder.join(file), bytes))
-        .and_then(|()| remember(folder, [(file.to_owned(), Some(hash.clone()))]))
+    record::add(folder, written(None))?;
+    remove_file(folder, file)?;
+    // Never through a link that came to be there meanwhile.
+    File::create_new(folder.join(file))
+        .and_then(|mut made| made.write_all(bytes))
         .map_err(|source| JobError::Write { file: file.to_owned(), source })?;
+    record::add(folder, written(Some(hash.clone())))?;
     Ok(hash)
 }
 
-/// Removes files that commands wrote; one that is not there need not go.
+/// Removes files that commands wrote.
 fn remove(folder: &Path, names: &[String]) -> Result<(), JobError> {
     refuse_foreign(folder, names.iter().map(String::as_str))?;
-    for name in names {
-        match std::fs::remove_file(folder.join(name)) {
-            Err(source) if source.kind() != ErrorKind::NotFound => {
-                return Err(JobError::Write { file: name.clone(), source });
-            }
-            Ok(()) | Err(_) => {}
+    names.iter().try_for_each(|name| remove_file(folder, name))?;
+    record::forget(folder, names)
+}
+
+/// One that is not there need not go.
+fn remove_file(folder: &Path, file: &str) -> Result<(), JobError> {
+    match std::fs::remove_file(folder.join(file)) {
+        Err(source) if source.kind() != ErrorKind::NotFound => {
+            Err(JobError::Write { file: file.to_owned(), source })
         }
+        Ok(()) | Err(_) => Ok(()),
     }
-    Ok(())
 }
 
 /// Removes the files of an earlier check: movements of segments that the next one does not move would be taken for its own.
 pub fn remove_check(folder: &Path) -> Result<(), JobError> {
-    let names = own(folder).into_keys().filter(|name| is_of_check(name));
+    let names = own(folder)?.into_keys().filter(|name| is_of_check(name));
     remove(folder, &names.collect::<Vec<_>>())
 }
 
@@ -205,7 +178,7 @@ fn keep(inputs: &[PathBuf], file: &Path) -> Result<(), JobError> {
 
 /// Refuses a folder in which an earlier answer is what the job has read so far or was changed, or the manifest is none of ours.
 pub fn check(place: &JobContext) -> Result<(), JobError> {
-    let answer = answer(place.out);
+    let answer = answer(place.out)?;
     refuse_foreign(place.out, std::iter::once(MANIFEST).chain(answer.iter().map(String::as_str)))?;
     let inputs = inputs(place);
     answer.iter().try_for_each(|file| keep(&inputs, &place.out.join(file)))
@@ -222,8 +195,9 @@ impl<'a> ResultFolder<'a> {
         check(place)?;
         let failed = |source| JobError::Write { file: folder.display().to_string(), source };
         std::fs::create_dir_all(folder).map_err(failed)?;
-        remember(folder, own(folder)).map_err(failed)?;
-        remove(folder, &answer(folder))?;
+        record::add(folder, own(folder)?)?;
+        remove(folder, &answer(folder)?)?;
+        remove(folder, &place.sources.beside_result())?;
         Ok(ResultFolder { folder, files: Vec::new(), inputs: inputs(place) })
     }
 
@@ -234,7 +208,7 @@ impl<'a> ResultFolder<'a> {
     /// A file that no spec names.
     pub fn add_file(&mut self, file: &str, media_type: &str, bytes: &[u8]) -> Result<(), JobError> {
         keep(&self.inputs, &self.folder.join(file))?;
-        let sha256 = put(self.folder, file, bytes)?;
+        let sha256 = put_as(self.folder, file, bytes, true)?;
         self.files.push(FileDocument {
             name: file.to_owned(),
             media_type: media_type.to_owned(),

@@ -4,6 +4,7 @@ pub mod folder;
 pub mod muscles;
 pub mod pictures;
 pub mod provenance;
+mod record;
 pub mod skin;
 pub mod stress;
 pub mod tissue;

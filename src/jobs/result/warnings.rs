@@ -5,7 +5,7 @@ use mechanics::mesh::Warning;
 
 /// Codes that precede all others, in this order: those of doubtful input or measurements, those of a result that
 /// has larger errors than reported elsewhere, and those of an impossible one.
-const GRAVE: [&str; 59] = [
+const GRAVE: [&str; 63] = [
     "nothing-moves",
     "nothing-performed",
     "units-suspect",
@@ -30,9 +30,12 @@ const GRAVE: [&str; 59] = [
     "segment-far-from-bone",
     "cells-inverted",
     "cells-do-not-match",
+    "duplicate-cells",
     "mesh-inverted-elements",
     "tearing",
     "tolerance-not-met",
+    "solved-loosely",
+    "other-response",
     "numerical-error-large",
     "thin-stiff-layer",
     "muscle-few-cells",
@@ -41,6 +44,7 @@ const GRAVE: [&str; 59] = [
     "point-force",
     "muscle-outside",
     "sliding-normal-turned",
+    "walls-nearly-parallel",
     "volume-not-kept",
     "locking",
     "large-strain",

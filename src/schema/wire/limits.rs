@@ -28,7 +28,7 @@ pub struct Limits {
     pub label_values: u32,
     /// Decoded size of a file.
     pub decoded_bytes: u64,
-    /// Decoded size of a file as a multiple of its size.
+    /// Decoded size of a file as a multiple of its size, beyond the 256 MiB (an image: 128 MiB) that any file may have.
     pub decoded_ratio: u32,
     /// Longest wait for a result within a request.
     pub wait_s: u32,

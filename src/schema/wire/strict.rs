@@ -35,6 +35,8 @@ pub fn parse_value(bytes: &[u8], limits: &Limits) -> Result<Value, Problem> {
             Problem::new(ErrorCode::PayloadTooLarge, detail).with("limit", limits.json_bytes)
         );
     }
+    // Editors of Windows put it at the beginning.
+    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     let text = std::str::from_utf8(bytes).map_err(|error| not_utf8(bytes, error.valid_up_to()))?;
     let scan = Scan {
         depth_limit: limits.json_depth as usize,

@@ -25,6 +25,13 @@ pub fn is_unavailable(error: &sqlx::Error) -> bool {
     }
 }
 
+/// True when the database can be read and not written.
+pub fn is_read_only(error: &sqlx::Error) -> bool {
+    matches!(error, sqlx::Error::Database(inner) if inner
+        .code()
+        .is_some_and(|code| sqlite::is_read_only(&code) || postgres::is_read_only(&code)))
+}
+
 /// True when the server does not let us in, whatever we ask: a wrong user, password or name.
 pub fn is_refused(error: &sqlx::Error) -> bool {
     match error {

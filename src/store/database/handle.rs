@@ -181,6 +181,14 @@ impl Database {
         Ok(Writer { pool: self.writer.clone(), _permit: permit })
     }
 
+    /// Where it is, for messages.
+    pub fn place(&self) -> String {
+        match &self.address {
+            Address::File(file) => file.display().to_string(),
+            Address::Server { options, .. } => postgres::name(options),
+        }
+    }
+
     /// For words to other processes.
     pub fn server(&self) -> Option<&sqlx::PgPool> {
         match &*self.writer {

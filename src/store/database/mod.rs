@@ -13,7 +13,7 @@ pub(crate) mod schema;
 mod sqlite;
 mod value;
 
-pub use errors::{is_duplicate, is_full, is_reference, is_refused, is_unavailable};
+pub use errors::{is_duplicate, is_full, is_read_only, is_reference, is_refused, is_unavailable};
 pub(super) use handle::{Address, BeforeWriting, Database};
 use run::Pool;
 pub(super) use run::{Executor, Transaction};

@@ -16,6 +16,8 @@ pub const CLOCK: &str = "CREATE OR REPLACE VIEW clock AS \
 
 /// The disk is full.
 pub const FULL: &str = "53100";
+/// A replica takes no row.
+const READ_ONLY: &str = "25006";
 
 /// How long a request waits for a connection before it is told to come back.
 pub const ACQUIRE_TIMEOUT: Duration = Duration::from_millis(2500);
@@ -142,9 +144,14 @@ fn without_nul(text: String) -> String {
 }
 
 /// Connections lost (08), too many of them (53), the server stopping or starting (57P), a deadlock or
-/// another transaction in the way (40, 55P03), a limit of time (57014).
+/// another transaction in the way (40, 55P03), a limit of time (57014), a server that only reads.
 pub fn is_transient(code: &str) -> bool {
-    code != FULL && ["08", "40", "53", "55P03", "57"].iter().any(|class| code.starts_with(class))
+    let classes = ["08", "40", "53", "55P03", "57", READ_ONLY];
+    code != FULL && classes.iter().any(|class| code.starts_with(class))
+}
+
+pub fn is_read_only(code: &str) -> bool {
+    code == READ_ONLY
 }
 
 /// A wrong user or password (28), no such database (3D).

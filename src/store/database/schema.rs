@@ -10,7 +10,7 @@ use crate::store::error::StoreError;
 
 /// The files of `migrations/`, in order. Their macro in sqlx would compile every engine a second time, for the
 /// compiler itself.
-const FILES: [(&str, &str); 15] = [
+const FILES: [(&str, &str); 16] = [
     ("first", include_str!("../../../migrations/0001_first.sql")),
     ("studies", include_str!("../../../migrations/0002_studies.sql")),
     ("blobs", include_str!("../../../migrations/0003_blobs.sql")),
@@ -26,6 +26,7 @@ const FILES: [(&str, &str); 15] = [
     ("study rows", include_str!("../../../migrations/0013_study_rows.sql")),
     ("meshed cases", include_str!("../../../migrations/0014_meshed_cases.sql")),
     ("cohorts", include_str!("../../../migrations/0015_cohorts.sql")),
+    ("identity", include_str!("../../../migrations/0016_identity.sql")),
 ];
 
 /// The steps as they are written, for SQLite.

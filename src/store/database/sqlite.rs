@@ -20,8 +20,10 @@ pub const CLOCK: &str = "CREATE VIEW IF NOT EXISTS clock AS \
 
 /// The disk is full.
 pub const FULL: &str = "13";
-/// Another process writes, the disk errs, the file cannot be opened.
-const PASSING: [u32; 3] = [5, 10, 14];
+/// The file cannot be written.
+const READ_ONLY: u32 = 8;
+/// Another process writes, the disk errs, the file cannot be written or opened.
+const PASSING: [u32; 4] = [5, READ_ONLY, 10, 14];
 
 /// How long a statement waits for another process that writes.
 const BUSY_TIMEOUT: Duration = Duration::from_secs(5);
@@ -119,7 +121,31 @@ fn without_row_locks(sql: Cow<'static, str>) -> Cow<'static, str> {
     })
 }
 
-/// Codes say more in their upper bytes; those of PostgreSQL have five characters.
 pub fn is_transient(code: &str) -> bool {
-    code.len() < 5 && code.parse().is_ok_and(|code: u32| PASSING.contains(&(code & 0xff)))
+    kind(code).is_some_and(|kind| PASSING.contains(&kind))
+}
+
+pub fn is_read_only(code: &str) -> bool {
+    kind(code) == Some(READ_ONLY)
+}
+
+/// Codes say more in their upper bytes; those of PostgreSQL have five characters.
+fn kind(code: &str) -> Option<u32> {
+    let code: u32 = code.parse().ok().filter(|_| code.len() < 5)?;
+    Some(code & 0xff)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_that_cannot_be_written_may_be_so_again_and_codes_of_servers_are_none_of_sqlite() {
+        // Moved away, and plain.
+        for code in ["1032", "8"] {
+            assert!(is_read_only(code) && is_transient(code), "{code}");
+        }
+        assert!(is_transient("5") && !is_read_only("5"));
+        assert!(!is_read_only("25006") && !is_transient("08006") && !is_transient("1"));
+    }
 }

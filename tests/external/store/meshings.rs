@@ -147,6 +147,7 @@ async fn a_meshing_that_is_dismissed_takes_those_with_it_that_wait_for_it(on: De
     let told = error_of(&job(&store, &first.id).await);
     assert_eq!((&told["type"], &told["class"]), (&json!("case-not-ready"), &json!("cancelled")));
     assert!(told["detail"].as_str().unwrap().contains("dismissed"), "{told}");
+    assert_eq!(told["meshing"]["error"]["type"], "cancelled", "as the case itself has it");
     // Another host that still works on it changes nothing, and the case stays as it was posted.
     let row = store.case(&case).await.unwrap().unwrap();
     assert_eq!((row.document.as_str(), row.version), (DOCUMENT, 1));

@@ -26,6 +26,7 @@ trials! {
     alone {
         a_start_removes_what_a_dead_process_left
         a_data_folder_serves_one_process
+        blobs_beside_the_data_folder_have_one_database
     }
 }
 
@@ -167,7 +168,8 @@ async fn a_host_whose_blobs_are_not_those_of_the_database_is_named(on: Deploymen
     let BlobLocation::Bucket { bucket, settings, .. } = on.places.blobs.clone() else {
         panic!("a bucket")
     };
-    let mistyped = BlobLocation::Bucket { bucket, prefix: "mistyped".into(), settings };
+    let prefix = format!("mistyped-{}", uuid::Uuid::now_v7());
+    let mistyped = BlobLocation::Bucket { bucket, prefix, settings };
     let places = with_blobs(&on, mistyped);
     // Nothing is stored yet, and either may be meant.
     Store::connect(&places).await.unwrap().check_blobs().await.unwrap();
@@ -192,6 +194,35 @@ async fn a_bucket_that_does_not_exist_is_named(on: Deployment) {
     let error = store.check_blobs().await.unwrap_err();
     assert!(matches!(error, StoreError::NoBucket), "{error}");
     assert!(error.is_setting() && error.is_unavailable() && store.try_write().await.is_err());
+}
+
+async fn blobs_beside_the_data_folder_have_one_database() {
+    let (one, other) = (Deployment::embedded().await, Deployment::embedded().await);
+    let blobs = one.folder().join("shared");
+    let open = async |on: &Deployment| {
+        let blobs = BlobLocation::Folder(blobs.clone());
+        Store::connect(&StorageLocations { blobs, ..on.places.clone() }).await.unwrap()
+    };
+    let (store, second) = (open(&one).await, open(&other).await);
+    store.check_blobs().await.unwrap();
+    assert!(store.add_mesh(&mesh("a", "1")).await.unwrap());
+    let error = second.check_blobs().await.unwrap_err();
+    assert!(matches!(error, StoreError::ForeignBlobs { .. }) && error.is_setting(), "{error}");
+    assert!(second.try_write().await.is_err());
+    assert!(store.fsck(true).await.unwrap().is_clean(), "the mark is no blob");
+
+    // As an earlier version left them: whose meshes are there tells whose they are.
+    let mark = blobs.join("facies-owner");
+    std::fs::remove_file(&mark).unwrap();
+    let error = second.check_blobs().await.unwrap_err();
+    let StoreError::ForeignBlobs { identity, .. } = &error else { panic!("{error}") };
+    assert!(!mark.exists());
+    store.check_blobs().await.unwrap();
+    assert!(mark.exists());
+    // The way out that the error names.
+    std::fs::write(&mark, identity).unwrap();
+    second.check_blobs().await.unwrap();
+    assert!(store.check_blobs().await.is_err());
 }
 
 async fn a_start_removes_what_a_dead_process_left() {

@@ -1,7 +1,7 @@
 //! Methods in the spec of a prediction: which settings they become, and what is refused.
 
 use facies::schema::wire::strict;
-use facies::schema::{Faults, Limits, PredictDocument, Problem};
+use facies::schema::{Faults, Limits, PredictDocument, Problem, ResponseDocument};
 use mechanics::model::fem::mass_tensor::{Iterations, MassTensorSettings};
 use mechanics::model::mass_spring::{MassSpringSettings, Search};
 use mechanics::prediction::{Method, MethodKind, Settings};
@@ -134,4 +134,19 @@ fn settings_of_a_method_in_the_spec_of_any_other_are_refused() {
             }
         }
     }
+}
+
+#[test]
+fn a_response_is_usual_if_its_skin_is_that_of_the_case_to_the_usual_tolerance() {
+    let unusual = |members: &str| {
+        let text = format!(r#"{{"kind":"response","case":"id"{members}}}"#);
+        let document: ResponseDocument =
+            strict::parse(text.as_bytes(), &Limits::default()).unwrap();
+        document.unusual()
+    };
+    let usual = r#","method":"fem_linear","order":2,"segments":["jaw"],"tolerance":{"relative_residual":1e-9}"#;
+    assert_eq!(unusual(usual), [""; 0]);
+    assert_eq!(unusual(r#","method":"mtm_ti","membrane":{}"#), ["method", "membrane"]);
+    assert_eq!(unusual(r#","tolerance":{"relative_residual":1e-7}"#), ["tolerance"]);
+    assert_eq!(unusual(r#","element":"plain","materials":{}"#), ["element", "materials"]);
 }

@@ -99,7 +99,7 @@ fn what_is_not_json_is_refused_with_line_and_column() {
     let bodies: [&[u8]; 8] = [
         deep.as_bytes(),
         &utf16,
-        b"\xef\xbb\xbf{}",
+        b"\xef\xbb\xbf\xef\xbb\xbf{}",
         b"{\"frame\":\"\xff\"}",
         br#"{"name":"\ud800"}"#,
         b"{} {}",
@@ -112,6 +112,8 @@ fn what_is_not_json_is_refused_with_line_and_column() {
         assert_eq!(problem.code.name(), "malformed-json");
         assert!(problem.members.contains_key("line") && problem.members.contains_key("column"));
     }
+    let marked: PlanDocument = strict::parse(b"\xef\xbb\xbf{}", &Limits::default()).unwrap();
+    assert_eq!(marked, PlanDocument::default());
 }
 
 #[test]

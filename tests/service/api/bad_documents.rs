@@ -136,7 +136,7 @@ async fn what_is_not_json_is_refused_with_its_place() {
         ("75 large", large.into_bytes(), 413, "payload-too-large"),
         ("75 utf-16", utf16, 400, "malformed-json"),
         ("75 utf-8", b"{\"kind\": \"\xff\"}".to_vec(), 400, "malformed-json"),
-        ("75 mark", b"\xef\xbb\xbf{}".to_vec(), 400, "malformed-json"),
+        ("75 mark", b"\xef\xbb\xbf{}".to_vec(), 422, "validation-failed"),
         ("75 surrogate", b"{\"kind\": \"\\ud800\"}".to_vec(), 400, "malformed-json"),
         ("nothing", vec![], 400, "malformed-json"),
         ("an array", b"[]".to_vec(), 422, "validation-failed"),

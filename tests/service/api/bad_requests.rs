@@ -59,6 +59,18 @@ async fn answers_that_the_client_does_not_take_are_not_sent() {
 }
 
 #[tokio::test]
+async fn an_empty_tag_and_a_second_key_are_refused() {
+    let server = Server::start();
+    for path in ["/v1/jobs?tag=", "/v1/cases?tag=", "/v1/jobs?tag=%20"] {
+        let problem = ask(server.get(path)).await.problem_of(path, 400, "invalid-parameter");
+        assert_eq!(problem["parameter"], "tag");
+    }
+    let named = |key: &str| server.get("/v1/jobs").header("authorization", format!("Bearer {key}"));
+    let twice = ask(named("a").header("authorization", "Bearer b")).await;
+    twice.problem(400, "malformed-request");
+}
+
+#[tokio::test]
 async fn bodies_of_another_kind_are_not_read() {
     let server = Server::start();
     for (path, kind) in [

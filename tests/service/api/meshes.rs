@@ -6,7 +6,7 @@ use facies::schema::wire::canonical::sha256_hex;
 use mechanics::format::{Mesh, ReadLimits, read};
 use reqwest::StatusCode;
 use reqwest::multipart::{Form, Part};
-use sha2::{Digest, Sha256};
+use sha2::{Digest, Sha256, Sha512};
 
 use crate::helpers::{SMALL, Server, ask};
 
@@ -148,6 +148,28 @@ async fn a_body_that_differs_from_its_digest_is_refused() {
     let listed = ask(server.get("/v1/meshes")).await;
     listed.problem(405, "method-not-allowed");
     upload(&format!("sha-256=:{digest}:")).await.expect(StatusCode::CREATED);
+    let wide = |bytes: &[u8]| format!("sha-512=:{}:", STANDARD.encode(Sha512::digest(bytes)));
+    upload(&wide(b"other")).await.problem(400, "digest-mismatch");
+    upload(&wide(&bytes)).await.expect(StatusCode::OK);
+
+    // A form is digested as a whole, with what follows its last part; a document as it is.
+    let form = [
+        &b"--x\r\nContent-Disposition: form-data; name=\"m\"\r\n\r\n"[..],
+        &bytes,
+        b"\r\n--x--\r\nend",
+    ];
+    let send = |path: &str, kind: &str, digest: String, body: Vec<u8>| {
+        let request = server.post(path).header("content-type", kind.to_owned());
+        ask(request.header("content-digest", digest).body(body))
+    };
+    let (form, kind) = (form.concat(), "multipart/form-data; boundary=x");
+    let cut = wide(&form[..form.len() - 3]);
+    send("/v1/meshes", kind, cut, form.clone()).await.problem(400, "digest-mismatch");
+    send("/v1/meshes", kind, wide(&form), form.clone()).await.expect(StatusCode::OK);
+    let (job, kind) = (b"{}".to_vec(), "application/json");
+    let refused = send("/v1/jobs", kind, wide(b"[]"), job.clone()).await;
+    refused.problem(400, "digest-mismatch");
+    send("/v1/jobs", kind, wide(&job), job).await.problem(422, "validation-failed");
 }
 
 #[tokio::test]

@@ -253,6 +253,8 @@ async fn a_response_is_built_once_and_goes_with_its_case() {
     let removed = ask(server.delete(&format!("/v1/jobs/{}", first["id"].as_str().unwrap()))).await;
     assert_eq!(removed.status, StatusCode::NO_CONTENT);
     let left = apply(&server, &case, &plan(), OCTETS).await;
+    assert!(left.header("facies-warning").contains("other-response"), "it was not asked for");
+    assert!(!with_others.header("facies-warning").contains("other-response"));
     assert_eq!((left.status, left.bytes), (StatusCode::OK, with_others.bytes));
 
     let erased = ask(server.delete(&format!("/v1/cases/{case}")).header("if-match", "*")).await;
@@ -263,6 +265,54 @@ async fn a_response_is_built_once_and_goes_with_its_case() {
     let blobs = std::fs::read_dir(server.path().join("blobs")).unwrap();
     let left = blobs.flat_map(|folder| std::fs::read_dir(folder.unwrap().path()).unwrap()).count();
     assert_eq!(left, 0, "nothing of the case is left on the disk");
+}
+
+#[tokio::test]
+async fn responses_by_other_means_of_other_clients_do_not_stand_for_the_usual_one() {
+    let server = Server::start();
+    // Enough unknowns to be iterated.
+    let case = server.case(&Block { cells: [16, 16, 10] }).await;
+    let usual = built(&server, json!({"kind": "response", "case": case})).await;
+    let with = |member: &str, value: Value| {
+        let mut spec = json!({"kind": "response", "case": case});
+        spec[member] = value;
+        spec
+    };
+    let tight = json!({"relative_residual": 1e-10});
+    let tight = built(&server, with("tolerance", tight)).await;
+    assert_ne!(tight["id"], usual["id"]);
+    let loose = json!({"relative_residual": 1e-2});
+    let loose = built(&server, with("tolerance", loose)).await;
+    let shift = json!({"segments": [{"name": "bone", "translation_mm": [2, 0, 0]}]});
+    let taken = apply(&server, &case, &shift, OCTETS).await;
+    assert_eq!(taken.header("facies-job"), tight["id"].as_str().unwrap());
+    assert!(!taken.header("facies-warning").contains("solved-loosely"));
+    let path = format!("/v1/cases/{case}/response");
+    let shown = ask(server.get(&path)).await.expect(StatusCode::OK);
+    assert_eq!(shown["job"], tight["id"]);
+    let named = format!("{path}/apply?job={}", loose["id"].as_str().unwrap());
+    let named = ask(server.post(&named).json(&json!({"plan": shift}))).await;
+    let told = named.expect(StatusCode::OK);
+    let told = warnings_of(&told).find(|told| told["code"] == "solved-loosely").unwrap();
+    assert!(told["relative_residual"].as_f64().unwrap() > 1e-6, "{told}");
+}
+
+#[tokio::test]
+async fn of_the_usual_responses_one_that_moves_what_the_plan_moves_is_taken() {
+    let server = Server::start();
+    let case = case(&server).await;
+    let all = built(&server, json!({"kind": "response", "case": case})).await;
+    let part = json!({"kind": "response", "case": case, "segments": ["left"], "growth": ["*"]});
+    let part = built(&server, part).await;
+    let shift = |name: &str| json!({"segments": [{"name": name, "translation_mm": [1, 0, 0]}]});
+    let grown = json!({"growth": [{"region": "*", "volume_change": 0.02}]});
+    for (plan, job) in [(shift("right"), &all), (shift("left"), &part), (grown, &part)] {
+        let taken = apply(&server, &case, &plan, OCTETS).await;
+        assert_eq!(taken.status, StatusCode::OK, "{plan}");
+        assert_eq!(taken.header("facies-job"), job["id"].as_str().unwrap(), "{plan}");
+    }
+    let shown = ask(server.get(&format!("/v1/cases/{case}/response"))).await;
+    assert_eq!(shown.header("facies-job"), all["id"].as_str().unwrap());
 }
 
 #[tokio::test]

@@ -21,6 +21,8 @@ const TURNED: f64 = 1e-3;
 /// Spacings of pixels of slices of one stack differ by no more, as a part of them.
 const UNEVEN: f64 = 1e-3;
 
+const NO_HOUNSFIELD: &str = "no-hounsfield";
+
 /// Slices in the order of the archive, and what was said about those that are left out.
 struct Sorted {
     slices: Vec<Slice>,
@@ -37,9 +39,11 @@ pub(in crate::format) fn assemble(
     let plane = check_alike(&slices)?;
     let [columns, rows] = plane.size;
     limits.check_voxels((columns * rows) as u64 * slices.len() as u64)?;
-    if !slices[0].modality.is_empty() && slices[0].modality != "CT" {
+    if slices[0].modality.is_empty() || slices[0].modality == "CT" {
+        warnings.extend(rescaled_otherwise(&slices));
+    } else {
         let detail = "the modality of the series is not CT: its values may be no Hounsfield units";
-        warnings.push(Warning::new("no-hounsfield", detail));
+        warnings.push(Warning::new(NO_HOUNSFIELD, detail));
     }
     warnings.extend(padding_replaced(&slices));
     let stack = Stack::of(&slices, &plane)?;
@@ -93,6 +97,34 @@ fn select_series(parts: Vec<Part>) -> Result<Sorted, FormatError> {
         format!("{left_out} {FORMAT} files are scout views or no slices, and are left out");
     let warning = || Warning::new("files-passed-over", detail).with("files", left_out as f64);
     Ok(Sorted { slices, warnings: (left_out > 0).then(warning).into_iter().collect() })
+}
+
+/// That slices of a CT are rescaled otherwise than most: scanners write one slope and one intercept.
+fn rescaled_otherwise(slices: &[Slice]) -> Option<Warning> {
+    let mut counts: Vec<(Rescale, usize)> = Vec::new();
+    for slice in slices {
+        match counts.iter_mut().find(|(rescale, _)| *rescale == slice.rescale) {
+            Some((_, count)) => *count += 1,
+            None => counts.push((slice.rescale, 1)),
+        }
+    }
+    // Of as many the one that comes first.
+    let (usual, _) = counts.iter().rev().max_by_key(|(_, count)| *count)?;
+    let others = || slices.iter().filter(|slice| slice.rescale != *usual);
+    let Slice { file, rescale: own, .. } = others().min_by_key(|slice| slice.file)?;
+    let count = others().count();
+    let detail = format!(
+        "{count} of {} slices have another Rescale Slope or Intercept than the others, the first in file {file} of the archive: {} and {}, \
+         else {} and {}; a CT has one, and where its pixels are stored as those of the others these slices are no Hounsfield units",
+        slices.len(),
+        own.slope,
+        own.intercept,
+        usual.slope,
+        usual.intercept
+    );
+    let warning = Warning::new(NO_HOUNSFIELD, detail).with("slices", count as f64);
+    let warning = warning.with("file", *file as f64).with("slope", own.slope);
+    Some(warning.with("intercept", own.intercept))
 }
 
 /// That padding counts as air; nothing where its number says so itself.

@@ -44,6 +44,7 @@ pub(in crate::format) struct Slice {
     pub(super) plane: Plane,
     /// The centre of the first pixel.
     pub(super) position: Vector,
+    pub(super) rescale: Rescale,
     /// Rescaled.
     pub(super) voxels: Voxels,
     /// Pixels of padding that count as air in place of their number.
@@ -94,12 +95,22 @@ pub(in crate::format) fn read_part(
     let count = plane.size[0] as u64 * plane.size[1] as u64;
     limits.check_voxels(count)?;
     let position = Vector::from(attributes.needed::<3>(tag::POSITION)?);
-    let (voxels, padded) = voxels(&attributes, pixels, plane.size)?;
+    let rescale = rescale(&attributes)?;
+    let (voxels, padded) = voxels(&attributes, pixels, plane.size, rescale)?;
     let word = |tag| attributes.word(tag).unwrap_or_default();
     let (series, modality) = (word(tag::SERIES), word(tag::MODALITY));
     let identity = Identity::read(&attributes);
-    let slice = Slice { file, series, identity, modality, plane, position, voxels, padded };
-    Ok(Part::Slice(Box::new(slice)))
+    Ok(Part::Slice(Box::new(Slice {
+        file,
+        series,
+        identity,
+        modality,
+        plane,
+        position,
+        rescale,
+        voxels,
+        padded,
+    })))
 }
 
 fn check_kind(attributes: &Attributes<'_>) -> Result<(), FormatError> {
@@ -124,11 +135,24 @@ fn check_kind(attributes: &Attributes<'_>) -> Result<(), FormatError> {
     }
 }
 
+fn rescale(attributes: &Attributes<'_>) -> Result<Rescale, FormatError> {
+    let number = |found: Option<[f64; 1]>, without: f64| found.map_or(without, |[number]| number);
+    let rescale = Rescale {
+        slope: number(attributes.reals(tag::SLOPE)?, 1.0),
+        intercept: number(attributes.reals(tag::INTERCEPT)?, 0.0),
+    };
+    match rescale.slope == 0.0 {
+        true => Err(bad(0, "Rescale Slope is 0: every pixel would have the same value")),
+        false => Ok(rescale),
+    }
+}
+
 /// The values of a slice, and how many of them are air in place of padding.
 fn voxels(
     attributes: &Attributes<'_>,
     pixels: &StoredPixels<'_>,
     size: [usize; 2],
+    rescale: Rescale,
 ) -> Result<(Voxels, usize), FormatError> {
     let layout = PixelLayout {
         size,
@@ -139,11 +163,6 @@ fn voxels(
         at: attributes.pixels_at,
     };
     layout.check()?;
-    let number = |found: Option<[f64; 1]>, without: f64| found.map_or(without, |[number]| number);
-    let rescale = Rescale {
-        slope: number(attributes.reals(tag::SLOPE)?, 1.0),
-        intercept: number(attributes.reals(tag::INTERCEPT)?, 0.0),
-    };
     let stored = decode(pixels, &layout, attributes.syntax)?;
     let mut builder = VoxelBuilder::integers(stored.len())?;
     let Some(padding) = Padding::read(attributes, layout.is_signed)? else {

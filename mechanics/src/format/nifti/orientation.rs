@@ -7,6 +7,8 @@ use crate::format::error::FormatError;
 use crate::image::Placement;
 use crate::mesh::{Vector, Warning};
 
+const IMAGE_PLACE_DOUBTFUL: &str = "image-place-doubtful";
+
 /// What the header says about the place, in its own unit.
 pub(super) struct Forms {
     /// The byte at which it says which of both is meant.
@@ -40,7 +42,9 @@ impl Forms {
         let (placement, warning) = match (rows, quaternion) {
             (Some(rows), Ok(Some(quaternion))) => (rows, self.difference(&rows, &quaternion)),
             (Some(rows), _) => (rows, None),
-            (None, quaternion) => (quaternion?.ok_or_else(|| self.nowhere())?, None),
+            (None, quaternion) => {
+                (quaternion?.ok_or_else(|| self.nowhere())?, self.negative_spacing())
+            }
         };
         placement.check().map_err(|error| bad(self.codes_at, error.to_string()))?;
         Ok(Orientation { placement, warning })
@@ -64,6 +68,17 @@ impl Forms {
     fn of_rows(&self, unit: f64) -> Placement {
         let column = |n: usize| Vector::from(self.rows.map(|row| row[n])) * unit;
         Placement { origin: column(3), steps: [column(0), column(1), column(2)] }
+    }
+
+    /// nifti1.h has spacings above zero; the sign of an axis is in the quaternion and in pixdim[0] alone.
+    fn negative_spacing(&self) -> Option<Warning> {
+        let axis = (1..4).find(|&axis| self.pixdim[axis] < 0.0)?;
+        let spacing = self.pixdim[axis];
+        let detail = format!(
+            "pixdim[{axis}] is {spacing}, and the format has spacings above 0: its absolute value is taken, as nifti1_io does, and \
+             the directions are those of qform; a program that means a mirrored axis by it writes left for right"
+        );
+        Some(Warning::new(IMAGE_PLACE_DOUBTFUL, detail).with("spacing", spacing))
     }
 
     /// nifti1.h, method 2: a rotation by a quaternion whose first component is what is left of its length.
@@ -93,7 +108,8 @@ impl Forms {
             a * a + d * d - b * b - c * c,
         );
         let sign = if self.pixdim[0] < 0.0 { -1.0 } else { 1.0 };
-        let lengths = [self.pixdim[1], self.pixdim[2], sign * self.pixdim[3]];
+        let [_, x, y, z] = self.pixdim.map(f64::abs);
+        let lengths = [x, y, sign * z];
         let step = |axis: usize| rotation.column(axis) * lengths[axis] * unit;
         Ok(Placement {
             origin: Vector::from(self.offset) * unit,
@@ -115,6 +131,6 @@ impl Forms {
             "sform and qform place the image up to {largest:.1} mm apart; sform is taken, as most programs do"
         );
         (largest > 0.5 * voxel)
-            .then(|| Warning::new("image-place-doubtful", detail).with("largest_mm", largest))
+            .then(|| Warning::new(IMAGE_PLACE_DOUBTFUL, detail).with("largest_mm", largest))
     }
 }

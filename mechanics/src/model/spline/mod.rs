@@ -302,7 +302,10 @@ impl Assembled<'_> {
         solver: SolveReport,
     ) -> Equilibrium {
         let (lattice, mesh) = (self.assembly.lattice, problem.tissue.mesh);
-        let moved = |x: &Vector| {
+        let moved = |(x, is_in_cell): (&Vector, bool)| {
+            if !is_in_cell {
+                return Vector::zeros();
+            }
             let place = lattice.place(&lattice.frame.local(x));
             let along = place.map(|place| lattice.displacement(&place, control));
             along.map_or(Vector::zeros(), |along| lattice.frame.axes * along)
@@ -319,7 +322,7 @@ impl Assembled<'_> {
             }
         }
         Equilibrium {
-            displacement: mesh.nodes.iter().map(moved).collect(),
+            displacement: mesh.nodes.iter().zip(mesh.is_in_cell()).map(moved).collect(),
             reactions,
             solver,
             warnings: held_points::warning(&missed).into_iter().collect(),

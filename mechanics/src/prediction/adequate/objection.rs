@@ -8,6 +8,7 @@
 //! | `skin-overlaps` | without contact, where it is deeper than at rest by more than is accepted, or nobody knows how deep | no |
 //! | `contact-overlap`, `contact-points-move` | by more than is accepted | no |
 //! | `contact-chatter` | always: there contact may pull | no |
+//! | `solved-loosely` | always: estimates are of exact solutions | no |
 //!
 //! Others are contained in the estimates (`numerical-error-large`, `large-strain`, `locking`), say that an estimate is not known,
 //! or are of the plan or the case, which no model mends (`tearing`, `bones-overlap`, `bone-in-tissue`, `bone-through-skin`).
@@ -19,6 +20,7 @@ use crate::model::problem::Equilibrium;
 use crate::prediction::answer::{Answer, Linear};
 use crate::prediction::contact::Touch;
 use crate::prediction::far_skin;
+use crate::prediction::loosely;
 use crate::prediction::scene::Scene;
 use crate::prediction::skin_overlap::{Deepest, SKIN_OVERLAPS, added_overlap, skin_overlap};
 
@@ -84,6 +86,7 @@ impl<'a> CandidateAnswer<'a> {
         let touches = contact.into_iter().flat_map(|touch| touch.warnings(scene));
         let of_all = unstable
             .cloned()
+            .chain(loosely(scene, &equilibrium.solver))
             .chain(touches.filter(|own| speaks_against_contact(own, accepted)))
             .chain(without_contact.then(|| overlap(scene, &displacement, accepted)).flatten());
         let of_model = of_model.map(|warning| Objection { warning, is_of_model: true });

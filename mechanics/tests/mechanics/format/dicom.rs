@@ -225,6 +225,24 @@ fn the_bits_that_count_are_rescaled_slice_by_slice() {
 }
 
 #[test]
+fn slices_of_a_ct_that_are_rescaled_otherwise_are_told_and_a_slope_of_zero_is_refused() {
+    let mut one = slices();
+    one[5].rescale = [1.0, 0.0];
+    let found = read(&one);
+    assert_eq!(warning_codes(&found), ["no-hounsfield"]);
+    let wanted = [("slices", 1.0), ("file", 6.0), ("slope", 1.0), ("intercept", 0.0)];
+    assert_eq!(found.warnings[0].numbers, wanted);
+    assert!(found.warnings[0].detail.contains("else 1 and -1024"), "{:?}", found.warnings);
+    // Slices of other modalities have slopes of their own.
+    one.iter_mut().for_each(|slice| slice.modality = "PT");
+    let found = read(&one);
+    assert_eq!(warning_codes(&found), ["no-hounsfield"]);
+    assert!(found.warnings[0].detail.contains("not CT"), "{:?}", found.warnings);
+    let flat = refused(|slices| slices[2].rescale[0] = 0.0);
+    assert!(flat.contains("Rescale Slope is 0"), "{flat}");
+}
+
+#[test]
 fn a_series_of_another_modality_says_that_its_values_may_be_no_hounsfield_units() {
     let mut other = slices();
     other.iter_mut().for_each(|slice| slice.modality = "MR");

@@ -56,6 +56,23 @@ fn a_quaternion_places_an_image_by_its_rotation_and_the_sign_of_its_third_axis()
 }
 
 #[test]
+fn a_negative_spacing_beside_a_quaternion_mirrors_nothing_and_is_told() {
+    let half = std::f32::consts::FRAC_1_SQRT_2;
+    let quaternion = floats(&[0.0, 0.0, half, 10.0, 20.0, 30.0]);
+    let read = |spacing: f32| {
+        let own = [(80, &spacing.to_le_bytes()[..]), (252, &[1, 0, 0, 0]), (256, &quaternion)];
+        read_default(&changed(&own))
+    };
+    let (right, left) = (read(1.5), read(-1.5));
+    assert_eq!(
+        (warning_codes(&right), warning_codes(&left)),
+        (vec![], vec!["image-place-doubtful"])
+    );
+    assert_eq!(left.warnings[0].numbers, [("spacing", -1.5)]);
+    assert_eq!(image(left).placement(), image(right).placement());
+}
+
+#[test]
 fn rows_have_the_last_word_and_a_quaternion_that_differs_is_reported() {
     let bytes = changed(&[(252, &[1, 0]), (268, &floats(&[10.0, -20.25, 3.5]))]);
     let read = read_default(&bytes);

@@ -227,6 +227,21 @@ fn an_answer_that_turns_cells_inside_out_is_never_called_adequate() {
 }
 
 #[test]
+fn an_answer_that_was_solved_loosely_says_so_and_is_never_called_adequate() {
+    let case = slab(CellShape::Tet4, 0.45);
+    let plan = plan_of(&case, &movements(0.05));
+    for (relative_residual, is_loose) in [(1e-8, false), (1e-6, false), (1e-3, true)] {
+        let settings = Settings { relative_residual, ..Settings::default() };
+        let found = adequate(&case, &plan, &settings, within(100.0));
+        let objected = found.objections.iter().any(|own| own.warning.code == "solved-loosely");
+        assert_eq!((found.is_met, objected), (!is_loose, is_loose), "{relative_residual:e}");
+        let told = found.prediction.warnings.iter().find(|one| one.code == "solved-loosely");
+        let numbers = told.map(|told| (told.numbers[0].1 > 1e-6, told.numbers[1].1));
+        assert_eq!(numbers, is_loose.then_some((true, relative_residual)));
+    }
+}
+
+#[test]
 fn elements_without_an_estimate_are_never_called_adequate() {
     let case = slab(CellShape::Tet4, 0.45);
     let plan = plan_of(&case, &movements(0.05));

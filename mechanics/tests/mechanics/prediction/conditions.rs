@@ -4,7 +4,7 @@
 use mechanics::material::LinearElastic;
 use mechanics::material::hyperelastic::{Law, SaintVenantKirchhoff};
 use mechanics::mesh::sample::block;
-use mechanics::mesh::{CellShape, Vector};
+use mechanics::mesh::{CellShape, Vector, Warning};
 use mechanics::plan::{PlannedSegment, RigidMovement};
 use mechanics::prediction::{
     Advance, Case, CaseSegment, ElementChoice, Method, ModelError, NodeClass, Plan, Prescribed,
@@ -145,6 +145,26 @@ fn classes_are_counted_and_the_stronger_one_wins() {
         scene.conditions.classes.iter().filter(|class| **class == NodeClass::Fixed).count(),
         16
     );
+}
+
+#[test]
+fn segments_with_nodes_in_common_are_told_before_a_plan_moves_one_of_them() {
+    let mesh = block(Vector::new(3.0, 3.0, 3.0), [3, 3, 3], CellShape::Hex8);
+    let mut case = case_of(mesh, material(15.0, 0.3));
+    case.fixed.push(set("z_min"));
+    let told = |segments: [(&str, &str); 2]| {
+        let segment =
+            |(name, nodes): (&str, &str)| CaseSegment { name: name.to_owned(), nodes: set(nodes) };
+        let case = Case { segments: segments.map(segment).to_vec(), ..case.clone() };
+        let scene = Scene::new(&case, &Plan::default(), &Settings::default()).unwrap();
+        let count = |warning: &Warning| {
+            warning.numbers.iter().find(|(name, _)| *name == "joined_twice").map(|own| own.1)
+        };
+        scene.warnings.iter().find_map(count)
+    };
+    assert_eq!(told([("jaw", "z_max"), ("twin", "z_max")]), Some(16.0));
+    assert_eq!(told([("jaw", "z_max"), ("side", "x_max")]), Some(4.0));
+    assert_eq!(told([("left", "x_min"), ("right", "x_max")]), None);
 }
 
 #[test]

@@ -179,6 +179,24 @@ fn skin_that_is_held_or_faces_the_bone_is_reported_with_its_share() {
 }
 
 #[test]
+fn a_named_region_that_is_held_for_the_most_part_is_told_by_its_name() {
+    let mut case = two_bones();
+    let skin = case.skin.clone().expect("a named skin");
+    case.skin_regions = [("lips".to_owned(), skin), ("chin".to_owned(), set("chin"))].into();
+    let mesh = Arc::make_mut(&mut case.volume);
+    let chin: Vec<u32> = mesh.node_set("z_max").unwrap()[..6].to_vec();
+    mesh.node_sets.insert("chin".to_owned(), chin.clone());
+    mesh.node_sets.insert("stitched".to_owned(), chin[..3].to_vec());
+    case.fixed.push(set("stitched"));
+    assert_eq!(told(&warnings(&case), "skin-held"), None, "half of it");
+    Arc::make_mut(&mut case.volume).node_sets.insert("stitched".to_owned(), chin[..4].to_vec());
+    let found = warnings(&case);
+    let held = told(&found, "skin-held").expect("a held region");
+    assert_eq!(held.numbers, [("nodes", 4.0), ("regions", 1.0)]);
+    assert!(held.detail.contains(r#"4 of 6 of "chin""#), "{}", held.detail);
+}
+
+#[test]
 fn a_skin_that_faces_what_holds_the_tissue_is_reported() {
     // A sheet above a bone of its own: the side that looks at it is the inner one.
     let sheet = block(Vector::new(40.0, 40.0, 4.0), [8, 8, 2], CellShape::Hex8);

@@ -157,7 +157,7 @@ fn constants_that_a_wrong_unit_explains_are_reported_with_their_numbers() {
         Load::Force { nodes: faces(), force: Vector::x() * 2e5 },
         Load::Gravity { acceleration: Vector::new(0.0, 0.0, -9.81) },
     ];
-    assert_eq!(told(usual, loads, 1.5), [2e3, 5e-3, 2e5, 9.81]);
+    assert_eq!(told(usual, loads, 1.5), [2e3, 5e-3, 2e5, 9810.0]);
 }
 
 #[test]

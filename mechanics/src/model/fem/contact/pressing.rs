@@ -32,6 +32,10 @@ const FEW_PASSES: usize = 3;
 const NEARLY: f64 = 1e-3;
 const NEAR_MM: f64 = 0.05;
 
+/// Closest points whose answer moves by more than this part of what it moved by before alternate between two states: they are looked
+/// for half way between these.
+const ALTERNATES: f64 = 0.5;
+
 /// Closest points that move the answer by less than this, in mm, are not looked for again; by more in the end, they are reported.
 pub const SETTLED_MM: f64 = 0.005;
 
@@ -95,8 +99,13 @@ impl<'a> ContactProblem<'a> {
             rounds.settle(ON_THE_WAY, FEW_PASSES, progress)?;
         }
         let mut last_moved_mm = f64::INFINITY;
+        let mut before_mm = f64::INFINITY;
         for _ in 0..MOST_ROUNDS {
-            if rounds.look() == 0 && rounds.repeats {
+            let alternates = last_moved_mm > ALTERNATES * before_mm;
+            before_mm = last_moved_mm;
+            if alternates {
+                rounds.look_half_way();
+            } else if rounds.look() == 0 && rounds.repeats {
                 last_moved_mm = 0.0;
                 break;
             }
@@ -157,6 +166,8 @@ struct Rounds<'a, 'b> {
     /// The answer so far, and the part of the movement that it is of.
     displacement: Vec<Vector>,
     reached: f64,
+    /// The answer before it.
+    before: Vec<Vector>,
     /// Change of the solution by contact, and the multipliers of the active constraints.
     added: Point,
     active: Vec<usize>,
@@ -179,6 +190,7 @@ impl<'a, 'b> Rounds<'a, 'b> {
             share: 0.0,
             displacement: vec![Vector::zeros(); problem.free().len()],
             reached: 0.0,
+            before: Vec::new(),
             added: Point::default(),
             active: Vec::new(),
             pressed: BTreeMap::new(),
@@ -194,9 +206,23 @@ impl<'a, 'b> Rounds<'a, 'b> {
 
     /// Looks for closest points with the answer so far; how many rows say something new.
     fn look(&mut self) -> usize {
-        let mut found = self.problem.surfaces.rows(&self.displacement, self.reached);
+        let displacement = std::mem::take(&mut self.displacement);
+        let new = self.look_at(&displacement);
+        self.displacement = displacement;
+        new
+    }
+
+    /// The same half way between this answer and the one before.
+    fn look_half_way(&mut self) {
+        let pairs = self.displacement.iter().zip(&self.before);
+        let half_way: Vec<Vector> = pairs.map(|(u, before)| (u + before) * 0.5).collect();
+        self.look_at(&half_way);
+    }
+
+    fn look_at(&mut self, displacement: &[Vector]) -> usize {
+        let mut found = self.problem.surfaces.rows(displacement, self.reached);
         found.retain(|row| !self.unknowns.equation(row).is_empty());
-        let Round { same, new } = self.kept_rows.take(found, &self.displacement, self.reached);
+        let Round { same, new } = self.kept_rows.take(found, displacement, self.reached);
         let equations = self.kept_rows.rows.iter().map(|row| self.unknowns.equation(row));
         self.equations.replace(equations.collect(), &same);
         new
@@ -260,7 +286,7 @@ impl<'a, 'b> Rounds<'a, 'b> {
         let displacement = self.moved();
         let pairs = self.displacement.iter().zip(&displacement);
         let moved_mm = pairs.map(|(one, other)| (one - other).norm()).fold(0.0, f64::max);
-        self.displacement = displacement;
+        self.before = std::mem::replace(&mut self.displacement, displacement);
         self.reached = self.share;
         Ok(moved_mm)
     }
