@@ -125,12 +125,15 @@ impl Check<'_> {
             let nodes = walls.iter().filter(own).flat_map(|wall| &wall.nodes);
             let nodes: BTreeSet<u32> = nodes.map(|(node, _)| *node).collect();
             let nodes: Vec<u32> = nodes.into_iter().collect();
-            let normals: BTreeMap<u32, Vec<Vector>> =
-                sliding::wall_normals(&self.case.volume, self.boundary, &nodes, on_bone)
-                    .into_iter()
-                    .collect();
+            let of = |nodes: &[u32]| {
+                sliding::wall_normals(&self.case.volume, self.boundary, nodes, on_bone)
+            };
+            let whole: BTreeMap<u32, Vec<Vector>> = of(&nodes).into_iter().collect();
             for wall in walls.iter_mut().filter(|wall| own(&&**wall)) {
-                wall.nodes.iter_mut().for_each(|(node, own)| *own = normals[node].clone());
+                let nodes: Vec<u32> = wall.nodes.iter().map(|(node, _)| *node).collect();
+                let own_walls = of(&nodes).into_iter();
+                wall.nodes =
+                    own_walls.map(|(node, own)| (node, of_whole(&own, &whole[&node]))).collect();
             }
         }
         walls.iter().for_each(|wall| self.refuse_without_normal(wall));
@@ -310,6 +313,13 @@ impl Check<'_> {
         }
         touching
     }
+}
+
+/// The normals of a whole surface at a node that are those of walls of a part of it; all where the part has no face of one.
+fn of_whole(part: &[Vector], whole: &[Vector]) -> Vec<Vector> {
+    let is_of_part = |normal: &&Vector| part.iter().any(|own| own.dot(normal) > SAME_WALL);
+    let found: Vec<Vector> = whole.iter().filter(is_of_part).copied().collect();
+    if found.is_empty() { whole.to_vec() } else { found }
 }
 
 /// Whether a selection is made of, or takes in, a node set of that name.

@@ -2,7 +2,6 @@
 
 use nalgebra::Matrix3;
 
-use super::edge_functions::MAX_EDGES;
 use super::mean_stress;
 use super::points::{EnrichedCell, of_corners};
 use super::simplex::{CornerPressures, Simplex};
@@ -106,17 +105,6 @@ impl EnrichedCells for Cells<'_> {
                 points.forces(&of_corners(self.tissue.mesh, cell, self.displacement), of),
                 [0.0; 4],
             ),
-        })
-    }
-
-    fn on_edges(
-        &self,
-        cell: usize,
-        of: &[Vector; MAX_EDGES],
-    ) -> Result<[Vector; MAX_EDGES], InvertedCell> {
-        Ok(match self.cell(cell)? {
-            Cell::Simplex(simplex) => simplex.on_edges(of),
-            Cell::Points(_) => [Vector::zeros(); MAX_EDGES],
         })
     }
 

@@ -67,7 +67,7 @@ fn edge_functions_that_are_solved_exactly_have_the_energy_of_the_error() {
         loads.add_to(&tissue, &edges, &|_| false, &mut equations.residual).unwrap();
         let faces = mesh.boundary_faces();
         let held = HeldEdges::new(&mesh, &faces, &constraints, &edges);
-        let steps = equations.answer(&equations.residual, &held);
+        let steps = equations.steps(&held);
 
         // Held edges, and pairs of nodes that no edge joins, stay out.
         let is_free =

@@ -49,8 +49,8 @@ impl EdgeEquations {
     }
 
     /// b = D^-1 r of every edge along the axes that nothing holds; zero where there is nothing to solve.
-    pub fn answer(&self, residual: &[Vector], held: &HeldEdges) -> Vec<Vector> {
-        let numbered = residual.par_iter().zip(&self.stiffness).enumerate();
+    pub fn steps(&self, held: &HeldEdges) -> Vec<Vector> {
+        let numbered = self.residual.par_iter().zip(&self.stiffness).enumerate();
         numbered.map(|(edge, (r, d))| held.step(edge, r, d)).collect()
     }
 }

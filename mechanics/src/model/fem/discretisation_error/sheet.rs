@@ -105,31 +105,6 @@ impl<'a> Sheet<'a> {
         }
     }
 
-    /// Adds what coefficients of edges do to the edges: their gradients are linear in a triangle.
-    pub fn add_forces_on_edges(&self, of: &[Vector], forces: &mut [Vector]) {
-        for (triangle, nodes) in self.membrane.in_space(self.mesh) {
-            let (part, g) = (self.part(&triangle, nodes), &triangle.gradients);
-            // At each corner, against each gradient.
-            let mut at_corners = [[Vector::zeros(); 3]; 3];
-            let sides = SIDES.map(|[a, b]| ([a, b], self.shares([nodes[a], nodes[b]])));
-            for ([a, b], shares) in &sides {
-                let own: Vector = shares.iter().map(|&(edge, share)| of[edge] * share).sum();
-                for (corner, other) in [(*a, *b), (*b, *a)] {
-                    for (force, slope) in at_corners[corner].iter_mut().zip(g) {
-                        *force += part.pair(slope, &g[other]) * own;
-                    }
-                }
-            }
-            let sum = |slope: usize| at_corners.iter().map(|corner| corner[slope]).sum::<Vector>();
-            for ([a, b], shares) in sides {
-                let both = sum(a) + sum(b) + at_corners[a][b] + at_corners[b][a];
-                for (edge, share) in shares {
-                    forces[edge] += both * (MEAN * share);
-                }
-            }
-        }
-    }
-
     /// Subtracts what coefficients of edges do to the nodes.
     pub fn subtract_forces(&self, steps: &[Vector], forces: &mut [Vector]) {
         for (triangle, nodes) in self.membrane.in_space(self.mesh) {

@@ -74,23 +74,6 @@ impl Simplex {
         Matrix3::from_fn(|r, c| block[r][c])
     }
 
-    /// The forces on the edges of coefficients of the edges: their gradients are linear in the cell, 4 sum_k b_ck g_k at the corner c.
-    pub fn on_edges(&self, of_edges: &[Vector; MAX_EDGES]) -> [Vector; MAX_EDGES] {
-        let g = &self.gradients;
-        let mut fields = [Matrix3::zeros(); 4];
-        for (b, [i, j]) in of_edges.iter().zip(EDGES) {
-            fields[i] += b * (g[j] * 4.0).transpose();
-            fields[j] += b * (g[i] * 4.0).transpose();
-        }
-        let stresses = fields.map(|field| self.tensor.stress(&field) * (self.volume / 5.0));
-        let sum: Matrix3<f64> = stresses.iter().sum();
-        let mut forces = [Vector::zeros(); MAX_EDGES];
-        for (force, [i, j]) in forces.iter_mut().zip(EDGES) {
-            *force = (sum + stresses[i]) * g[j] + (sum + stresses[j]) * g[i];
-        }
-        forces
-    }
-
     /// The forces on the corners of coefficients of the edges.
     pub fn forces(&self, of_edges: &[Vector; MAX_EDGES]) -> [Vector; MAX_NODES] {
         let g = &self.gradients;
@@ -114,37 +97,5 @@ impl Simplex {
             volumes[j] += along_i;
         }
         Some(volumes)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::material::LinearElastic;
-    use crate::mesh::CellShape;
-    use crate::mesh::sample::block;
-
-    #[test]
-    fn the_product_of_an_edge_with_itself_is_its_block_and_products_are_symmetric() {
-        let mut mesh = block(Vector::new(2.0, 1.0, 0.7), [1, 1, 1], CellShape::Tet4);
-        mesh.nodes[0] += Vector::new(-0.2, 0.1, -0.3);
-        let tensor = LinearElastic::new(15.0, 0.3, 1.0).unwrap().tensor(&Vector::zeros());
-        let simplex = Simplex::new(&mesh, 0, tensor, None).unwrap();
-        let mut equations = [EdgeEquation::ZERO; MAX_EDGES];
-        simplex.equations(&[Vector::zeros(); 4], &mut equations);
-        let unit = |edge: usize, axis: usize| {
-            let mut of = [Vector::zeros(); MAX_EDGES];
-            of[edge][axis] = 1.0;
-            simplex.on_edges(&of)
-        };
-        for (edge, axis) in (0..18).map(|n| (n / 3, n % 3)) {
-            let forces = unit(edge, axis);
-            let own = equations[edge].stiffness.column(axis);
-            assert!((forces[edge] - own).norm() < 1e-12, "{edge} {axis}");
-            for (other, along) in (0..18).map(|n| (n / 3, n % 3)) {
-                let back = unit(other, along)[edge][axis];
-                assert!((forces[other][along] - back).abs() < 1e-12, "{edge} {other}");
-            }
-        }
     }
 }

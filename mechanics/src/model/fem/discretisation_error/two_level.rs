@@ -53,21 +53,9 @@ pub(in crate::model::fem) trait EnrichedCells: Sync {
     /// Forces of coefficients on the corners of a cell.
     fn at_corners(&self, cell: usize, of: &Coefficients) -> Result<AtCorners, InvertedCell>;
 
-    /// Forces on the edges of a tetrahedron of coefficients of its edges.
-    fn on_edges(
-        &self,
-        cell: usize,
-        of: &[Vector; MAX_EDGES],
-    ) -> Result<[Vector; MAX_EDGES], InvertedCell>;
-
     /// v . (K_i - K) v of a cell in mN mm (`inner_modes`), for v of all nodes.
     fn stiffening(&self, cell: usize, of_nodes: &[Vector]) -> Result<f64, InvertedCell>;
 }
-
-/// Factor of e: without it e falls short by about this (docs/estimates.md).
-const PLAIN_FACTOR: f64 = 1.2;
-const MIXED_FACTOR: f64 = 1.3;
-const TOGETHER_FACTOR: f64 = 1.5;
 
 /// A step is not made longer or shorter by more than this. At finite strain it is not made longer: the tangent of pressed cells gives way
 /// to modes more than finer cells do.
@@ -124,34 +112,11 @@ impl<C: EnrichedCells> TwoLevel<'_, C> {
         let has_pressure = |cell: usize| self.cells.pressure_numbers(cell).is_some();
         self.loads.add_to(self.tissue, edges, &has_pressure, &mut equations.residual)?;
         let mesh = self.tissue.mesh;
-        let held = HeldEdges::new(mesh, self.boundary, self.constraints, edges);
-        let alone = equations.answer(&equations.residual, &held);
-        match self.edges_act_together() {
-            true => self.together(edges, equations, &held, alone),
-            false => Ok(alone),
-        }
-    }
-
-    /// Whether edges are solved beside each other: those of tetrahedra with pressures.
-    fn edges_act_together(&self) -> bool {
-        self.pressure_count > 0 && !self.has_modes()
-    }
-
-    /// Factor of e.
-    pub fn factor(&self) -> f64 {
-        match (self.pressure_count > 0, self.edges_act_together()) {
-            (_, true) => TOGETHER_FACTOR,
-            (true, false) => MIXED_FACTOR,
-            (false, false) => PLAIN_FACTOR,
-        }
+        Ok(equations.steps(&HeldEdges::new(mesh, self.boundary, self.constraints, edges)))
     }
 
     /// The membrane, if there is one.
-    pub(super) fn sheet<'b>(
-        &'b self,
-        edges: &'b Edges<'b>,
-        equations: &EdgeEquations,
-    ) -> Option<Sheet<'b>> {
+    fn sheet<'b>(&'b self, edges: &'b Edges<'b>, equations: &EdgeEquations) -> Option<Sheet<'b>> {
         let is_edge = |edge: usize| equations.stiffness[edge][(0, 0)] > 0.0;
         let (displacement, is_finite) = (self.displacement, self.cells.is_finite());
         let skin = self.tissue.membrane?;

@@ -12,7 +12,7 @@ use crate::material::hyperelastic::Law;
 use crate::mesh::{CellShape, Vector, VolumeMesh};
 use crate::model::fem::assembly;
 use crate::model::fem::discretisation_error::{
-    AtCorners, Coefficients, EnrichedCells, MAX_EDGES, OfEdges, Weighted, has_wedges, of_corners,
+    AtCorners, Coefficients, EnrichedCells, OfEdges, Weighted, has_wedges, of_corners,
     smooth_in_wedges,
 };
 use crate::model::problem::InvertedCell;
@@ -120,17 +120,6 @@ impl EnrichedCells for Enriched<'_> {
             CellShape::Hex8 | CellShape::Wedge6 => {
                 (self.brick(cell).forces(of), Default::default())
             }
-        })
-    }
-
-    fn on_edges(
-        &self,
-        cell: usize,
-        of: &[Vector; MAX_EDGES],
-    ) -> Result<[Vector; MAX_EDGES], InvertedCell> {
-        Ok(match self.mesh.cells.shape(cell) {
-            CellShape::Tet4 => self.simplex(cell).on_edges(of),
-            CellShape::Hex8 | CellShape::Wedge6 => [Vector::zeros(); MAX_EDGES],
         })
     }
 

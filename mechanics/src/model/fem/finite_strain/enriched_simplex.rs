@@ -57,27 +57,6 @@ impl<'a> EnrichedSimplex<'a> {
         }
     }
 
-    /// The forces on the edges of coefficients of the edges.
-    pub fn on_edges(&self, of_edges: &[Vector; MAX_EDGES]) -> [Vector; MAX_EDGES] {
-        // At each corner, against the gradient of each.
-        let mut at_corners = [[Vector::zeros(); 4]; 4];
-        for (slope, against) in self.corners.iter().enumerate() {
-            let blocks = self.corners.map(|own| self.point.block(against, &own));
-            for (b, [i, j]) in of_edges.iter().zip(EDGES) {
-                at_corners[i][slope] += blocks[j] * b;
-                at_corners[j][slope] += blocks[i] * b;
-            }
-        }
-        let sum = |slope: usize| at_corners.iter().map(|corner| corner[slope]).sum::<Vector>();
-        let sums = [0, 1, 2, 3].map(sum);
-        let mut forces = [Vector::zeros(); MAX_EDGES];
-        for (force, [i, j]) in forces.iter_mut().zip(EDGES) {
-            let both = sums[i] + sums[j] + at_corners[i][j] + at_corners[j][i];
-            *force = both * (0.8 * self.at_rest.volume);
-        }
-        forces
-    }
-
     /// The forces on the corners of coefficients of the edges, and the volumes of its pressures.
     pub fn at_corners(&self, of_edges: &[Vector; MAX_EDGES]) -> AtCorners {
         let mut sums = [Vector::zeros(); 4];

@@ -10,7 +10,7 @@ use crate::mesh::volume::BoundaryFace;
 use crate::model::dofs::Constrained;
 use crate::model::fem::assembly;
 use crate::model::fem::discretisation_error::{
-    DiscretisationError, DistributedLoads, TwoLevel, tolerance,
+    DiscretisationError, DistributedLoads, TwoLevel, factor, tolerance,
 };
 use crate::model::problem::{LoadCase, ModelError};
 use crate::progress::{Phase, Progress};
@@ -103,7 +103,7 @@ impl FinerProblem<'_> {
         }
         let place = dof_map.ordering.place.iter();
         let step: Vec<Vector> = place.map(|&row| found.positions[row as usize]).collect();
-        let factor = two_level.factor() * two_level.share(&step, &case.forces)?;
+        let factor = factor(has_pressures) * two_level.share(&step, &case.forces)?;
         let missing = step.into_iter().map(|e| e * factor).collect();
         let iterations = found.iterations;
         Ok(Ok(DiscretisationError { missing, squared_energy_norm, iterations }))
