@@ -110,11 +110,16 @@ impl Check<'_> {
         let mut walls: Vec<Wall> = entries
             .map(|((index, entry), &carrier)| {
                 let nodes = self.select(&entry.nodes, &format!("/case/sliding/{index}/nodes"));
-                let given: Vec<Vector> = match entry.normal {
-                    SlidingNormal::Surface => Vec::new(),
-                    SlidingNormal::Direction(n) => n.try_normalize(1e-12).into_iter().collect(),
+                let nodes = match entry.normal {
+                    SlidingNormal::Surface => {
+                        sliding::wall_normals(&self.case.volume, self.boundary, &nodes, on_bone)
+                    }
+                    SlidingNormal::Direction(direction) => {
+                        let unit: Vec<Vector> =
+                            direction.try_normalize(1e-12).into_iter().collect();
+                        nodes.into_iter().map(|node| (node, unit.clone())).collect()
+                    }
                 };
-                let nodes = nodes.into_iter().map(|node| (node, given.clone())).collect();
                 Wall { index, carrier, nodes }
             })
             .collect();
@@ -122,18 +127,18 @@ impl Check<'_> {
             |wall: &Wall| matches!(self.case.sliding[wall.index].normal, SlidingNormal::Surface);
         for carrier in carriers.iter().collect::<BTreeSet<_>>() {
             let own = |wall: &&Wall| wall.carrier == *carrier && is_surface(wall);
+            if walls.iter().filter(own).count() < 2 {
+                continue;
+            }
             let nodes = walls.iter().filter(own).flat_map(|wall| &wall.nodes);
             let nodes: BTreeSet<u32> = nodes.map(|(node, _)| *node).collect();
             let nodes: Vec<u32> = nodes.into_iter().collect();
-            let of = |nodes: &[u32]| {
-                sliding::wall_normals(&self.case.volume, self.boundary, nodes, on_bone)
-            };
-            let whole: BTreeMap<u32, Vec<Vector>> = of(&nodes).into_iter().collect();
-            for wall in walls.iter_mut().filter(|wall| own(&&**wall)) {
-                let nodes: Vec<u32> = wall.nodes.iter().map(|(node, _)| *node).collect();
-                let own_walls = of(&nodes).into_iter();
-                wall.nodes =
-                    own_walls.map(|(node, own)| (node, of_whole(&own, &whole[&node]))).collect();
+            let whole = sliding::wall_normals(&self.case.volume, self.boundary, &nodes, on_bone);
+            let whole: BTreeMap<u32, Vec<Vector>> = whole.into_iter().collect();
+            for (node, normals) in
+                walls.iter_mut().filter(|wall| own(&&**wall)).flat_map(|wall| &mut wall.nodes)
+            {
+                *normals = of_whole(normals, &whole[node]);
             }
         }
         walls.iter().for_each(|wall| self.refuse_without_normal(wall));
