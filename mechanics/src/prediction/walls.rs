@@ -143,17 +143,19 @@ impl Check<'_> {
         }
         walls.iter().for_each(|wall| self.refuse_without_normal(wall));
         walls.sort_by_key(is_surface);
-        self.join_near_directions(&mut walls);
+        let stated = walls.iter().filter(|wall| !is_surface(wall)).count();
+        self.join_near_directions(&mut walls, stated);
         walls.sort_by_key(|wall| wall.index);
         walls
     }
 
-    /// Gives walls of one node and one carrier that are less than 5 degrees apart the same direction, that of the first, since two would leave
-    /// the node free along their line only; warns of those up to 45 degrees apart.
-    fn join_near_directions(&mut self, walls: &mut [Wall]) {
+    /// Gives walls of a node that are less than 5 degrees from a direction stated before for the same carrier that direction, since two would
+    /// leave the node free along their line only; warns of those up to 45 degrees apart. The first so many walls are stated; surfaces meet as
+    /// their faces do.
+    fn join_near_directions(&mut self, walls: &mut [Wall], stated: usize) {
         let mut known: BTreeMap<(u32, Option<u32>), Vec<Vector>> = BTreeMap::new();
         let (mut both, mut nearest): (BTreeSet<u32>, f64) = (BTreeSet::new(), 0.0);
-        for Wall { carrier, nodes, .. } in walls {
+        for (place, Wall { carrier, nodes, .. }) in walls.iter_mut().enumerate() {
             for (node, normals) in nodes {
                 let others = known.entry((*node, *carrier)).or_default();
                 for normal in normals.iter_mut() {
@@ -170,7 +172,9 @@ impl Check<'_> {
                         nearest = nearest.max(cosine.abs());
                     }
                 }
-                others.extend(normals.iter());
+                if place < stated {
+                    others.extend(normals.iter());
+                }
             }
         }
         let Some(first) = both.first() else { return };

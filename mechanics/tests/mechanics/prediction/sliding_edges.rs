@@ -90,9 +90,9 @@ fn directions_that_differ_by_rounding_hold_a_row_once_and_by_twenty_degrees_are_
     assert!(largest_difference(&one, &held) > 0.1);
 }
 
-/// A prism whose sides meet at an angle and at what is left of 180 degrees, all sides one set, pressed by 5 %: u = -.05 z e_z.
+/// A prism whose sides meet at an angle and at what is left of 180 degrees, all sides one set or four, pressed by 5 %: u = -.05 z e_z.
 #[test]
-fn tissue_stays_between_walls_of_one_set_that_meet_at_any_angle() {
+fn tissue_stays_between_walls_that_meet_at_any_angle_in_one_set_or_several() {
     for (shape, degrees) in
         SHAPES.into_iter().flat_map(|shape| [20.0, 40.0, 60.0].map(|a| (shape, a)))
     {
@@ -106,13 +106,19 @@ fn tissue_stays_between_walls_of_one_set_that_meet_at_any_angle() {
         mesh.node_sets.insert("sides".to_owned(), sides.into_iter().collect());
         let mut case = case_of(mesh, material(15.0, 0.3));
         let below = SlidingNormal::Direction(-Vector::z());
-        case.sliding = vec![wall("sides", SlidingNormal::Surface), wall("z_min", below)];
-        let lid = constraint("z_max", [None, None, Some(-0.5)]);
-        let plan = Plan { prescribed: vec![lid], ..Plan::default() };
-        let scene = Scene::new(&case, &plan, &exact()).unwrap();
-        let answer = scene.solve(&Unobserved).unwrap();
-        let field = |x: &Vector| Vector::z() * (-0.05 * x.z);
-        let error = largest_error(&case.volume, &answer.displacement, field);
-        assert!(error < 1e-9, "{shape:?} {degrees} degrees: {error:e}");
+        let four = ["x_min", "x_max", "y_min", "y_max"];
+        for sides in [&["sides"][..], &four] {
+            let surface = |name: &&str| wall(name, SlidingNormal::Surface);
+            case.sliding = sides.iter().map(surface).collect();
+            case.sliding.push(wall("z_min", below.clone()));
+            let lid = constraint("z_max", [None, None, Some(-0.5)]);
+            let plan = Plan { prescribed: vec![lid], ..Plan::default() };
+            let scene = Scene::new(&case, &plan, &exact()).unwrap();
+            assert!(scene.warnings.iter().all(|warning| warning.code != "walls-nearly-parallel"));
+            let answer = scene.solve(&Unobserved).unwrap();
+            let field = |x: &Vector| Vector::z() * (-0.05 * x.z);
+            let error = largest_error(&case.volume, &answer.displacement, field);
+            assert!(error < 1e-9, "{shape:?} {degrees} degrees, {sides:?}: {error:e}");
+        }
     }
 }
