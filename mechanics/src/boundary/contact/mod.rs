@@ -11,4 +11,4 @@ mod row;
 pub use bone::BoneSurface;
 pub use bone_inside::{BoneInside, Embedded, bones_inside};
 pub use facing::{CLOSED_MM, FacingSurfaces};
-pub use row::{ContactRow, OnBone, with_pressing};
+pub use row::{Alike, ContactRow, OnBone, with_pressing};

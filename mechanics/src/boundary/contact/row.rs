@@ -5,11 +5,25 @@ use std::collections::BTreeMap;
 use crate::boundary::Constraint;
 use crate::mesh::Vector;
 
-/// Rows whose gaps differ by less than this, in mm, say the same
-const SAME_MM: f64 = 1e-3;
+/// How nearly two rows of one node are to agree.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Alike {
+    /// While points are looked for, so that a point that slides over an edge does not alternate between faces.
+    Nearly,
+    /// In an answer, on bone: a force along a normal of before would hold as friction does.
+    Exactly,
+}
 
-/// where the cosine of their normals is above this, 2.6 degrees.
-const SAME_NORMAL: f64 = 0.999;
+impl Alike {
+    /// Gaps differ by less than this, in mm, and the cosine of the normals is above this: 2.6 or 0.02 degrees. Tissue turns a little with
+    /// every answer, bone rests.
+    fn bounds(self, is_on_bone: bool) -> (f64, f64) {
+        match (self, is_on_bone) {
+            (Alike::Exactly, true) => (1e-5, 1.0 - 6e-8),
+            _ => (1e-3, 0.999),
+        }
+    }
+}
 
 /// Rows with a gap above this, in mm, are not expected to close.
 const FAR_MM: f64 = 0.05;
@@ -57,11 +71,18 @@ impl ContactRow {
     }
 
     /// Whether another row of the same node says the same after a displacement and a share of the movement of bones.
-    pub fn agrees(&self, other: &ContactRow, displacement: &[Vector], share: f64) -> bool {
+    pub fn agrees(
+        &self,
+        other: &ContactRow,
+        alike: Alike,
+        displacement: &[Vector],
+        share: f64,
+    ) -> bool {
+        let (mm, cosine) = alike.bounds(self.bone.is_some());
         let apart = self.gap_after(displacement, share) - other.gap_after(displacement, share);
         self.bone.map(|on| on.bone) == other.bone.map(|on| on.bone)
-            && apart.abs() < SAME_MM
-            && self.normal().dot(&other.normal()) > SAME_NORMAL
+            && apart.abs() < mm
+            && self.normal().dot(&other.normal()) > cosine
     }
 
     /// Whether the gap is closed or nearly so.

@@ -125,7 +125,9 @@ impl ActiveSet {
                 }
                 wanted = task.relative_residual.max(if is_loose { ON_THE_WAY } else { 0.0 });
             } else {
-                settled.kept = self.flips.iter().filter(|flips| **flips >= MOST_FLIPS).count();
+                let is_kept =
+                    |(flips, presses): &(&usize, &bool)| **flips >= MOST_FLIPS && **presses;
+                settled.kept = self.flips.iter().zip(&self.presses).filter(is_kept).count();
                 settled.repeats = true;
                 return Ok(settled);
             }

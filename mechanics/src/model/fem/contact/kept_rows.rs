@@ -4,7 +4,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::touch::{Contact, PressingRow, forces_of};
-use crate::boundary::contact::ContactRow;
+use crate::boundary::contact::{Alike, ContactRow};
 use crate::mesh::Vector;
 
 /// The rows of one round, by node.
@@ -24,10 +24,11 @@ pub(in crate::model::fem) struct Round {
 }
 
 impl KeptRows {
-    /// Takes up the rows found after a displacement and a share of the movement of bones.
+    /// Takes up the rows found after a displacement and a share of the movement of bones, but for those that are alike.
     pub fn take(
         &mut self,
         mut found: Vec<ContactRow>,
+        alike: Alike,
         displacement: &[Vector],
         share: f64,
     ) -> Round {
@@ -36,7 +37,7 @@ impl KeptRows {
         let mut round = Round { same: vec![None; found.len()], new: 0 };
         for (row, same) in found.iter_mut().zip(&mut round.same) {
             let old = before.get(&row.node).copied();
-            *same = old.filter(|&old| self.rows[old].agrees(row, displacement, share));
+            *same = old.filter(|&old| self.rows[old].agrees(row, alike, displacement, share));
             match *same {
                 Some(old) => *row = self.rows[old].clone(),
                 None => {

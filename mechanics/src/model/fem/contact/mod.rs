@@ -15,4 +15,5 @@ pub(super) use active_set::{ActiveSet, MOST_PASSES, Task};
 pub(super) use equations::FreeUnknowns;
 pub(super) use kept_rows::KeptRows;
 pub use pressing::{ContactProblem, InContact, Pressing, SETTLED_MM};
+pub(super) use pressing::{MOST_ROUNDS, UNSETTLED_MM};
 pub use touch::{Contact, Effort, PressedStep, PressingRow, forces_of};

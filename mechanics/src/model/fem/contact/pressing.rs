@@ -7,7 +7,7 @@ use super::active_set::{ActiveSet, MOST_PASSES, SettledSet, Task};
 use super::equations::FreeUnknowns;
 use super::kept_rows::{KeptRows, Round};
 use super::touch::{Contact, Effort};
-use crate::boundary::contact::{CLOSED_MM, ContactRow, FacingSurfaces};
+use crate::boundary::contact::{Alike, CLOSED_MM, ContactRow, FacingSurfaces};
 use crate::mesh::Vector;
 use crate::model::fem::linear_system::{Correction, LinearSystem, Residual, Solved};
 use crate::model::problem::{Equilibrium, LoadCase, ModelError};
@@ -16,10 +16,10 @@ use crate::solver::SolverError;
 use crate::solver::constrained::{ConstraintTarget, Equations, Point};
 
 /// Beyond this, in mm, an answer is none.
-const UNSETTLED_MM: f64 = 0.1;
+pub const UNSETTLED_MM: f64 = 0.1;
 
 /// How often closest points are looked for again at the end of the movement.
-const MOST_ROUNDS: usize = 15;
+pub const MOST_ROUNDS: usize = 15;
 
 /// What moves goes by at most this part of its longest edges in a step; the second where the first does not settle.
 const STEPS: [f64; 2] = [0.5, 0.125];
@@ -83,7 +83,7 @@ impl<'a> ContactProblem<'a> {
                 return Err(SolverError::Stopped.into());
             }
             rounds.share = step as f64 / steps as f64;
-            rounds.look();
+            rounds.look(Alike::Nearly);
             if rounds.touches() {
                 rounds.settle(ON_THE_WAY, FEW_PASSES, progress)?;
             } else {
@@ -92,39 +92,60 @@ impl<'a> ContactProblem<'a> {
             }
         }
         if !rounds.has_touched() {
-            rounds.look();
+            rounds.look(Alike::Nearly);
             if !rounds.touches() {
                 return Ok(None);
             }
             rounds.settle(ON_THE_WAY, FEW_PASSES, progress)?;
         }
+        let last_moved_mm = self.settle_points(&mut rounds, progress)?;
+        match rounds.repeats {
+            true => Ok(Some(rounds.answer(last_moved_mm))),
+            false => Err(rounds.unsettled(last_moved_mm)),
+        }
+    }
+
+    /// Looks for closest points at the end of the movement until they no longer move the answer; how far they do, in mm.
+    fn settle_points(
+        &self,
+        rounds: &mut Rounds,
+        progress: &dyn Progress,
+    ) -> Result<f64, ModelError> {
         let mut last_moved_mm = f64::INFINITY;
         let mut before_mm = f64::INFINITY;
+        // Whether rows have the normals of the bone where they press.
+        let mut is_exact = !self.surfaces.has_bones();
         for _ in 0..MOST_ROUNDS {
             let alternates = last_moved_mm > ALTERNATES * before_mm;
+            let is_near = last_moved_mm < NEAR_MM;
             before_mm = last_moved_mm;
             if alternates {
                 rounds.look_half_way();
-            } else if rounds.look() == 0 && rounds.repeats {
-                last_moved_mm = 0.0;
-                break;
+            } else {
+                let mut new = match is_near && !is_exact {
+                    true => 0,
+                    false => rounds.look(Alike::Nearly),
+                };
+                if new == 0 && !is_exact && (is_near || rounds.repeats) {
+                    is_exact = true;
+                    new = rounds.look(Alike::Exactly);
+                }
+                if new == 0 && rounds.repeats {
+                    last_moved_mm = 0.0;
+                    break;
+                }
             }
-            let is_near = last_moved_mm < NEAR_MM;
             let residual = if is_near { NEARLY } else { ON_THE_WAY };
             last_moved_mm = rounds.settle(residual, FEW_PASSES, progress)?;
-            if is_near && rounds.repeats && last_moved_mm < SETTLED_MM {
+            if is_exact && is_near && rounds.repeats && last_moved_mm < SETTLED_MM {
                 break;
             }
         }
         if last_moved_mm > UNSETTLED_MM {
             return Err(rounds.unsettled(last_moved_mm));
         }
-        last_moved_mm =
-            last_moved_mm.max(rounds.settle(self.relative_residual, MOST_PASSES, progress)?);
-        match rounds.repeats {
-            true => Ok(Some(rounds.answer(last_moved_mm))),
-            false => Err(rounds.unsettled(f64::INFINITY)),
-        }
+        let moved_mm = rounds.settle(self.relative_residual, MOST_PASSES, progress)?;
+        Ok(last_moved_mm.max(moved_mm))
     }
 
     fn free(&self) -> &[Vector] {
@@ -205,9 +226,9 @@ impl<'a, 'b> Rounds<'a, 'b> {
     }
 
     /// Looks for closest points with the answer so far; how many rows say something new.
-    fn look(&mut self) -> usize {
+    fn look(&mut self, alike: Alike) -> usize {
         let displacement = std::mem::take(&mut self.displacement);
-        let new = self.look_at(&displacement);
+        let new = self.look_at(&displacement, alike);
         self.displacement = displacement;
         new
     }
@@ -216,13 +237,13 @@ impl<'a, 'b> Rounds<'a, 'b> {
     fn look_half_way(&mut self) {
         let pairs = self.displacement.iter().zip(&self.before);
         let half_way: Vec<Vector> = pairs.map(|(u, before)| (u + before) * 0.5).collect();
-        self.look_at(&half_way);
+        self.look_at(&half_way, Alike::Nearly);
     }
 
-    fn look_at(&mut self, displacement: &[Vector]) -> usize {
+    fn look_at(&mut self, displacement: &[Vector], alike: Alike) -> usize {
         let mut found = self.problem.surfaces.rows(displacement, self.reached);
         found.retain(|row| !self.unknowns.equation(row).is_empty());
-        let Round { same, new } = self.kept_rows.take(found, displacement, self.reached);
+        let Round { same, new } = self.kept_rows.take(found, alike, displacement, self.reached);
         let equations = self.kept_rows.rows.iter().map(|row| self.unknowns.equation(row));
         self.equations.replace(equations.collect(), &same);
         new

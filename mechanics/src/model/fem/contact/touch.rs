@@ -10,7 +10,7 @@ use crate::mesh::Vector;
 #[derive(Clone, Debug, PartialEq)]
 pub struct PressingRow {
     pub row: ContactRow,
-    /// In mN, never below 0 but for rounding.
+    /// In mN, below 0 by more than rounding only where it is kept (`Effort::kept`).
     pub force: f64,
 }
 

@@ -8,11 +8,12 @@
 use std::collections::BTreeMap;
 
 use crate::boundary::Constraint;
-use crate::boundary::contact::{CLOSED_MM, FacingSurfaces, with_pressing};
+use crate::boundary::contact::{Alike, CLOSED_MM, FacingSurfaces, with_pressing};
 use crate::mesh::Vector;
 use crate::model::dofs::DofMap;
 use crate::model::fem::contact::{
-    ActiveSet, Contact, Effort, FreeUnknowns, KeptRows, MOST_PASSES, PressedStep, Task, forces_of,
+    ActiveSet, Contact, Effort, FreeUnknowns, KeptRows, MOST_PASSES, MOST_ROUNDS, PressedStep,
+    Task, UNSETTLED_MM, forces_of,
 };
 use crate::model::problem::ModelError;
 use crate::progress::Progress;
@@ -23,11 +24,8 @@ use crate::solver::preconditioned::Preconditioned;
 /// Relative residual of what contact adds to a step.
 const LOOSELY: f64 = 1e-3;
 
-/// Closest points that still move by more than this in the end, in mm, are no answer.
-const UNSETTLED_MM: f64 = 0.1;
-
-/// How often closest points are looked for again once the bones rest.
-const MOST_ROUNDS: usize = 15;
+/// How often rows take the normals of the bone where they press once it rests: each time Newton's method goes on.
+const EXACT_ROUNDS: usize = 4;
 
 /// What touches, at one state of tissue and bones.
 #[derive(Clone)]
@@ -41,6 +39,8 @@ pub(super) struct Touching<'a> {
     pub most_ahead: f64,
     /// Rounds since the bones rest.
     late_rounds: usize,
+    /// Rounds of these in which rows took the normals of the bone where they press.
+    exact_rounds: usize,
     /// Rows that said something new in the last round.
     new: usize,
     /// Whether the set that presses repeated at the last step.
@@ -87,6 +87,7 @@ impl<'a> Touching<'a> {
             multipliers: Vec::new(),
             most_ahead,
             late_rounds: 0,
+            exact_rounds: 0,
             new: 0,
             repeats: true,
             effort: Effort::default(),
@@ -96,7 +97,10 @@ impl<'a> Touching<'a> {
 
     /// Looks for what faces what after a displacement and a share of the movement of bones; once the bones rest, only so often.
     pub fn look(&mut self, displacement: &[Vector], share: f64, bones_rest: bool) {
-        self.late_rounds = if bones_rest { self.late_rounds + 1 } else { 0 };
+        if !bones_rest {
+            (self.late_rounds, self.exact_rounds) = (0, 0);
+        }
+        self.late_rounds += usize::from(bones_rest);
         self.new = 0;
         if self.late_rounds > MOST_ROUNDS {
             return;
@@ -105,7 +109,14 @@ impl<'a> Touching<'a> {
         let before: BTreeMap<u32, f64> = rows.map(|(row, m)| (row.node, *m)).collect();
         let mut found = self.surfaces.rows(displacement, share);
         found.retain(|row| !self.unknowns.equation(row).is_empty());
-        self.new = self.kept_rows.take(found, displacement, share).new;
+        let has_bones = self.surfaces.has_bones();
+        let is_late = bones_rest && has_bones && self.exact_rounds < EXACT_ROUNDS;
+        let again = is_late.then(|| found.clone());
+        self.new = self.kept_rows.take(found, Alike::Nearly, displacement, share).new;
+        if let (0, Some(found)) = (self.new, again) {
+            self.exact_rounds += 1;
+            self.new = self.kept_rows.take(found, Alike::Exactly, displacement, share).new;
+        }
         let rows = self.kept_rows.rows.iter();
         self.multipliers =
             rows.map(|row| before.get(&row.node).copied().unwrap_or_default()).collect();
