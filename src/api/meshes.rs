@@ -105,13 +105,13 @@ async fn upload(
         return Err(body::unsupported(&kind, READ_HERE));
     };
     let permit = service.parse_permit().await?;
-    let (row, is_new) = match take_in(&service, &permit, body, &statement, true).await? {
-        UploadedMesh::Known(row) => {
-            service.store.keep_mesh(&row.id).await?;
-            (row, false)
-        }
+    let (mut row, is_new) = match take_in(&service, &permit, body, &statement, true).await? {
+        UploadedMesh::Known(row) => (row, false),
         UploadedMesh::New(upload) => store(&service, *upload).await?,
     };
+    if !is_new {
+        row = service.store.keep_mesh(&row.id).await?.ok_or_else(deleted_meanwhile)?;
+    }
     let location = format!("/v1/meshes/{}", row.id);
     let status = if is_new { StatusCode::CREATED } else { StatusCode::OK };
     let answer = json(status, &document_of(&row)?);
@@ -168,11 +168,14 @@ async fn store(service: &Service, upload: Upload) -> ApiResult<(MeshRow, bool)> 
     let is_new = service.store.add_mesh(&upload.row).await?;
     let (hash, options) = (&upload.row.sha256, &upload.row.options);
     let row = service.store.mesh_by_content(hash, options).await?;
-    let row =
-        row.ok_or_else(|| ApiError::new(ErrorCode::Conflict, "the mesh was deleted meanwhile"))?;
+    let row = row.ok_or_else(deleted_meanwhile)?;
     service.library.keep(&row.blob, upload.mesh.shape);
     tracing::info!(mesh.id = %row.id, mesh.nodes = upload.document.report.nodes, is_new, "mesh stored");
     Ok((row, is_new))
+}
+
+fn deleted_meanwhile() -> ApiError {
+    ApiError::new(ErrorCode::Conflict, "the mesh was deleted meanwhile")
 }
 
 /// The description of a stored mesh.

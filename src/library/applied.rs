@@ -18,13 +18,21 @@ pub struct Applied {
     pub tearing_checked: bool,
 }
 
-/// Codes that need the mesh inside the skin, or the surfaces of bones.
-const NEVER_MEASURED: [&str; 5] = [
+/// Codes that need the mesh inside the skin, the surfaces of bones, or landmarks. What stands for `large-rotation` and `large-strain` is
+/// the estimate of the response, a mean over the skin: these two are of its largest part.
+const NEVER_MEASURED: [&str; 12] = [
     NUMERICAL_ERROR_LARGE,
     "cells-inverted",
     "bones-overlap",
     "bone-in-tissue",
     "bone-through-skin",
+    "large-rotation",
+    "large-strain",
+    "skin-outruns-plan",
+    "sliding-off-wall",
+    "landmark-far",
+    "landmarks-crowded",
+    "landmarks-swapped",
 ];
 
 impl Applied {

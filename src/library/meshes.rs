@@ -191,7 +191,7 @@ impl MeshSource for LibrarySource {
 fn found<T>(id: &str, mesh: Result<Option<T>, StoreError>) -> Result<T, SourceError> {
     match mesh {
         Ok(Some(mesh)) => Ok(mesh),
-        Ok(None) => Err(SourceError::Unknown { id: id.to_owned() }),
+        Ok(None) | Err(StoreError::Erased) => Err(SourceError::Unknown { id: id.to_owned() }),
         Err(error) => Err(SourceError::Unreadable {
             id: id.to_owned(),
             detail: error.to_string(),

@@ -211,6 +211,6 @@ impl Responses {
 
     async fn file(&self, job: &str, name: &str) -> Result<bytes::Bytes, StoreError> {
         let file = self.store.job_file(job, name).await?;
-        self.store.read_blob(&file.ok_or(StoreError::Interrupted)?.blob).await
+        self.store.read_blob(&file.ok_or(StoreError::Erased)?.blob).await
     }
 }

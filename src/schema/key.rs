@@ -104,12 +104,12 @@ pub struct KeyDocument {
 #[serde(deny_unknown_fields)]
 pub struct RotationDocument {
     /// Hours for which the old key remains valid.
-    #[serde(default = "default_overlap_s")]
+    #[serde(default = "default_overlap_h")]
     #[schema(default = 24, minimum = 0, maximum = 8760)]
     pub overlap_h: i64,
 }
 
-fn default_overlap_s() -> i64 {
+fn default_overlap_h() -> i64 {
     24
 }
 

@@ -18,7 +18,7 @@ pub struct MeshDocument {
     pub bytes: u64,
     /// As detected from the bytes, e.g. `vtu`, `stl`, `gmsh`, `nrrd`, `dicom`.
     pub format: String,
-    /// RFC 3339, UTC.
+    /// RFC 3339, UTC: when it was stored, or uploaded again by itself, from which its retention counts.
     pub created: String,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]

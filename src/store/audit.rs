@@ -2,7 +2,7 @@
 //! hash before it, so that a row that was changed, removed or inserted shows.
 
 use super::audited_action::AuditedAction;
-use super::database::{Row, query};
+use super::database::{Row, is_duplicate, query};
 use super::{Store, StoreError};
 use crate::schema::wire::canonical::sha256_hex;
 
@@ -23,11 +23,15 @@ pub struct AuditRow {
 pub enum Chain {
     /// So many rows, and the hash of the last one: kept elsewhere, it shows whether the log was written anew.
     Whole { rows: i64, hash: String },
-    /// The first row that does not follow from those before it, or the end that is not where it was noted.
+    /// The first row that does not follow from those before it, the end that is not where it was noted, or a row before
+    /// the first or behind the end.
     Broken { at: i64 },
 }
 
 const LOOK: &str = "SELECT number, hash FROM audit_end WHERE one = 1";
+/// One statement, which sees a row that is added together with the end that was moved to it.
+const OUTSIDE: &str = "SELECT MIN(number) FROM audit \
+     WHERE number < 1 OR number > COALESCE((SELECT number FROM audit_end WHERE one = 1), 0)";
 const AFTER: &str = "SELECT number, at, tenant, actor, action, object, outcome, request, hash \
      FROM audit WHERE number > $1 AND ($2 = '' OR tenant = $2) ORDER BY number LIMIT $3";
 
@@ -64,9 +68,20 @@ impl Store {
         tenant: &str,
         limit: i64,
     ) -> Result<Vec<AuditRow>, StoreError> {
-        self.write_outcomes().await?;
-        self.chain_actions().await?;
+        self.chain_ended().await?;
         self.rows(after, tenant, limit).await
+    }
+
+    /// Takes what has ended into the chain, as far as no row that somebody inserted behind its end stands in the way.
+    async fn chain_ended(&self) -> Result<(), StoreError> {
+        self.write_outcomes().await?;
+        match self.chain_actions().await {
+            Err(StoreError::Database(error)) if is_duplicate(&error) => {
+                tracing::error!(%error, "the audit log has a row behind its end, and cannot grow");
+                Ok(())
+            }
+            chained => chained.map(drop),
+        }
     }
 
     async fn rows(
@@ -86,8 +101,7 @@ impl Store {
 
     /// Looks at every row whether it follows from the one before.
     pub async fn check_audit(&self) -> Result<Chain, StoreError> {
-        self.write_outcomes().await?;
-        self.chain_actions().await?;
+        self.chain_ended().await?;
         let end = query(LOOK).fetch_optional(self.database.reader()).await?;
         let (number, hash): (i64, String) = match end {
             Some(end) => (end.try_get("number")?, end.try_get("hash")?),
@@ -106,9 +120,13 @@ impl Store {
                 (last, before) = (row.number, row.hash);
             }
         }
-        match before == hash {
-            true => Ok(Chain::Whole { rows: number, hash }),
-            false => Ok(Chain::Broken { at: number }),
+        if before != hash {
+            return Ok(Chain::Broken { at: number });
         }
+        let outside = query(OUTSIDE).fetch_one(self.database.reader()).await?;
+        Ok(match outside.try_get::<Option<i64>, _>(0)? {
+            Some(at) => Chain::Broken { at },
+            None => Chain::Whole { rows: number, hash },
+        })
     }
 }

@@ -193,6 +193,16 @@ impl Store {
     /// Erases a case: its plans, its jobs with their results, and the meshes that came with it or that its jobs made or
     /// read and that nothing else refers to; it leaves every cohort. A job of it that is running finds itself gone and stops.
     pub async fn delete_case(&self, id: &str, version: Option<i64>) -> Result<Change, StoreError> {
+        self.delete_case_of_age(id, version, 0).await
+    }
+
+    /// The same where nothing of it has changed for `age`, in ms; with the version that it has otherwise.
+    pub(super) async fn delete_case_of_age(
+        &self,
+        id: &str,
+        version: Option<i64>,
+        age: i64,
+    ) -> Result<Change, StoreError> {
         let mut transaction = self.database.begin().await?;
         let found = query("SELECT version FROM cases WHERE id = $1 AND tenant = $2 FOR UPDATE")
             .bind(id)
@@ -207,6 +217,9 @@ impl Store {
             return Ok(Change::OtherVersion(found));
         }
         let jobs = column(&mut transaction, JOBS_OF_CASE, id).await?;
+        if age > 0 && !self.is_old_case(&mut transaction, id, age).await? {
+            return Ok(Change::OtherVersion(found));
+        }
         let mut blobs = column(&mut transaction, FILES_OF_CASE, id).await?;
         let meshes = column(&mut transaction, MESHES_OF_CASE, id).await?;
         self.insert_tombstones_of_case(&mut transaction, id).await?;

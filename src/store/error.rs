@@ -57,6 +57,8 @@ pub enum StoreError {
     Integrity { sha256: String, found: String },
     #[error("blob {sha256} is not where it was kept")]
     Missing { sha256: String },
+    #[error("it was erased meanwhile")]
+    Erased,
     #[error("others changed the same rows at the same time, again and again")]
     Contended,
     #[error("{most} requests wait to be noted or written already")]
@@ -69,6 +71,10 @@ pub enum StoreError {
     NotEmpty { table: &'static str },
     #[error("the export cannot be read: {0}")]
     Export(String),
+    #[error(
+        "blob {sha256} was erased meanwhile, during the export: export again, into a new folder"
+    )]
+    ErasedDuringExport { sha256: String },
     #[error("the work was interrupted")]
     Interrupted,
     #[error("the system has no random bytes")]

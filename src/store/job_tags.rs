@@ -18,6 +18,8 @@ pub enum Tagged {
 const LOCK: &str = "SELECT 1 FROM jobs WHERE id = $1 AND tenant = $2 FOR UPDATE";
 const TAGS: &str = "SELECT tag FROM job_tags WHERE job_id = $1";
 const PUT_ON: &str = "INSERT INTO job_tags (job_id, tag) VALUES ($1, $2) ON CONFLICT DO NOTHING";
+/// A request for a job, equal to that of another client or for its tags, is a change from which its age counts anew.
+const RENEW: &str = "UPDATE jobs SET updated = (SELECT now_ms FROM clock) WHERE id = $1";
 const TAKE_OFF: &str = "DELETE FROM job_tags WHERE job_id = $1 AND tag = $2";
 
 pub(super) async fn insert_tags(
@@ -33,7 +35,7 @@ pub(super) async fn insert_tags(
 
 impl Store {
     /// Takes tags off a job and puts others on it, at most `most` in all. What is to be there or to be away already is no
-    /// mistake, so that changes may be sent again and come in any order.
+    /// mistake, so that changes may be sent again and come in any order. The retention of the job begins anew.
     pub async fn change_tags(
         &self,
         job: &str,
@@ -58,6 +60,7 @@ impl Store {
             query(TAKE_OFF).bind(job).bind(tag).execute(&mut transaction).await?;
         }
         insert_tags(&mut transaction, job, add).await?;
+        query(RENEW).bind(job).execute(&mut transaction).await?;
         transaction.commit().await?;
         Ok(Tagged::Done)
     }

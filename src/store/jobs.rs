@@ -1,7 +1,7 @@
 //! Jobs for clients: read, listed, dismissed, removed.
 
 use super::cases::AFTER_ALL;
-use super::database::{Row, query};
+use super::database::{Row, Transaction, query};
 use super::events::record;
 use super::made::meshes_of_job;
 use super::membership::{Leaving, forget_model, leave};
@@ -111,8 +111,9 @@ const FILES: &str = "SELECT job_files.blob FROM job_files JOIN jobs ON jobs.id =
      WHERE jobs.id = $1 AND jobs.tenant = $2";
 /// Locked before the cohorts that it leaves.
 const ENDED: &str = "SELECT 1 FROM jobs WHERE id = $1 AND tenant = $2 \
-     AND status IN ('successful', 'failed', 'dismissed') FOR UPDATE";
-const REMOVE: &str = "DELETE FROM jobs WHERE id = $1 AND tenant = $2 AND status IN ('successful', 'failed', 'dismissed')";
+     AND status IN ('successful', 'failed', 'dismissed') \
+     AND ($3 = 0 OR updated < (SELECT now_ms FROM clock) - $3) FOR UPDATE";
+const REMOVE: &str = "DELETE FROM jobs WHERE id = $1";
 
 fn status_of(row: &Row) -> Result<JobStatus, sqlx::Error> {
     let status: String = row.try_get("status")?;
@@ -220,28 +221,38 @@ impl Store {
             waited.iter().for_each(|job| self.job_changed(job));
             return Ok(Dismissal::Dismissed);
         }
+        self.remove_job(transaction, id, 0).await
+    }
+
+    /// Removes a job that has ended and that nobody has changed for `age`, in ms.
+    pub(super) async fn remove_old_job(&self, id: &str, age: i64) -> Result<Dismissal, StoreError> {
+        self.remove_job(self.database.begin().await?, id, age).await
+    }
+
+    async fn remove_job(
+        &self,
+        mut transaction: Transaction,
+        id: &str,
+        age: i64,
+    ) -> Result<Dismissal, StoreError> {
         let rows = query(FILES).bind(id).bind(self.tenant()).fetch_all(&mut transaction).await?;
         let mut blobs =
             rows.iter().map(|row| row.try_get(0)).collect::<Result<Vec<String>, _>>()?;
         let meshes = meshes_of_job(&mut transaction, id).await?;
-        let ended = query(ENDED).bind(id).bind(self.tenant());
-        if ended.fetch_optional(&mut transaction).await?.is_some() {
-            leave(&mut transaction, Leaving::Prediction(id)).await?;
-            forget_model(&mut transaction, id).await?;
+        let ended = query(ENDED).bind(id).bind(self.tenant()).bind(age);
+        if ended.fetch_optional(&mut transaction).await?.is_none() {
+            return Ok(Dismissal::NotFound);
         }
-        let removed = query(REMOVE).bind(id).bind(self.tenant()).execute(&mut transaction).await?;
-        if removed == 1 {
-            self.insert_tombstone(&mut transaction, id).await?;
-            blobs.extend(self.remove_unused(&mut transaction, meshes).await?);
-        }
+        leave(&mut transaction, Leaving::Prediction(id)).await?;
+        forget_model(&mut transaction, id).await?;
+        query(REMOVE).bind(id).execute(&mut transaction).await?;
+        self.insert_tombstone(&mut transaction, id).await?;
+        blobs.extend(self.remove_unused(&mut transaction, meshes).await?);
         transaction.commit().await?;
         self.mark_erased();
         self.job_changed(id);
         self.discard(blobs).await;
-        Ok(match removed {
-            0 => Dismissal::NotFound,
-            _ => Dismissal::Removed,
-        })
+        Ok(Dismissal::Removed)
     }
 }
 

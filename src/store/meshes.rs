@@ -26,6 +26,7 @@ pub struct MeshRow {
     pub sha256: String,
     pub blob: String,
     pub report: String,
+    /// When it was uploaded, or uploaded again.
     pub created: i64,
 }
 
@@ -54,6 +55,11 @@ const BY_CONTENT: &str = "SELECT id, sha256, blob, report, created FROM meshes \
      WHERE sha256 = $1 AND options = $2 AND tenant = $3";
 const INSERT: &str = "INSERT INTO meshes (id, sha256, options, blob, standalone, report, tenant, created) \
      VALUES ($1, $2, $3, $4, $5, $6, $7, (SELECT now_ms FROM clock))";
+
+const KEEP: &str = "UPDATE meshes SET standalone = 1, created = (SELECT now_ms FROM clock) \
+     WHERE id = $1 AND tenant = $2 RETURNING id, sha256, blob, report, created";
+const DELETE: &str = "DELETE FROM meshes WHERE id = $1 AND tenant = $2 \
+     AND ($3 = 0 OR created < (SELECT now_ms FROM clock) - $3) RETURNING blob";
 
 /// Each user once: a job may both read a mesh and have made it.
 macro_rules! users {
@@ -124,22 +130,32 @@ impl Store {
         }
     }
 
-    /// Keeps a mesh although the case that it came with may go.
-    pub async fn keep_mesh(&self, id: &str) -> Result<(), StoreError> {
-        query("UPDATE meshes SET standalone = 1 WHERE id = $1 AND tenant = $2 AND standalone = 0")
-            .bind(id)
-            .bind(self.tenant())
-            .execute(&self.database.writer().await?)
-            .await?;
-        Ok(())
+    /// Keeps a mesh that was uploaded again, although the case that it came with may go; its age counts from now. `None`
+    /// where it went meanwhile.
+    pub async fn keep_mesh(&self, id: &str) -> Result<Option<MeshRow>, StoreError> {
+        let mut transaction = self.database.begin().await?;
+        let kept = query(KEEP).bind(id).bind(self.tenant());
+        let kept = kept.fetch_optional(&mut transaction).await?;
+        transaction.commit().await?;
+        Ok(kept.as_ref().map(mesh_row).transpose()?)
     }
 
     /// Deletes a mesh that no case and no job refers to, and its bytes.
     pub async fn delete_mesh(&self, id: &str) -> Result<MeshDeletion, StoreError> {
+        self.delete_mesh_of_age(id, 0).await
+    }
+
+    /// The same where nobody has uploaded it for `age`, in ms.
+    pub(super) async fn delete_mesh_of_age(
+        &self,
+        id: &str,
+        age: i64,
+    ) -> Result<MeshDeletion, StoreError> {
         let mut transaction = self.database.begin().await?;
-        let deleted = query("DELETE FROM meshes WHERE id = $1 AND tenant = $2 RETURNING blob")
+        let deleted = query(DELETE)
             .bind(id)
             .bind(self.tenant())
+            .bind(age)
             .fetch_optional(&mut transaction)
             .await;
         match deleted {

@@ -1,4 +1,5 @@
-//! Persistent store: rows in a database, bytes in blobs. Every query lives here, one file for each table.
+//! Persistent store: rows in a database, bytes in blobs. Every query lives here, one file for each table; jobs have several: `accepted`,
+//! `claims`, `leases`, `waiting`, `lost`, `queue`, `jobs` and `job_tags`, in the order of a job's life.
 
 mod accepted;
 mod audit;

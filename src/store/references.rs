@@ -51,6 +51,8 @@ const LOCK: &str = "SELECT place FROM blobs WHERE sha256 = $1 FOR UPDATE";
 const DISCARD: &str = "DELETE FROM blobs WHERE sha256 = $1 \
      AND NOT EXISTS (SELECT 1 FROM meshes WHERE meshes.blob = $1) \
      AND NOT EXISTS (SELECT 1 FROM job_files WHERE job_files.blob = $1)";
+const REFERRED: &str = "SELECT 1 FROM meshes WHERE meshes.blob = $1 \
+     UNION ALL SELECT 1 FROM job_files WHERE job_files.blob = $1 LIMIT 1";
 const REMEMBER: &str =
     "INSERT INTO discarded_blobs (place, discarded) VALUES ($1, (SELECT now_ms FROM clock))";
 const FORGET: &str = "DELETE FROM discarded_blobs WHERE place = $1";
@@ -166,12 +168,24 @@ impl Store {
 
     /// The bytes of a hash, compared with it.
     pub async fn read_blob(&self, sha256: &str) -> Result<Bytes, StoreError> {
-        self.blobs.get(&self.place_of(sha256).await?, sha256).await
+        let read = async { self.blobs.get(&self.place_of(sha256).await?, sha256).await };
+        self.erased_or(read.await).await
     }
 
     /// The blob of a hash, before any of it is read.
     pub async fn find_blob(&self, sha256: &str) -> Result<FoundBlob, StoreError> {
-        self.blobs.find(&self.place_of(sha256).await?, sha256).await
+        let found = async { self.blobs.find(&self.place_of(sha256).await?, sha256).await };
+        self.erased_or(found.await).await
+    }
+
+    /// Bytes that are missing are no damage where what referred to them was erased after it was looked up.
+    async fn erased_or<T>(&self, read: Result<T, StoreError>) -> Result<T, StoreError> {
+        let Err(StoreError::Missing { sha256 }) = read else { return read };
+        let row = query(REFERRED).bind(&sha256).fetch_optional(self.database.reader()).await?;
+        Err(match row {
+            Some(_) => StoreError::Missing { sha256 },
+            None => StoreError::Erased,
+        })
     }
 
     /// It as a file, compared with its hash, which can be read to its end also where the blob is erased meanwhile.

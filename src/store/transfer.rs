@@ -5,14 +5,14 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs::{DirBuilder, File};
-use std::io::{BufRead, BufReader, BufWriter, ErrorKind, Write};
+use std::io::{BufRead, BufReader, BufWriter, ErrorKind, Lines, Write};
 use std::os::unix::fs::DirBuilderExt;
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 use serde_json::Value as Json;
 
-use super::database::{Executor, Row, Transaction, Value, newest_step, query, query_of};
+use super::database::{Executor, Row, Statement, Transaction, Value, newest_step, query, query_of};
 use super::references::{Content, hold};
 use super::{Store, StoreError};
 use crate::schema::wire::canonical::sha256_hex;
@@ -75,6 +75,16 @@ enum Kind {
     Real,
 }
 
+impl Kind {
+    fn name(self) -> &'static str {
+        match self {
+            Kind::Text => "text",
+            Kind::Integer => "integers",
+            Kind::Real => "numbers",
+        }
+    }
+}
+
 /// The bytes of an exported blob, whose file has their hash for its name.
 fn read_exported(folder: &Path, sha256: &str) -> Result<Vec<u8>, StoreError> {
     let file = folder.join("blobs").join(sha256);
@@ -109,13 +119,26 @@ impl Store {
             manifest.blobs.insert(row.try_get(0)?);
         }
         snapshot.rollback().await;
-        for sha256 in &manifest.blobs {
-            let bytes = self.read_blob(sha256).await?;
-            write_durably(&folder.join("blobs").join(sha256), &bytes)?;
-        }
+        self.export_blobs(folder, &manifest.blobs).await?;
         let text = serde_json::to_vec_pretty(&manifest).map_err(unreadable)?;
         write_durably(&folder.join(MANIFEST), &text)?;
         Ok(TransferCounts { rows: manifest.rows.values().sum(), blobs: manifest.blobs.len() })
+    }
+
+    /// After the snapshot has ended, which must not last as long as they take.
+    async fn export_blobs(
+        &self,
+        folder: &Path,
+        blobs: &BTreeSet<String>,
+    ) -> Result<(), StoreError> {
+        for sha256 in blobs {
+            let bytes = self.read_blob(sha256).await.map_err(|error| match error {
+                StoreError::Erased => StoreError::ErasedDuringExport { sha256: sha256.clone() },
+                other => other,
+            })?;
+            write_durably(&folder.join("blobs").join(sha256), &bytes)?;
+        }
+        Ok(())
     }
 
     /// Takes in what was exported, all of it or nothing. Only into a deployment in which there is nothing.
@@ -131,7 +154,8 @@ impl Store {
             return Err(StoreError::Export(detail));
         }
         self.refuse_unless_empty().await?;
-        // All of them before anything is stored.
+        // All of it before anything is stored.
+        check_rows(folder, &manifest)?;
         for sha256 in &manifest.blobs {
             read_exported(folder, sha256)?;
         }
@@ -146,12 +170,7 @@ impl Store {
             return Err(StoreError::Contended);
         }
         for table in TABLES {
-            let file = folder.join(format!("{table}.ndjson"));
-            let rows = import_table(&mut transaction, table, &file).await?;
-            if manifest.rows.get(table) != Some(&rows) {
-                return Err(StoreError::Export(format!("{} is cut short", file.display())));
-            }
-            moved.rows += rows;
+            moved.rows += import_table(&mut transaction, table, folder).await?;
         }
         transaction.commit().await?;
         Ok(moved)
@@ -205,36 +224,103 @@ async fn export_table(
     Ok(rows)
 }
 
+/// The rows of an exported table, one after the other.
+struct ExportedRows {
+    /// The file, for errors.
+    file: String,
+    columns: Vec<(String, Kind)>,
+    lines: Lines<BufReader<File>>,
+    read: usize,
+}
+
+impl ExportedRows {
+    /// `None` where the table had no rows.
+    fn open(folder: &Path, table: &str) -> Result<Option<ExportedRows>, StoreError> {
+        let file = folder.join(format!("{table}.ndjson"));
+        let opened = File::open(&file).map_err(at(&file, "the manifest of the export names it"));
+        let mut lines = BufReader::new(opened.map_err(absent)?).lines();
+        let Some(head) = lines.next() else { return Ok(None) };
+        let Head { columns } = serde_json::from_str(&head?).map_err(unreadable)?;
+        let is_name = |name: &str| {
+            name.bytes()
+                .all(|byte| byte.is_ascii_lowercase() || byte.is_ascii_digit() || byte == b'_')
+        };
+        if let Some((strange, _)) = columns.iter().find(|(name, _)| !is_name(name)) {
+            return Err(StoreError::Export(format!("{table} has no column {strange:?}")));
+        }
+        Ok(Some(ExportedRows { file: file.display().to_string(), columns, lines, read: 0 }))
+    }
+
+    /// The next row, a value for each column, of its type.
+    fn next_row(&mut self) -> Result<Option<Vec<Value>>, StoreError> {
+        let Some(line) = self.lines.next() else { return Ok(None) };
+        self.read += 1;
+        let (row, wanted) = (self.read, self.columns.len());
+        let fault = |what: String| StoreError::Export(format!("{}, row {row}: {what}", self.file));
+        let values: Vec<Json> =
+            serde_json::from_str(&line?).map_err(|error| fault(error.to_string()))?;
+        if values.len() != wanted {
+            return Err(fault(format!("{} values for {wanted} columns", values.len())));
+        }
+        let value = |(json, (name, kind)): (Json, &(String, Kind))| {
+            value_of(json, *kind)
+                .ok_or_else(|| fault(format!("column {name} holds {}", kind.name())))
+        };
+        values.into_iter().zip(&self.columns).map(value).collect::<Result<_, _>>().map(Some)
+    }
+
+    /// Reads all rows; each that names a blob has to name one of the manifest. Returns how many.
+    fn check(mut self, blobs: &BTreeSet<String>) -> Result<usize, StoreError> {
+        let column = self.columns.iter().position(|(name, _)| name == "blob");
+        while let Some(values) = self.next_row()? {
+            let blob = column.map(|column| &values[column]);
+            let is_known =
+                |blob: &Value| matches!(blob, Value::Text(Some(hash)) if blobs.contains(hash));
+            if blob.is_some_and(|blob| !is_known(blob)) {
+                let what = "its blob is none of those of the manifest";
+                let detail = format!("{}, row {}: {what}", self.file, self.read);
+                return Err(StoreError::Export(detail));
+            }
+        }
+        Ok(self.read)
+    }
+}
+
+/// Looks at everything that a manifest names except the bytes, before anything is stored.
+fn check_rows(folder: &Path, manifest: &Manifest) -> Result<(), StoreError> {
+    let is_hash = |blob: &str| {
+        blob.len() == 64 && blob.bytes().all(|byte| matches!(byte, b'0'..=b'9' | b'a'..=b'f'))
+    };
+    if let Some(strange) = manifest.blobs.iter().find(|blob| !is_hash(blob)) {
+        return Err(StoreError::Export(format!("{MANIFEST}: {strange:?} is no hash of a blob")));
+    }
+    for table in TABLES {
+        let rows = ExportedRows::open(folder, table)?;
+        let rows = rows.map_or(Ok(0), |rows| rows.check(&manifest.blobs))?;
+        if manifest.rows.get(table) != Some(&rows) {
+            let file = folder.join(format!("{table}.ndjson"));
+            return Err(StoreError::Export(format!("{} is cut short", file.display())));
+        }
+    }
+    Ok(())
+}
+
 async fn import_table(
     transaction: &mut Transaction,
     table: &'static str,
-    file: &Path,
+    folder: &Path,
 ) -> Result<usize, StoreError> {
-    let opened = File::open(file).map_err(at(file, "the manifest of the export names it"));
-    let mut lines = BufReader::new(opened.map_err(absent)?).lines();
-    let Some(head) = lines.next() else { return Ok(0) };
-    let Head { columns } = serde_json::from_str(&head?).map_err(unreadable)?;
-    let names: Vec<&str> = columns.iter().map(|(name, _)| name.as_str()).collect();
-    let is_name = |name: &str| {
-        name.bytes().all(|byte| byte.is_ascii_lowercase() || byte.is_ascii_digit() || byte == b'_')
-    };
-    if let Some(strange) = names.iter().find(|name| !is_name(name)) {
-        return Err(StoreError::Export(format!("{table} has no column {strange:?}")));
-    }
+    let Some(mut rows) = ExportedRows::open(folder, table)? else { return Ok(0) };
+    let names: Vec<&str> = rows.columns.iter().map(|(name, _)| name.as_str()).collect();
     let places: Vec<String> = (1..=names.len()).map(|number| format!("${number}")).collect();
     let (names, places) = (names.join(", "), places.join(", "));
     let insert = format!("INSERT INTO {table} ({names}) VALUES ({places})");
-    let mut rows = 0;
-    for line in lines {
-        let row: Vec<Json> = serde_json::from_str(&line?).map_err(unreadable)?;
-        let mut statement = query_of(insert.clone());
-        for (value, (_, kind)) in row.into_iter().zip(&columns) {
-            statement = statement.bind(value_of(value, *kind));
-        }
+    while let Some(values) = rows.next_row()? {
+        let statement = query_of(insert.clone());
+        let statement = values.into_iter().fold(statement, Statement::bind);
         statement.execute(&mut *transaction).await?;
-        rows += 1;
     }
-    Ok(rows)
+    Ok(rows.read)
 }
 
 fn head(row: &Row) -> Result<Vec<(String, Kind)>, sqlx::Error> {
@@ -257,12 +343,17 @@ fn json(value: Value) -> Json {
     }
 }
 
-fn value_of(json: Json, kind: Kind) -> Value {
-    match kind {
-        Kind::Text => Value::Text(json.as_str().map(str::to_owned)),
-        Kind::Integer => Value::Integer(json.as_i64()),
-        Kind::Real => Value::Real(json.as_f64()),
-    }
+/// `None` for a value of another type.
+fn value_of(json: Json, kind: Kind) -> Option<Value> {
+    Some(match (kind, json) {
+        (Kind::Text, Json::Null) => Value::Text(None),
+        (Kind::Integer, Json::Null) => Value::Integer(None),
+        (Kind::Real, Json::Null) => Value::Real(None),
+        (Kind::Text, Json::String(text)) => Value::Text(Some(text)),
+        (Kind::Integer, Json::Number(number)) => Value::Integer(Some(number.as_i64()?)),
+        (Kind::Real, Json::Number(number)) => Value::Real(Some(number.as_f64()?)),
+        _ => return None,
+    })
 }
 
 fn write_line(out: &mut impl Write, line: &impl Serialize) -> Result<(), sqlx::Error> {
@@ -279,4 +370,19 @@ fn write_durably(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
 
 fn unreadable(error: serde_json::Error) -> StoreError {
     StoreError::Export(error.to_string())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[tokio::test]
+    async fn a_blob_that_went_after_the_snapshot_ends_an_export_with_the_advice_to_repeat_it() {
+        let folder = tempfile::TempDir::new().unwrap();
+        let store = Store::open(folder.path()).await.unwrap();
+        let gone = sha256_hex(b"gone");
+        let error = store.export_blobs(folder.path(), &[gone.clone()].into()).await.unwrap_err();
+        let text = error.to_string();
+        assert!(text.contains(&gone) && text.contains("export again"), "{text}");
+    }
 }

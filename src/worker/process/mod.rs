@@ -7,6 +7,7 @@ pub mod child;
 pub mod memory;
 pub mod protocol;
 mod reports;
+mod restarts;
 pub mod serve;
 mod source;
 mod spent;

@@ -11,6 +11,7 @@ use tokio::runtime::Handle;
 use super::child::{Death, Output, Process, Program};
 use super::memory::Usage;
 use super::protocol::{Answer, Assignment, Order, Outcome, Products, Question, Report, Settings};
+use super::restarts::Restarts;
 use super::spent::{MemoryBound, megabytes, out_of_memory, over_time};
 use crate::library::meshes::Library;
 use crate::metrics;
@@ -29,9 +30,6 @@ const GRACE: Duration = Duration::from_secs(10);
 const START: Duration = Duration::from_secs(30);
 /// After so many jobs a process makes room for a fresh one.
 const JOBS_OF_A_PROCESS: usize = 1000;
-/// Waits after one death more than one in a row; each is twice the one before.
-const FIRST_WAIT: Duration = Duration::from_millis(100);
-const LONGEST_WAIT: Duration = Duration::from_secs(10);
 
 /// Shared state of all slots of a worker.
 pub struct SlotSettings {
@@ -45,9 +43,7 @@ pub struct SlotSettings {
 pub struct SlotWork {
     shared: Arc<SlotSettings>,
     process: Option<Process>,
-    /// In a row, with no job that ended in between.
-    deaths: u32,
-    not_before: Option<Instant>,
+    restarts: Restarts,
 }
 
 /// An attempt under way.
@@ -82,7 +78,7 @@ enum End {
 
 impl SlotWork {
     pub fn new(shared: Arc<SlotSettings>) -> Self {
-        SlotWork { shared, process: None, deaths: 0, not_before: None }
+        SlotWork { shared, process: None, restarts: Restarts::default() }
     }
 
     fn start(&self) -> Result<Process, String> {
@@ -98,12 +94,14 @@ impl SlotWork {
     fn died(&mut self, why: &str) {
         metrics::slot_ended(why);
         self.process = None;
-        self.deaths += 1;
-        let wait = match self.deaths {
-            0 | 1 => Duration::ZERO,
-            deaths => FIRST_WAIT.saturating_mul(1 << (deaths - 2).min(16)).min(LONGEST_WAIT),
-        };
-        self.not_before = Some(Instant::now() + wait);
+        self.restarts.died();
+    }
+
+    /// A process that was killed for its job has not crashed.
+    fn killed(&mut self, why: &str) {
+        metrics::slot_ended(why);
+        self.process = None;
+        self.restarts.job_ended();
     }
 
     /// Outcome of an attempt for the job and for the process.
@@ -115,7 +113,7 @@ impl SlotWork {
     ) -> Result<Finished, Failure> {
         match end {
             End::Outcome(outcome) => {
-                self.deaths = 0;
+                self.restarts.job_ended();
                 self.keep_or_recycle(&outcome, usage);
                 finished(outcome, folder)
             }
@@ -128,20 +126,18 @@ impl SlotWork {
             }
             End::Deaf => {
                 tracing::warn!("a job did not stop in time; its process is killed");
-                self.died("deaf");
                 // A factorisation cannot be interrupted: this does not count as a crash.
-                self.deaths = 0;
+                self.killed("deaf");
                 Err(Failure::Cancelled)
             }
             End::OverTime { wall_s } => {
                 tracing::warn!("a job did not notice the end of its time; its process is killed");
-                self.died("over-time");
+                self.killed("over-time");
                 Err(Failure::Permanent(over_time(wall_s)))
             }
             End::OverMemory(error) => {
                 tracing::warn!("a job took more memory than its budget; its process is killed");
-                self.died("over-memory");
-                self.deaths = 0;
+                self.killed("over-memory");
                 Err(Failure::Permanent(error))
             }
         }
@@ -179,10 +175,7 @@ impl SlotWork {
 
 impl Work for SlotWork {
     fn prepare(&mut self) -> Result<(), Duration> {
-        let now = Instant::now();
-        if let Some(wait) = self.not_before.and_then(|then| then.checked_duration_since(now))
-            && !wait.is_zero()
-        {
+        if let Some(wait) = self.restarts.wait() {
             return Err(wait);
         }
         if self.process.is_none() {

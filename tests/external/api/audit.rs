@@ -18,6 +18,7 @@ use crate::support::trials::trials;
 trials! {
     on_both {
         the_audit_log_shows_what_was_changed
+        a_row_of_the_audit_log_outside_its_chain_shows
         an_audited_action_whose_end_nobody_told_is_in_the_audit_log_as_unknown
         an_audited_action_of_a_process_that_lives_is_never_unknown
         an_end_that_the_database_did_not_take_is_reported_later
@@ -92,6 +93,32 @@ async fn the_audit_log_shows_what_was_changed(on: Deployment) {
     assert_eq!(broken().await, Some(11));
     on.execute("DELETE FROM audit WHERE number = 7").await;
     assert_eq!(broken().await, Some(7));
+}
+
+async fn a_row_of_the_audit_log_outside_its_chain_shows(on: Deployment) {
+    let store = on.open().await;
+    let act = async || {
+        let audited = AuditedAction { action: "act".into(), ..AuditedAction::default() };
+        let begun = store.begin_action(&audited).await.unwrap();
+        store.end_action(begun, "", "done").await.unwrap();
+        store.check_audit().await.unwrap()
+    };
+    let Chain::Whole { rows: 1, hash } = act().await else { panic!("it is whole") };
+    for outside in [-3, 0, 2] {
+        let columns = "at, tenant, actor, action, object, outcome, request, hash";
+        let insert = format!(
+            "INSERT INTO audit (number, {columns}) SELECT {outside}, {columns} FROM audit WHERE number = 1"
+        );
+        on.execute(&insert).await;
+        assert_eq!(store.check_audit().await.unwrap(), Chain::Broken { at: outside });
+        // Behind the end it stands in the way of the next one.
+        assert_eq!(act().await, Chain::Broken { at: outside });
+        on.execute("DELETE FROM audit WHERE number <> 1").await;
+        on.execute("DELETE FROM deeds").await;
+        on.execute(&format!("UPDATE audit_end SET number = 1, hash = '{hash}'")).await;
+        let whole = Chain::Whole { rows: 1, hash: hash.clone() };
+        assert_eq!(store.check_audit().await.unwrap(), whole);
+    }
 }
 
 async fn an_audited_action_whose_end_nobody_told_is_in_the_audit_log_as_unknown(on: Deployment) {

@@ -1,7 +1,7 @@
 //! Rows of several tenants: each finds its own, and they take turns.
 
 use facies::schema::key::{KeyDocument, Scope};
-use facies::store::{Dismissal, Enqueued, Store, StoreError};
+use facies::store::{AddedCase, Dismissal, Enqueued, NewCase, Store, StoreError, Tagged};
 use serde_json::json;
 
 use crate::deployments::Deployment;
@@ -12,6 +12,7 @@ trials! {
     on_both {
         tenants_take_turns_and_studies_come_last
         what_is_older_than_its_tenant_keeps_it_is_erased
+        what_is_asked_for_again_or_tagged_is_kept_from_then_on
         a_job_that_was_lost_is_accepted_again_when_somebody_says_so
         equal_things_of_two_tenants_are_two_things
         a_key_that_was_ended_is_not_let_in
@@ -73,6 +74,47 @@ async fn what_is_older_than_its_tenant_keeps_it_is_erased(on: Deployment) {
     assert_eq!(there(&tenants[1], &jobs[1]).await, [false, true, false]);
     assert!(tenants[1].erased(&jobs[1][0]).await.unwrap().is_some());
     assert!(tenants[0].erased(&jobs[1][0]).await.unwrap().is_none());
+}
+
+async fn what_is_asked_for_again_or_tagged_is_kept_from_then_on(on: Deployment) {
+    let store = on.open().await.of_tenant("a");
+    let case = NewCase {
+        id: uuid::Uuid::now_v7().to_string(),
+        document: "{}".into(),
+        report: "{}".into(),
+        tags: vec![],
+        mesh_ids: vec![],
+        meshes: vec![],
+        meshing: None,
+    };
+    assert_eq!(store.add_case(&case, 9).await.unwrap(), AddedCase::Stored);
+    let mut of_case = new_job("{}", "of the case");
+    of_case.case_id = Some(case.id.clone());
+    assert_eq!(store.enqueue(&of_case, 9).await.unwrap(), Enqueued::Accepted);
+    let (tagged, left) = (enqueue(&store, "tagged").await, enqueue(&store, "left").await);
+    for _ in 0..3 {
+        let lease = store.claim(LEASE).await.unwrap().unwrap().lease;
+        assert!(store.publish(&lease, result("{}", &[])).await.unwrap());
+    }
+    let (again, once) = (mesh("again", "units=mm"), mesh("once", "units=mm"));
+    assert!(store.add_mesh(&again).await.unwrap() && store.add_mesh(&once).await.unwrap());
+    store.retain(Some(30)).await.unwrap();
+    on.execute("UPDATE jobs SET created = 1, updated = 1, finished = 1").await;
+    on.execute("UPDATE cases SET created = 1, updated = 1").await;
+    on.execute("UPDATE meshes SET created = 1").await;
+    // The job of the case is posted again without a new tag, as `POST /v1/jobs` does it.
+    for (job, add) in [(&of_case.id, vec![]), (&tagged, vec!["main".to_owned()])] {
+        assert_eq!(store.change_tags(job, &add, &[], 9).await.unwrap(), Tagged::Done);
+    }
+    assert!(store.keep_mesh(&again.id).await.unwrap().is_some_and(|kept| kept.created > 1));
+    assert_eq!(store.erase_old().await.unwrap(), 2);
+    assert!(store.case(&case.id).await.unwrap().is_some());
+    for (job, is_there) in [(&of_case.id, true), (&tagged, true), (&left, false)] {
+        assert_eq!(store.job(job).await.unwrap().is_some(), is_there, "{job}");
+    }
+    assert!(store.mesh(&again.id).await.unwrap().is_some());
+    assert!(store.mesh(&once.id).await.unwrap().is_none());
+    assert!(store.keep_mesh(&once.id).await.unwrap().is_none());
 }
 
 async fn a_job_that_was_lost_is_accepted_again_when_somebody_says_so(on: Deployment) {

@@ -20,6 +20,7 @@ trials! {
     on_both {
         an_export_has_every_table
         an_import_is_all_or_nothing
+        a_row_of_an_export_that_does_not_fit_is_refused_before_anything_is_stored
     }
     on_shared {
         a_deployment_moves_to_postgresql_and_back
@@ -166,4 +167,37 @@ async fn an_import_is_all_or_nothing(on: Deployment) {
     store.import(&folder).await.unwrap();
     let error = store.import(&folder).await.unwrap_err();
     assert!(matches!(error, StoreError::NotEmpty { .. }), "{error}");
+}
+
+async fn a_row_of_an_export_that_does_not_fit_is_refused_before_anything_is_stored(on: Deployment) {
+    let (source, folder) = (Deployment::embedded().await, on.folder().join("export"));
+    let exporting = source.open().await;
+    let row = mesh("a mesh", "units=mm");
+    assert!(exporting.add_mesh(&row).await.unwrap());
+    exporting.export(&folder).await.unwrap();
+    let store = on.open().await;
+    let meshes = folder.join("meshes.ndjson");
+    let whole = std::fs::read_to_string(&meshes).unwrap();
+    let (blob, end) = (format!("\"{}\"", row.blob), "]\n");
+    // Its hash is also that of the bytes as they came: every one of them is replaced.
+    let faults = [
+        (blob.as_str(), "\"../../../victim\"", "its blob is none of those of the manifest"),
+        (blob.as_str(), "5", "holds text"),
+        ("\"default\"", "{}", "column tenant holds text"),
+        (end, ",1]\n", "values for"),
+    ];
+    for (from, to, wanted) in faults {
+        let changed = whole.replace(from, to);
+        assert_ne!(changed, whole, "{wanted}");
+        // The first line says what the columns are.
+        let head = whole.lines().next().unwrap();
+        let changed = format!("{head}\n{}", changed.split_once('\n').unwrap().1);
+        std::fs::write(&meshes, changed).unwrap();
+        let error = store.import(&folder).await.unwrap_err().to_string();
+        assert!(error.contains("meshes.ndjson, row 1: "), "{error}");
+        assert!(error.contains(wanted), "{error}");
+        assert_eq!(blob_count(&store).await, 0);
+    }
+    std::fs::write(&meshes, whole).unwrap();
+    assert_eq!(store.import(&folder).await.unwrap().blobs, 1);
 }
