@@ -102,10 +102,6 @@ impl<T> Rows<T> {
         &mut self.entries
     }
 
-    pub fn into_entries(self) -> Vec<T> {
-        self.entries
-    }
-
     /// Memory.
     pub fn bytes(&self) -> usize {
         size_of::<u32>() * self.starts.len() + size_of::<T>() * self.entries.len()

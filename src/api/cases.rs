@@ -132,9 +132,12 @@ struct MeshPart(Vec<u8>);
         ),
     ),
     request_body(description = "the case", content((CaseBody = "application/json"), (CaseForm = "multipart/form-data"))),
-    responses((status = 201, description = "kept", body = CaseView, headers(
-        ("Location" = String, description = "the case"), ("ETag" = String, description = "its version"),
-        ("Preference-Applied" = Option<String>, description = "the wait that was granted"))))
+    responses(
+        (status = 201, description = "kept", body = CaseView, headers(
+            ("Location" = String, description = "the case"), ("ETag" = String, description = "its version"),
+            ("Preference-Applied" = Option<String>, description = "the wait that was granted"))),
+        (status = 410, description = "the case was erased since an earlier request with the same Idempotency-Key"),
+    )
 )]
 async fn create(
     service: Service,

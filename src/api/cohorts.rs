@@ -180,8 +180,11 @@ async fn row_of(service: &Service, id: &str) -> ApiResult<CohortRow> {
         description = "a unique word of the client, to repeat the request safely"
     )),
     request_body = StoredCohortDocument,
-    responses((status = 201, description = "kept", body = CohortView, headers(
-        ("Location" = String, description = "the cohort"), ("ETag" = String, description = "its version"))))
+    responses(
+        (status = 201, description = "kept", body = CohortView, headers(
+            ("Location" = String, description = "the cohort"), ("ETag" = String, description = "its version"))),
+        (status = 410, description = "the cohort was erased since an earlier request with the same Idempotency-Key"),
+    )
 )]
 async fn create(service: Service, request: Request) -> ApiResult {
     let headers = request.headers().clone();

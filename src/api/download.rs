@@ -68,3 +68,43 @@ impl ServedFile {
         Ok(Body::from_stream(pieces.inspect(move |_| drop(held.clone()))))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::config::Config;
+    use crate::library::meshes::Library;
+    use crate::schema::ErrorCode;
+    use crate::store::{NewMesh, Store};
+
+    #[tokio::test]
+    async fn what_was_erased_after_it_was_found_is_not_found_and_what_is_lost_is_damage() {
+        let folder = tempfile::tempdir().unwrap();
+        let store = Store::open(folder.path()).await.unwrap();
+        let config = Config::new(|_| None).unwrap();
+        let service = Service::new(config, store.clone(), Library::new(store.clone(), 0));
+        let [erased, lost] = ["e", "f"].map(|digit| digit.repeat(64));
+        for hash in [&erased, &lost] {
+            let mesh = NewMesh {
+                id: uuid::Uuid::now_v7().to_string(),
+                sha256: hash.clone(),
+                options: String::new(),
+                blob: hash.clone(),
+                bytes: "mesh".into(),
+                standalone: true,
+                report: "{}".to_owned(),
+            };
+            assert!(store.add_mesh(&mesh).await.unwrap());
+            if hash == &erased {
+                store.delete_mesh(&mesh.id).await.unwrap();
+            }
+        }
+        std::fs::remove_dir_all(folder.path().join("blobs").join(&lost[..2])).unwrap();
+        let told = async |hash: &str| match ServedFile::blob(&service, hash).await {
+            Ok(_) => panic!("{hash} is served"),
+            Err(error) => error.problem.code,
+        };
+        assert_eq!(told(&erased).await, ErrorCode::NotFound);
+        assert_eq!(told(&lost).await, ErrorCode::Integrity);
+    }
+}

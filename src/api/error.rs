@@ -78,6 +78,9 @@ impl From<StoreError> for ApiError {
             tracing::warn!(%error, "storage is busy");
             return ApiError::unavailable();
         }
+        if let StoreError::Erased = error {
+            return ApiError::new(ErrorCode::NotFound, error.to_string());
+        }
         if let StoreError::Integrity { .. } | StoreError::Missing { .. } = error {
             tracing::error!(%error, "a blob is damaged");
             return ApiError::new(

@@ -92,6 +92,7 @@ struct ListParameters {
         (status = 200, description = "successful within the wait, or known already (`deduplicated`)", body = StatusInfo, headers(
             ("Content-Location" = String, description = "the job"), ("Retry-After" = Option<u32>, description = "seconds to wait before the next request"),
             ("Preference-Applied" = Option<String>, description = "the wait that was granted"))),
+        (status = 410, description = "the job was erased: during the wait, or since an earlier request with the same Idempotency-Key"),
     )
 )]
 async fn create(service: Service, caller: Caller, request: Request) -> ApiResult {

@@ -87,6 +87,12 @@ pub fn checked_limit(limit: Option<u32>) -> ApiResult<u32> {
     Err(ApiError::invalid_parameter("limit", detail))
 }
 
+/// The refusal of a limit that is no number.
+pub(super) fn wrong_limit() -> ApiError {
+    let detail = format!("limit has to be a number from 1 to {LONGEST_PAGE}");
+    ApiError::invalid_parameter("limit", detail)
+}
+
 /// The key in a cursor, if it is of the kind of this list.
 fn read_cursor(cursor: &str, name: impl Fn(&str) -> Option<String>) -> ApiResult<String> {
     let text = URL_SAFE_NO_PAD.decode(cursor).ok();

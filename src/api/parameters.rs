@@ -6,6 +6,7 @@ use serde::de::DeserializeOwned;
 use uuid::Uuid;
 
 use super::error::{ApiError, ApiResult};
+use super::paging::wrong_limit;
 use crate::schema::ErrorCode;
 use crate::schema::key::is_key_id;
 
@@ -22,6 +23,9 @@ impl<T: DeserializeOwned, S: Sync> FromRequestParts<S> for Parameters<T> {
                 let detail = error.body_text();
                 let detail = detail.rsplit("query string: ").next().unwrap_or_default();
                 let detail = detail.replace("unknown variant", "unknown word");
+                if named(&detail) == "limit" {
+                    return Err(wrong_limit());
+                }
                 Err(ApiError::invalid_parameter(named(&detail), detail.clone()))
             }
         }

@@ -9,7 +9,7 @@ use utoipa_axum::routes;
 use super::download::ServedFile;
 use super::error::{ApiError, ApiResult};
 use super::middleware::preferred;
-use super::parameters::{Id, Parameters, id as spelled};
+use super::parameters::{Id, Parameters, id as spelled, no_such_job};
 use super::prefer::successful;
 use super::resources::Resources;
 use super::{Service, conditional, with_header};
@@ -172,8 +172,14 @@ fn told(answer: axum::response::Response, outcome: &str) -> axum::response::Resp
 }
 
 async fn file(service: &Service, job: &str, name: &str) -> ApiResult<FileRow> {
-    let row = service.store.job_file(job, name).await?;
-    row.ok_or_else(|| ApiError::internal(format!("a study without {name}")))
+    if let Some(row) = service.store.job_file(job, name).await? {
+        return Ok(row);
+    }
+    // It may have been erased since it was found.
+    match service.store.job(job).await? {
+        Some(_) => Err(ApiError::internal(format!("a study without {name}"))),
+        None => Err(no_such_job()),
+    }
 }
 
 /// The report of a job, if it has one.

@@ -1,6 +1,6 @@
 //! The deployment that settings name: opened, exported, imported.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::settings::Arguments as Settings;
 use crate::config::{BlobLocation, Config, DatabaseLocation, StorageLocations};
@@ -12,6 +12,14 @@ pub enum AdminError {
     Setting(#[from] crate::config::ConfigError),
     #[error("{0}")]
     Store(#[from] StoreError),
+    /// The data folder, or one of it, which cannot be made or opened.
+    #[error("{0}")]
+    Folder(StoreError),
+    #[error(
+        "{} could not be written: no space is left on its disk, or its quota is used up; what is there is no export",
+        to.display()
+    )]
+    TargetFull { to: PathBuf },
     #[error("{0}")]
     Io(#[from] std::io::Error),
     #[error("{0}")]
@@ -28,9 +36,9 @@ impl AdminError {
     /// Whether another setting would help.
     pub fn is_setting(&self) -> bool {
         match self {
-            AdminError::Setting(_) => true,
+            AdminError::Setting(_) | AdminError::Folder(_) => true,
             AdminError::Store(StoreError::Files(_)) => false,
-            AdminError::Store(error) => error.is_setting(),
+            AdminError::Store(error) => error.is_setting() && !error.is_full(),
             _ => false,
         }
     }
@@ -69,7 +77,11 @@ fn config(settings: &Settings) -> Result<Config, AdminError> {
 }
 
 async fn connect(config: &Config) -> Result<Store, AdminError> {
-    Ok(Store::connect(&config.places).await?.with_key_limit(config.most_keys))
+    let store = Store::connect(&config.places).await.map_err(|error| match error {
+        StoreError::Files(_) if !error.is_full() => AdminError::Folder(error),
+        other => other.into(),
+    })?;
+    Ok(store.with_key_limit(config.most_keys))
 }
 
 pub async fn export(to: &Path, settings: &Settings) -> Result<TransferCounts, AdminError> {
@@ -79,7 +91,15 @@ pub async fn export(to: &Path, settings: &Settings) -> Result<TransferCounts, Ad
     }
     let store = open(settings).await?;
     store.check_owner().await?;
-    Ok(store.export(to).await?)
+    // A database is only read here: the disk that is full is that of the target.
+    store.export(to).await.map_err(|error| not_exported(to, error))
+}
+
+fn not_exported(to: &Path, error: StoreError) -> AdminError {
+    match error.is_full() {
+        true => AdminError::TargetFull { to: to.to_owned() },
+        false => error.into(),
+    }
 }
 
 /// Takes in an export. A data folder that was made for one that failed goes again, where everything is in it.
@@ -107,4 +127,30 @@ async fn import_into(config: &Config, from: &Path) -> Result<TransferCounts, Adm
     };
     store.close().await;
     Ok(imported?)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::io::{Error, ErrorKind};
+
+    use super::*;
+    use crate::command::CommandError;
+    use crate::command::serve::ServeError;
+
+    #[test]
+    fn a_full_disk_is_no_wrong_setting_and_an_export_names_its_folder() {
+        let io = |kind: ErrorKind| sqlx::Error::Io(Error::from(kind));
+        let opened = |kind| StoreError::CannotOpen { file: "facies.db".into(), source: io(kind) };
+        for (kind, code) in [(ErrorKind::StorageFull, 3), (ErrorKind::PermissionDenied, 78)] {
+            let codes = [
+                CommandError::Admin(AdminError::Store(opened(kind))).exit_code(),
+                CommandError::Serve(ServeError::Store(opened(kind))).exit_code(),
+            ];
+            assert_eq!(codes, [code; 2], "{kind}");
+        }
+        let full = StoreError::Database(io(ErrorKind::StorageFull));
+        let told = CommandError::Admin(not_exported(Path::new("/backup/of today"), full));
+        assert_eq!(told.exit_code(), 3);
+        assert!(told.to_string().starts_with("/backup/of today could not be written"), "{told}");
+    }
 }

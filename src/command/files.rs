@@ -113,6 +113,11 @@ impl MeshSource for FileSource {
                 code: ErrorCode::UnknownMesh,
                 detail: format!("there is no mesh {id:?}: no file {}", path.display()),
             },
+            ErrorKind::IsADirectory => SourceError::Refused {
+                id: id.to_owned(),
+                code: ErrorCode::UnknownMesh,
+                detail: format!("{} is a folder, and no file of a mesh", path.display()),
+            },
             _ => SourceError::Unreadable {
                 id: id.to_owned(),
                 detail: error.to_string(),

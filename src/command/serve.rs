@@ -58,7 +58,7 @@ impl ServeError {
     pub fn is_setting(&self) -> bool {
         match self {
             ServeError::Io(_) => false,
-            ServeError::Store(error) => error.is_setting(),
+            ServeError::Store(error) => error.is_setting() && !error.is_full(),
             _ => true,
         }
     }

@@ -78,7 +78,7 @@ pub const SETTINGS: &[Setting] = &[
     setting(
         "admin-key",
         "",
-        "asked for by the admin listener for everything but /metrics and /healthz; 16 to 255 visible characters; without it administration is answered on loopback only",
+        "asked for by the admin listener for everything but /metrics, /healthz and /errors; 16 to 255 visible characters; without it administration is answered on loopback only",
     ),
     setting(
         "allowed-origins",

@@ -29,9 +29,10 @@ pub struct AppliedDocument {
     #[serde(flatten)]
     pub summary: AppliedSummary,
     pub warnings: Vec<WarningDocument>,
-    /// Codes of warnings that were not checked: those that need the mesh inside the skin or the surfaces of bones
-    /// (`numerical-error-large`, `cells-inverted`, `bones-overlap`, `bone-in-tissue`, `bone-through-skin`), `skin-overlaps` without `check_skin`,
-    /// and `tearing` of a response of an earlier program.
+    /// Codes of warnings that were not checked: those that need the mesh inside the skin, the surfaces of bones or landmarks
+    /// (`numerical-error-large`, `cells-inverted`, `bones-overlap`, `bone-in-tissue`, `bone-through-skin`, `large-rotation`, `large-strain`,
+    /// `skin-outruns-plan`, `sliding-off-wall`, `landmark-far`, `landmarks-crowded`, `landmarks-swapped`), `skin-overlaps` without
+    /// `check_skin`, and `tearing` of a response of an earlier program.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub not_measured: Vec<String>,
 }

@@ -114,4 +114,9 @@ fn a_data_folder_that_cannot_be_made_is_named() {
     let data = file.join("data");
     let serve = ["serve", "--bind", "127.0.0.1:0", "--log-level", "error", "--data", path(&data)];
     refused(&facies(&serve), 78, path(&data));
+    for data in [&data, &file] {
+        let key = ["admin", "key", "new", "--label", "first", "--data", path(data)];
+        refused(&facies(&key), 78, path(data));
+        refused(&facies(&["admin", "fsck", "--data", path(data)]), 78, path(data));
+    }
 }

@@ -343,6 +343,16 @@ fn a_mesh_that_no_head_measures_is_refused_in_every_command_unless_any_scale_is_
 }
 
 #[test]
+fn a_folder_in_the_place_of_a_mesh_is_refused_by_its_name() {
+    let folder = tempfile::tempdir().unwrap();
+    let (mesh, out) = (path(folder.path()), folder.path().join("out"));
+    let done = facies(&["compare", "--prediction", mesh, "--actual", mesh, "--out", path(&out)]);
+    let told = text(&done.stderr);
+    assert_eq!(done.status.code(), Some(2), "{told}");
+    assert!(told.contains(&format!("{mesh} is a folder")), "{told}");
+}
+
+#[test]
 fn a_surface_has_no_distance_from_itself() {
     let folder = plan_folder(FORWARD);
     let out = folder.path().join("out");

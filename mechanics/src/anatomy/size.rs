@@ -1,6 +1,6 @@
 //! Sizing field of a mesh: fine cells around the bone that moves.
 
-use crate::mesh::{Vector, VolumeMesh, Warning};
+use crate::mesh::{Vector, VolumeMesh, Warning, bounds_of};
 use crate::meshing::{RegionShape, SizeRegion};
 use crate::osteotomy::Owner;
 use crate::osteotomy::labelling::Labelled;
@@ -43,5 +43,5 @@ fn box_of(bone: &Labelled, segment: usize) -> Option<(Vector, Vector)> {
     let own = (0..voxels)
         .filter(|&voxel| bone.labels.owner(voxel) == Some(Owner::Segment(segment)))
         .map(|voxel| bone.labels.centre_of(voxel));
-    own.map(|x| (x, x)).reduce(|(low, high), (a, b)| (low.inf(&a), high.sup(&b)))
+    bounds_of(own).map(Into::into)
 }

@@ -1,7 +1,6 @@
 //! A template's mesh on a patient: nodes moved, sets and labels kept, directions rotated with the tissue.
 
 use super::deformation::Deformation;
-use super::fibres::middle_of;
 use super::warp::Warp;
 use crate::mesh::{Vector, VolumeMesh};
 
@@ -12,7 +11,7 @@ pub fn carried(template: &VolumeMesh, deformation: &Deformation) -> VolumeMesh {
     mesh.nodes = template.nodes.iter().map(|x| deformation.apply(x)).collect();
     for vectors in mesh.cell_vectors.values_mut() {
         for (cell, vector) in vectors.iter_mut().enumerate() {
-            turn(deformation, &middle_of(template, cell), vector);
+            turn(deformation, &template.centroid(cell), vector);
         }
     }
     for vectors in mesh.node_vectors.values_mut() {

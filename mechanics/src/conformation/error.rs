@@ -18,6 +18,10 @@ pub enum ConformationError {
     Landmarks(AlignmentError),
     #[error("no thin-plate spline goes through the landmarks: {0}")]
     Spline(AlignmentError),
+    #[error(
+        "no thin-plate spline goes through the landmarks: {one} and {other} are at one place of the template"
+    )]
+    SameLandmark { one: String, other: String },
     #[error("{landmarks} landmarks do not place the template, {needed} are needed")]
     FewLandmarks { landmarks: usize, needed: usize },
     #[error(

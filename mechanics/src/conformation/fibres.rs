@@ -102,15 +102,8 @@ pub fn angle_between(one: &Vector, other: &Vector) -> f64 {
 /// The direction of a region's fibres after a map, in each cell of the template.
 pub fn cell_axes(map: &dyn Warp, template: &VolumeMesh, direction: &Vector) -> Vec<Vector> {
     let of_cell =
-        |cell: usize| map.along(&middle_of(template, cell), direction).unwrap_or(*direction);
+        |cell: usize| map.along(&template.centroid(cell), direction).unwrap_or(*direction);
     (0..template.cells.len()).into_par_iter().map(of_cell).collect()
-}
-
-/// The mean of the corners of a cell.
-pub(super) fn middle_of(mesh: &VolumeMesh, cell: usize) -> Vector {
-    let corners = mesh.corners(cell);
-    let count = corners.len() as f64;
-    corners.sum::<Vector>() / count
 }
 
 /// The pieces that have a length.

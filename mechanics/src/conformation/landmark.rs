@@ -2,7 +2,7 @@
 
 use super::affine::Affine;
 use super::error::ConformationError;
-use crate::mesh::{Vector, VolumeMesh};
+use crate::mesh::{Vector, VolumeMesh, bounds_of};
 use crate::registration::{PointAlignment, align_points};
 
 /// What a similarity may leave of landmarks, as a share of their spread: two faces of the shared data leave 0.1.
@@ -171,10 +171,7 @@ pub(super) fn refuse_distant(
     landmarks: &[Landmark],
     mesh: &VolumeMesh,
 ) -> Result<(), ConformationError> {
-    let Some(first) = mesh.nodes.first() else { return Ok(()) };
-    let nodes = mesh.nodes.iter();
-    let (low, high) =
-        nodes.fold((*first, *first), |(low, high), node| (low.inf(node), high.sup(node)));
+    let Some([low, high]) = bounds_of(&mesh.nodes) else { return Ok(()) };
     let size = (high - low).norm();
     for Landmark { name, template, .. } in landmarks {
         let distance = (template - template.sup(&low).inf(&high)).norm();

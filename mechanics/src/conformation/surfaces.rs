@@ -11,7 +11,7 @@ use super::pull::Pull;
 use super::schedule::{BONE, LANDMARK, Level};
 use super::sheet::Sheet;
 use super::start::{self, Start};
-use crate::mesh::{SurfaceSearch, TriangleSurface, Vector, VolumeMesh};
+use crate::mesh::{SurfaceSearch, TriangleSurface, Vector, VolumeMesh, bounds_of};
 use crate::progress::Progress;
 
 /// Rounds of the affine map, and what keeps it near a similarity.
@@ -199,12 +199,8 @@ fn landmark_pulls(landmarks: &[Landmark], affine: &Affine, weight: f64) -> Vec<P
 /// The boxes of cells and landmarks after an affine map.
 fn boxes(mesh: &VolumeMesh, landmarks: &[Landmark], affine: &Affine) -> Vec<Aabb> {
     let moved: Vec<Vector> = mesh.nodes.iter().map(|x| affine.apply(x)).collect();
-    let around = |nodes: &[u32]| {
-        let first = moved[nodes[0] as usize];
-        let points = nodes.iter().map(|&node| &moved[node as usize]);
-        points.fold([first, first], |[low, high], x| [low.inf(x), high.sup(x)])
-    };
-    let cells = mesh.cells.iter().map(|(_, nodes)| around(nodes));
+    let around = |nodes: &[u32]| bounds_of(nodes.iter().map(|&node| &moved[node as usize]));
+    let cells = mesh.cells.iter().filter_map(|(_, nodes)| around(nodes));
     let points = landmarks.iter().map(|one| [affine.apply(&one.template); 2]);
     cells.chain(points).collect()
 }

@@ -6,7 +6,7 @@ use super::deformation::Deformation;
 use super::error::ConformationError;
 use super::landmark::Landmark;
 use crate::mesh::Vector;
-use crate::registration::ThinPlateSpline;
+use crate::registration::{AlignmentError, ThinPlateSpline};
 
 /// A map of space in mm with its gradient.
 pub trait Warp: Sync {
@@ -49,5 +49,11 @@ impl Warp for ThinPlateSpline {
 pub fn spline_of(landmarks: &[Landmark]) -> Result<ThinPlateSpline, ConformationError> {
     let from: Vec<Vector> = landmarks.iter().map(|one| one.template).collect();
     let to: Vec<Vector> = landmarks.iter().map(|one| one.patient).collect();
-    ThinPlateSpline::new(&from, &to, 0.0).map_err(ConformationError::Spline)
+    ThinPlateSpline::new(&from, &to, 0.0).map_err(|error| match error {
+        AlignmentError::SamePlace { one, other, .. } => {
+            let [one, other] = [one, other].map(|number| landmarks[number].name.clone());
+            ConformationError::SameLandmark { one, other }
+        }
+        other => ConformationError::Spline(other),
+    })
 }

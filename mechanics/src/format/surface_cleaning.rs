@@ -3,7 +3,7 @@
 
 use super::error::FormatError;
 use crate::mesh::surface_edges::{TriangleSide, count_edges, edges};
-use crate::mesh::{TriangleSurface, Vector, Warning};
+use crate::mesh::{TriangleSurface, Warning, bounds_of};
 
 /// A triangle whose longest edge is shorter than this part of the bounding box is a point.
 const SMALLEST_EDGE: f64 = 1e-12;
@@ -30,8 +30,8 @@ fn drop_flat(
     surface: &mut TriangleSurface,
     warnings: &mut Vec<Warning>,
 ) -> Result<(), FormatError> {
-    let (low, high) = bounds(&surface.points);
-    let shortest = (high - low).norm() * SMALLEST_EDGE;
+    let size = bounds_of(&surface.points).map_or(0.0, |[low, high]| (high - low).norm());
+    let shortest = size * SMALLEST_EDGE;
     let keep: Vec<bool> = (0..surface.triangles.len())
         .map(|triangle| !is_flat(surface, triangle, shortest))
         .collect();
@@ -44,11 +44,6 @@ fn drop_flat(
     let dropped = before - surface.triangles.len();
     warn(warnings, "degenerate-triangles", dropped, "without area were dropped");
     Ok(())
-}
-
-fn bounds(points: &[Vector]) -> (Vector, Vector) {
-    let start = (Vector::repeat(f64::MAX), Vector::repeat(f64::MIN));
-    points.iter().fold(start, |(low, high), point| (low.inf(point), high.sup(point)))
 }
 
 fn is_flat(surface: &TriangleSurface, triangle: usize, shortest: f64) -> bool {

@@ -17,9 +17,6 @@ use super::pairs::Pairs;
 /// The lower and the upper end of a band, as probabilities.
 pub const BAND: [f64; 2] = [0.1, 0.9];
 
-/// Cases below which no band can be given.
-pub const LEAST_FOR_BAND: usize = 9;
-
 /// Of distances between training cases: beyond, a case is not one of their kind.
 pub const FARTHEST: f64 = 0.95;
 

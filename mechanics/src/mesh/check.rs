@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use super::connectivity::{Faces, parts_by_nodes};
 use super::disjoint_sets::DisjointSets;
 use super::surface_edges::count_edges;
-use super::{CellShape, TriangleSurface, Vector, VolumeMesh, Warning};
+use super::{CellShape, TriangleSurface, Vector, VolumeMesh, Warning, bounds_of};
 
 /// A face or a part of it measures this much from corner to corner of its bounding box, in mm.
 const USUAL_DIAGONAL_MM: std::ops::RangeInclusive<f64> = 50.0..=600.0;
@@ -64,7 +64,7 @@ impl MeshReport {
             nodes: mesh.nodes.len() as u64,
             cells: cells_by_shape(mesh),
             triangles: surface.triangles.len() as u64,
-            bounding_box: bounding_box(&mesh.nodes),
+            bounding_box: bounds_of(&mesh.nodes),
             volume_mm3: Some((0..mesh.cells.len()).map(|cell| mesh.cell_volume(cell)).sum()),
             area_mm2: surface.area(),
             components: parts.len() as u64,
@@ -94,7 +94,7 @@ impl MeshReport {
         let mut report = MeshReport {
             nodes: surface.points.len() as u64,
             triangles: surface.triangles.len() as u64,
-            bounding_box: bounding_box(&surface.points),
+            bounding_box: bounds_of(&surface.points),
             volume_mm3: is_closed.then(|| surface.signed_volume()),
             area_mm2: surface.area(),
             components: parts.len() as u64,
@@ -180,13 +180,6 @@ fn cells_by_shape(mesh: &VolumeMesh) -> BTreeMap<&'static str, u64> {
         *cells.entry(CellShape::name(shape)).or_default() += 1;
     }
     cells
-}
-
-fn bounding_box(nodes: &[Vector]) -> Option<[Vector; 2]> {
-    let first = *nodes.first()?;
-    let widened =
-        nodes.iter().fold([first, first], |[low, high], node| [low.inf(node), high.sup(node)]);
-    Some(widened)
 }
 
 fn sizes(sets: &BTreeMap<String, Vec<u32>>) -> BTreeMap<String, u64> {

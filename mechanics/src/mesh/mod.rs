@@ -2,6 +2,7 @@
 
 pub mod area_sampling;
 pub mod bisection;
+mod bounds;
 pub mod check;
 pub mod closest_point;
 pub mod conformity;
@@ -27,6 +28,7 @@ mod surface_topology;
 pub mod volume;
 pub mod warning;
 
+pub use bounds::bounds_of;
 pub use closest_point::{ClosestPoint, SearchError, SurfaceSearch};
 pub use frame::Frame;
 pub use ignored::{ArrayUse, IgnoredArray, IgnoredArrays, ValuesOf};

@@ -1,6 +1,6 @@
 //! Triangle surfaces: skin, bone.
 
-use super::Vector;
+use super::{Vector, bounds_of};
 
 /// Triangles with outward orientation where the surface is closed; points in mm.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -49,9 +49,9 @@ impl TriangleSurface {
     /// The lowest and the highest corner of the box around the points that triangles use, in mm.
     /// Without triangles the lowest is above the highest.
     pub fn bounds(&self) -> (Vector, Vector) {
-        let empty = (Vector::repeat(f64::INFINITY), Vector::repeat(f64::NEG_INFINITY));
-        let used = self.triangles.iter().flatten().map(|&point| self.points[point as usize]);
-        used.fold(empty, |(low, high), point| (low.inf(&point), high.sup(&point)))
+        let used = self.triangles.iter().flatten().map(|&point| &self.points[point as usize]);
+        let empty = [f64::INFINITY, f64::NEG_INFINITY].map(Vector::repeat);
+        bounds_of(used).unwrap_or(empty).into()
     }
 
     /// For each point a third of the area of its triangles, in mm².

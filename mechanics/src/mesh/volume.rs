@@ -4,7 +4,7 @@ use std::cmp::Ordering;
 use std::collections::BTreeMap;
 
 use super::IgnoredArrays;
-use super::{TriangleSurface, Vector};
+use super::{TriangleSurface, Vector, bounds_of};
 use crate::rows::Rows;
 
 /// The shape of a first-order cell. Local node order is that of VTK for tetrahedra and hexahedra;
@@ -199,9 +199,7 @@ impl VolumeMesh {
     /// The lowest and the highest corner of the box around the nodes of cells: others are no part of the tissue.
     pub fn bounds(&self) -> [Vector; 2] {
         let nodes = self.cells.iter().flat_map(|(_, nodes)| nodes);
-        let mut used = nodes.map(|&node| self.nodes[node as usize]);
-        let first = used.next().unwrap_or_default();
-        used.fold([first, first], |[low, high], x| [low.inf(&x), high.sup(&x)])
+        bounds_of(nodes.map(|&node| &self.nodes[node as usize])).unwrap_or_default()
     }
 
     /// For each node whether it belongs to a cell; others are no part of the tissue, and nothing holds or moves them.
@@ -215,6 +213,13 @@ impl VolumeMesh {
     /// The corner positions of a cell, as many as its shape has nodes.
     pub fn corners(&self, cell: usize) -> impl ExactSizeIterator<Item = Vector> + '_ {
         self.cells.nodes(cell).iter().map(|&node| self.nodes[node as usize])
+    }
+
+    /// The mean of the corners of a cell.
+    pub fn centroid(&self, cell: usize) -> Vector {
+        let corners = self.corners(cell);
+        let count = corners.len() as f64;
+        corners.sum::<Vector>() / count
     }
 
     /// The node set asked for as `NAME` or `set_NAME`.

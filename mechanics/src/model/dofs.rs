@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use super::problem::{InvertedCell, LoadCase};
 use crate::boundary::Constraint;
-use crate::mesh::{Vector, VolumeMesh};
+use crate::mesh::{Vector, VolumeMesh, bounds_of};
 use crate::progress::Progress;
 use crate::solver::element_connectivity::{ElementConnectivity, ElementsOfRow, renumbered};
 use crate::solver::half_matrix::{HalfMatrix, Pattern};
@@ -246,9 +246,7 @@ pub(in crate::model) fn nodes_of_cells(mesh: &VolumeMesh) -> ElementConnectivity
 
 /// The node at one end of the longest extent.
 fn far_end(nodes: &[Vector]) -> usize {
-    let infinite = Vector::repeat(f64::INFINITY);
-    let (low, high) =
-        nodes.iter().fold((infinite, -infinite), |(low, high), x| (low.inf(x), high.sup(x)));
+    let [low, high] = bounds_of(nodes).unwrap_or_default();
     let axis = (high - low).imax();
     let ends = (0..nodes.len()).min_by(|&a, &b| nodes[a][axis].total_cmp(&nodes[b][axis]));
     ends.unwrap_or_default()

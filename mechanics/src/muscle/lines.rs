@@ -38,16 +38,10 @@ type MuscleDistances = Vec<Vec<Option<(f64, Vector)>>>;
 
 fn near(mesh: &VolumeMesh, muscles: &[MuscleLines]) -> MuscleDistances {
     let of_cell = |cell: usize| {
-        let place = centroid(mesh, cell);
+        let place = mesh.centroid(cell);
         muscles.iter().map(|muscle| nearest(&place, &muscle.lines)).collect()
     };
     (0..mesh.cells.len()).into_par_iter().map(of_cell).collect()
-}
-
-fn centroid(mesh: &VolumeMesh, cell: usize) -> Vector {
-    let corners = mesh.corners(cell);
-    let count = corners.len() as f64;
-    corners.sum::<Vector>() / count
 }
 
 /// The distance in mm from a place to the nearest segment of some lines, and its unit tangent.

@@ -4,7 +4,7 @@ use nalgebra::Matrix3;
 
 use super::cut::Cut;
 use crate::image::Placement;
-use crate::mesh::Vector;
+use crate::mesh::{Vector, bounds_of};
 
 const NO_BONE: u8 = 0;
 const REST: u8 = 1;
@@ -137,8 +137,7 @@ impl BoneLabels {
     /// The lowest and the highest centres of voxels of bone, in mm.
     pub fn bone_box(&self) -> Option<(Vector, Vector)> {
         let bone = (0..self.labels.len()).filter(|&voxel| self.labels[voxel] != NO_BONE);
-        let places = bone.map(|voxel| self.centre_of(voxel)).map(|place| (place, place));
-        places.reduce(|(low, high), (a, b)| (low.inf(&a), high.sup(&b)))
+        bounds_of(bone.map(|voxel| self.centre_of(voxel))).map(Into::into)
     }
 
     /// Whether a cut comes into the image, be it where there is no bone.

@@ -5,8 +5,8 @@ use super::check::Check;
 use super::error_code::SceneErrorCode;
 use super::stated::{StatedCondition, StatedHold};
 use crate::boundary::{HeldNodes, NodeSelection};
-use crate::mesh::ArrayUse;
 use crate::mesh::ignored::listed;
+use crate::mesh::{ArrayUse, bounds_of};
 use crate::plan::doubt::{MovedSegment, beyond_face, suspect_units};
 use crate::plan::{PlannedSegment, RigidMovement};
 
@@ -93,11 +93,7 @@ impl Check<'_> {
     /// Refuses segments that go farther than the face is long, and warns of movements in other units.
     pub(super) fn plan_size(&mut self, plan: &Plan, segments: &[PlannedSegment], held: &HeldNodes) {
         let place = |node: &u32| self.case.volume.nodes[*node as usize];
-        let corners = |nodes: &[u32]| {
-            let first = place(nodes.first()?);
-            let around = nodes.iter().map(place);
-            Some(around.fold([first, first], |[low, high], x| [low.inf(&x), high.sup(&x)]))
-        };
+        let corners = |nodes: &[u32]| bounds_of(nodes.iter().map(place));
         let moved = segments.iter().zip(&held.joined).filter_map(|(segment, (nodes, movement))| {
             Some(MovedSegment { name: &segment.name, movement, corners: corners(nodes)? })
         });

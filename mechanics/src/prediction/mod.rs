@@ -250,6 +250,12 @@ fn loosely(scene: &Scene, solver: &SolveReport) -> Option<Warning> {
     solved_loosely(scene.settings.relative_residual, solver.relative_residual)
 }
 
+/// The landmarks of a scene that are far from the surface they follow, as a prediction tells them: that needs no answer.
+pub fn landmarks_far(scene: &Scene) -> Vec<Warning> {
+    let still = vec![Vector::zeros(); scene.mesh.nodes.len()];
+    far_landmarks(&skin::landmark_displacement(&scene.mesh, &scene.landmarks, &still))
+}
+
 fn far_landmarks(landmarks: &BTreeMap<String, (Vector, f64)>) -> Vec<Warning> {
     let far = landmarks.iter().filter(|(_, (_, distance))| *distance > LANDMARK_FAR);
     far.map(|(name, (_, distance))| {

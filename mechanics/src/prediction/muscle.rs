@@ -19,7 +19,7 @@ use super::muscle_field::{MuscleBody, MuscleField, MuscleTissue, elsewhere};
 use super::muscle_lines::{Lines, PullShare};
 use super::scene::Scene;
 use crate::mesh::ignored::{listed, missing_region};
-use crate::mesh::{ArrayUse, TriangleSurface, Vector, VolumeMesh, Warning, place};
+use crate::mesh::{ArrayUse, TriangleSurface, Vector, VolumeMesh, Warning, bounds_of, place};
 use crate::model::fem::inner_stress::{CellStress, InnerStress};
 use crate::muscle::lines::nearest;
 use crate::muscle::share::shares_inside;
@@ -43,11 +43,7 @@ enum FibreDirections<'a> {
 
 impl FibreDirections<'_> {
     fn at(&self, mesh: &VolumeMesh, cell: usize) -> Option<Vector> {
-        let middle = || {
-            let corners = mesh.corners(cell);
-            let count = corners.len() as f64;
-            corners.sum::<Vector>() / count
-        };
+        let middle = || mesh.centroid(cell);
         let along = match self {
             FibreDirections::Uniform(direction) => *direction,
             FibreDirections::Array(course) => course.axis(cell).along,
@@ -329,7 +325,6 @@ fn not_a_strap(name: &str, strap: &Strap) -> Option<Warning> {
 
 /// `reaches from (0.0, 0.0, 0.0) to (1.0, 1.0, 1.0) mm`.
 fn reach(points: &[Vector]) -> String {
-    let Some(&first) = points.first() else { return "has no points".to_owned() };
-    let (low, high) = points.iter().fold((first, first), |(l, h), x| (l.inf(x), h.sup(x)));
+    let Some([low, high]) = bounds_of(points) else { return "has no points".to_owned() };
     format!("reaches from {} to {} mm", place(&low, 1), place(&high, 1))
 }

@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use super::fibres::unit;
 use super::muscle_field::{elsewhere, muscle_volume};
 use crate::mesh::refinement::refine;
-use crate::mesh::{Vector, VolumeMesh, Warning};
+use crate::mesh::{Vector, VolumeMesh, Warning, bounds_of};
 use crate::model::fem::inner_stress::CellStress;
 use crate::model::reference_cell;
 use crate::muscle::lines::FEW_CELLS;
@@ -26,7 +26,8 @@ const POINTS: f64 = 200.0;
 /// with every edge halved twice, or once where the muscle has many cells.
 pub(super) struct PullShare {
     cells: usize,
-    share: f64,
+    /// None where no quadrature point of the finer cells is in reach.
+    share: Option<f64>,
     /// Of the length of the lines what lies in the tissue, or within a cell of half the size from it.
     inside: f64,
 }
@@ -39,8 +40,8 @@ impl PullShare {
             true => pull_in(&halved),
             false => pull_in(&refine(&halved)),
         };
-        let (share, inside) = (pull_of(mesh, cells) / exact, lines.share_inside(&halved));
-        PullShare { cells: cells.len(), share, inside }
+        let share = (exact > 0.0).then(|| pull_of(mesh, cells) / exact);
+        PullShare { cells: cells.len(), share, inside: lines.share_inside(&halved) }
     }
 
     /// Where lines leave the tissue, and where its cells are so few or so coarse that the muscle pulls otherwise than they say.
@@ -55,16 +56,22 @@ impl PullShare {
 
     fn coarse(&self, name: &str) -> Option<Warning> {
         let PullShare { cells, share, .. } = *self;
-        if cells >= FEW_CELLS && (share - 1.0).abs() <= PULL_OFF {
+        if cells >= FEW_CELLS && share.is_some_and(|share| (share - 1.0).abs() <= PULL_OFF) {
             return None;
         }
-        let detail = format!(
-            "{cells} cells have tissue near the lines of muscle {name:?}, and it pulls with {:.0} % of what lines of its width exert: \
-             its pull is as coarse as they are; finer cells or a larger `within_mm` carry it",
-            100.0 * share
+        let pull = share.map_or_else(
+            || "no point of finer cells is within their reach".to_owned(),
+            |share| {
+                format!("it pulls with {:.0} % of what lines of its width exert", 100.0 * share)
+            },
         );
-        let warning = Warning::new("muscle-few-cells", detail).with("cells", cells as f64);
-        Some(warning.with("pull_share", share))
+        let detail = format!(
+            "{cells} cells have tissue near the lines of muscle {name:?}, and {pull}: its pull is as coarse as they are; finer cells or a \
+             larger `within_mm` carry it"
+        );
+        let mut warning = Warning::new("muscle-few-cells", detail).with("cells", cells as f64);
+        warning.numbers.extend(share.map(|share| ("pull_share", share)));
+        Some(warning)
     }
 }
 
@@ -127,9 +134,8 @@ impl Lines {
     fn share_inside(&self, mesh: &VolumeMesh) -> f64 {
         let balls: Vec<(Vector, f64)> = (0..mesh.cells.len())
             .map(|cell| {
-                let corners: Vec<Vector> = mesh.corners(cell).collect();
-                let middle = corners.iter().sum::<Vector>() / corners.len() as f64;
-                let squared = corners.iter().map(|x| (x - middle).norm_squared());
+                let middle = mesh.centroid(cell);
+                let squared = mesh.corners(cell).map(|x| (x - middle).norm_squared());
                 (middle, squared.fold(0.0, f64::max))
             })
             .collect();
@@ -148,9 +154,7 @@ impl Lines {
 
     /// Whether a cell may have tissue within reach.
     fn may_reach(&self, corners: &[Vector]) -> bool {
-        let Some(&first) = corners.first() else { return false };
-        let (low, high) = corners.iter().fold((first, first), |(l, h), x| (l.inf(x), h.sup(x)));
-        let around = [low, high];
+        let Some(around) = bounds_of(corners) else { return false };
         overlap(&around, &self.reach)
             && self.pieces.iter().any(|piece| overlap(&around, &piece.reach))
     }

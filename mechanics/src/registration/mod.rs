@@ -41,6 +41,8 @@ pub enum AlignmentError {
         "the landmarks lie in a plane or nearly so: they are {thickness:.3e} mm thick and {length:.3e} mm long"
     )]
     Coplanar { thickness: f64, length: f64 },
+    #[error("landmarks {one} and {other} (from 0) are at one place, or {distance:.1e} mm apart")]
+    SamePlace { one: usize, other: usize, distance: f64 },
     #[error("no part of the fixed surface lies in the mask")]
     EmptyMask,
     #[error("only {pairs} of {points} points of the fixed surface lie opposite the moving one")]

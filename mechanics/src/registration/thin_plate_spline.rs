@@ -19,6 +19,9 @@ pub const FEWEST: usize = 4;
 /// Landmarks that are thinner than this share of their length lie in a plane.
 const SMALLEST_THICKNESS: f64 = 1e-6;
 
+/// Landmarks that are nearer to each other than this share of the length of all are at one place.
+const SMALLEST_DISTANCE: f64 = 1e-12;
+
 /// A map of space, in mm.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ThinPlateSpline {
@@ -32,6 +35,9 @@ impl ThinPlateSpline {
     /// The spline that takes `from` to `to`, smoothed by λ = `smoothing` in mm; 0 meets every landmark.
     pub fn new(from: &[Vector], to: &[Vector], smoothing: f64) -> Result<Self, AlignmentError> {
         check(from, to)?;
+        if smoothing == 0.0 {
+            require_distance(from)?;
+        }
         let count = from.len();
         // Relative to one of them, so that points far from the origin keep their digits.
         let origin = from[0];
@@ -109,6 +115,20 @@ fn check(from: &[Vector], to: &[Vector]) -> Result<(), AlignmentError> {
         return Err(AlignmentError::FewLandmarks { points: from.len(), needed: FEWEST });
     }
     require_thickness(from, SMALLEST_THICKNESS)
+}
+
+/// Refuses two points at one place: no map meets both.
+fn require_distance(points: &[Vector]) -> Result<(), AlignmentError> {
+    let length = points.iter().map(|point| (point - points[0]).norm()).fold(0.0, f64::max);
+    for (other, point) in points.iter().enumerate() {
+        let distances = points[..other].iter().map(|earlier| (point - earlier).norm());
+        for (one, distance) in distances.enumerate() {
+            if distance <= SMALLEST_DISTANCE * length {
+                return Err(AlignmentError::SamePlace { one, other, distance });
+            }
+        }
+    }
+    Ok(())
 }
 
 /// Refuses points that are thinner than a share of their length: they lie in a plane, or too nearly so for what is wanted of

@@ -23,15 +23,18 @@ impl Bounds {
         Bounds { farthest, normals: vec![None; mesh.nodes.len()] }
     }
 
-    /// The same with the nodes of some surfaces kept on their tangent planes.
+    /// The same with the nodes of some surfaces kept on their tangent planes, and at their places where their triangles cancel.
     pub fn along(mut self, mesh: &VolumeMesh, kept: &[&[u32]]) -> Bounds {
         let surface = mesh.surface_of(&mesh.boundary_faces());
         let normals = surface.point_normals();
         let nodes = surface.node_ids.iter().flatten();
         let normal_of: HashMap<u32, Vector> = nodes.copied().zip(normals).collect();
         for node in kept.iter().flat_map(|nodes| nodes.iter()) {
-            let normal = normal_of.get(node).filter(|normal| normal.norm() > 0.5);
-            self.normals[*node as usize] = normal.copied();
+            let Some(normal) = normal_of.get(node) else { continue };
+            match normal.norm() > 0.5 {
+                true => self.normals[*node as usize] = Some(*normal),
+                false => self.farthest[*node as usize] = 0.0,
+            }
         }
         self
     }

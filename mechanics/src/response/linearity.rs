@@ -21,7 +21,7 @@
 
 use super::rigid_numbers::{SAMPLES, rigid_numbers};
 use crate::boundary::{ConnectedPart, Holder, NodeClass};
-use crate::mesh::Vector;
+use crate::mesh::{Vector, bounds_of};
 use crate::plan::RigidMovement;
 use crate::plan::doubt::farthest_apart;
 use crate::prediction::Scene;
@@ -120,9 +120,8 @@ pub fn by_rule_of_thumb(scene: &Scene) -> Nonlinearity {
 pub(super) fn of_scene(scene: &Scene, segments: &[usize], parts: &[ConnectedPart]) -> Linearity {
     let mut holders = parts.iter().flat_map(|part| &part.held).map(|rows| rows.holder);
     let box_of = |&segment: &usize| {
-        let empty = [Vector::repeat(f64::INFINITY), Vector::repeat(f64::NEG_INFINITY)];
-        let places = joined_nodes(scene, segment);
-        places.fold(empty, |[low, high], place| [low.inf(place), high.sup(place)])
+        let empty = [f64::INFINITY, f64::NEG_INFINITY].map(Vector::repeat);
+        bounds_of(joined_nodes(scene, segment)).unwrap_or(empty)
     };
     Linearity {
         thickness: thickness(scene),

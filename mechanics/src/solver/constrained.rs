@@ -44,8 +44,6 @@ pub struct Point {
 /// How a solution was found.
 pub struct ConstrainedSolution {
     pub point: Point,
-    /// Equations among those asked for that others among them decide.
-    pub decided: Vec<usize>,
     pub iterations: usize,
     pub relative_residual: f64,
 }
@@ -85,11 +83,6 @@ impl<'a> Equations<'a> {
         self.rows[row].iter().map(|&(at, coefficient)| coefficient * x[at as usize][0]).sum()
     }
 
-    /// Memory of the columns that so many equations need, in MB.
-    pub fn megabytes(&self, equations: usize) -> f64 {
-        4e-6 * (equations * self.matrix.unknowns()) as f64
-    }
-
     /// G^T m of the first equations; nothing where there are no multipliers.
     pub fn forces(&self, multipliers: &[f64]) -> Vec<[f64; 1]> {
         if multipliers.is_empty() {
@@ -120,13 +113,8 @@ impl<'a> Equations<'a> {
             iterations: 0,
         };
         let relative_residual = run.solve(progress)?;
-        let Run { independent, point, iterations, .. } = run;
-        Ok(ConstrainedSolution {
-            point,
-            decided: independent.dependent(),
-            iterations,
-            relative_residual,
-        })
+        let Run { point, iterations, .. } = run;
+        Ok(ConstrainedSolution { point, iterations, relative_residual })
     }
 
     fn make_columns(&mut self, rows: &[usize], progress: &dyn Progress) -> Result<(), SolverError> {

@@ -160,7 +160,7 @@ impl<T: Real, const B: usize> HalfMatrix<T, B> {
         &mut self.lower[self.pattern.range(row).start + at]
     }
 
-    /// `product` = A x over the free rows of a layout.
+    /// `product` = A x over the free rows of an ordering.
     pub fn multiply<const N: usize>(
         &self,
         ordering: &RowOrdering,

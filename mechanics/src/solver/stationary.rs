@@ -4,7 +4,7 @@
 //! Kim et al. 2012; it converges only where lambda_max(D^-1 K) < 2, which meshes of tetrahedra exceed from
 //! nu = 0 on (docs/verification.md#v14). Any omega below 2 / lambda_max converges.
 //! Block Gauss-Seidel: x_i <- K_ii^-1 (f_i - sum_{j<i} K_ij x_j - sum_{j>i} K_ij x_j_old) converges for every
-//! positive definite K. The parts of the layout are its colours: they couple only with the separator, which
+//! positive definite K. The parts of the ordering are its colours: they couple only with the separator, which
 //! is swept after them, so that any number of threads gives the bits of one sequential sweep.
 //! Half a matrix is enough for one pass a sweep: with u_i = f_i - sum_{j>i} K_ij x_j kept for each row, the
 //! residual after a sweep is u - u_old.

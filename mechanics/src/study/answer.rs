@@ -9,7 +9,7 @@ use super::Stopwatch;
 use super::deadline::Deadline;
 use super::estimated::Estimates;
 use super::variant::{Strain, Variant};
-use crate::mesh::{CellShape, Vector};
+use crate::mesh::{CellShape, Vector, bounds_of};
 use crate::model::fem::strain::{determinants, inverted_cells};
 use crate::model::problem::{Equilibrium, ModelError};
 use crate::prediction::{
@@ -276,9 +276,7 @@ impl Bench<'_> {
 
 /// Refuses displacements that are not numbers, and those that are larger than the tissue is.
 fn check_sane(scene: &Scene, displacement: &[Vector]) -> Result<(), NoAnswer> {
-    let nodes = &scene.mesh.nodes;
-    let first = nodes.first().copied().unwrap_or_else(Vector::zeros);
-    let (low, high) = nodes.iter().fold((first, first), |(l, h), x| (l.inf(x), h.sup(x)));
+    let [low, high] = bounds_of(&scene.mesh.nodes).unwrap_or_default();
     let diagonal = (high - low).norm();
     let largest = displacement
         .iter()

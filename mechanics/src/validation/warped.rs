@@ -45,10 +45,14 @@ pub(super) fn warped(
     let to: Vec<Vector> = landmarks.values().map(|l| transform.apply(&l.actual)).collect();
     let spline = match ThinPlateSpline::new(&from, &to, 0.0) {
         Ok(spline) => spline,
+        Err(AlignmentError::SamePlace { one, other, .. }) => {
+            let name = |number| landmarks.keys().nth(number).map_or("", String::as_str);
+            let why = format!("{} and {} are at one place", name(one), name(other));
+            warnings.push(insufficient(landmarks.len(), &why));
+            return Ok(None);
+        }
         Err(error @ (AlignmentError::FewLandmarks { .. } | AlignmentError::Coplanar { .. })) => {
-            let detail = format!("no distances by thin-plate spline: {error}");
-            let count = landmarks.len() as f64;
-            warnings.push(Warning::new("landmarks-insufficient", detail).with("count", count));
+            warnings.push(insufficient(landmarks.len(), &error.to_string()));
             return Ok(None);
         }
         Err(error) => return Err(error.into()),
@@ -65,6 +69,11 @@ pub(super) fn warped(
         area: Statistics::weighted(&unsigned, &areas)?,
         signed: Statistics::weighted(&signed, &areas)?,
     }))
+}
+
+fn insufficient(landmarks: usize, why: &str) -> Warning {
+    let detail = format!("no distances by thin-plate spline: {why}");
+    Warning::new("landmarks-insufficient", detail).with("count", landmarks as f64)
 }
 
 /// The same for points of a prediction, without a sign: `pairs` has their landmarks, the actual ones where the actual surface

@@ -244,4 +244,8 @@ fn a_splines_gradient_is_that_of_its_places() {
     let at = *face.landmarks.values().next().unwrap();
     assert!(Warp::gradient(&spline, &at).iter().all(|x| x.is_finite()));
     assert!(spline_of(&landmarks(&face)[..3]).unwrap_err().to_string().contains('3'));
+    let mut doubled = landmarks(&face);
+    doubled[4].template = doubled[2].template;
+    let error = spline_of(&doubled).unwrap_err().to_string();
+    assert!([2, 4].iter().all(|&own| error.contains(&doubled[own].name)), "{error}");
 }

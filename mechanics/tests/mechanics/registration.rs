@@ -323,6 +323,19 @@ fn four_landmarks_make_an_affine_map_and_landmarks_in_a_plane_none() {
     assert_eq!(error, AlignmentError::FewLandmarks { points: 3, needed: 4 });
 }
 
+#[test]
+fn two_landmarks_at_one_place_are_named_and_smoothing_takes_both() {
+    let (mut from, mut to) = bent_landmarks();
+    from.push(from[1]);
+    to.push(to[1] + Vector::x());
+    let other = from.len() - 1;
+    let error = ThinPlateSpline::new(&from, &to, 0.0).unwrap_err();
+    assert_eq!(error, AlignmentError::SamePlace { one: 1, other, distance: 0.0 });
+    assert!(error.to_string().contains("landmarks 1 and"), "{error}");
+    let between = ThinPlateSpline::new(&from, &to, 1.0).unwrap().apply(&from[1]);
+    assert!(to[1].x < between.x && between.x < to[other].x, "{between}");
+}
+
 /// Bone of which the lower front was cut off, on triangles of a given fineness.
 struct Skull {
     base: TriangleSurface,

@@ -84,6 +84,20 @@ fn nodes_of_a_surface_stay_on_their_tangent_planes() {
 }
 
 #[test]
+fn a_node_of_a_surface_without_a_normal_stays_where_it_is() {
+    // Tetrahedra on both sides of a plane that meet in one node: its triangles cancel.
+    let corners = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    let up = corners.map(Vector::from);
+    let mut mesh = VolumeMesh { nodes: up.to_vec(), ..VolumeMesh::default() };
+    mesh.nodes.extend(up[1..].iter().map(|x| -x));
+    mesh.cells.push(CellShape::Tet4, &[0, 1, 2, 3]);
+    mesh.cells.push(CellShape::Tet4, &[0, 5, 4, 6]);
+    let bounds = Bounds::of(&mesh, 1.0, 3.0).along(&mesh, &[&[0, 1]]);
+    assert_eq!((bounds.normals[0], bounds.farthest[0]), (None, 0.0));
+    assert!(bounds.normals[1].is_some() && bounds.farthest[1] == 1.0);
+}
+
+#[test]
 fn a_sound_mesh_is_left_as_it_is() {
     let mesh = noisy_block(0.05, 1);
     let (same, report) = repaired(&mesh);

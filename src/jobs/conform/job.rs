@@ -372,6 +372,7 @@ fn refused(error: &ConformationError, clock: &Observed) -> JobError {
         | ConformationError::Stretched { .. } => at.key("patient").key("skin"),
         ConformationError::Landmarks(_)
         | ConformationError::Spline(_)
+        | ConformationError::SameLandmark { .. }
         | ConformationError::FewLandmarks { .. }
         | ConformationError::Mirrored { .. }
         | ConformationError::SidesUndecided { .. }

@@ -14,7 +14,7 @@ use crate::schema::case::muscle_mixing::MusclesDocument;
 use crate::schema::methods::{WHY_ESTIMATED, WHY_NOT_FORESEEN, WHY_REFINED};
 use crate::schema::predict::check::{CheckDocument, ClassCounts, SkinSummary};
 use mechanics::mesh::Warning;
-use mechanics::prediction::{NodeClass, Scene};
+use mechanics::prediction::{NodeClass, Scene, landmarks_far};
 
 /// The counts of a check, and the picture on request: drawing takes longer than counting.
 pub struct CheckReport {
@@ -51,6 +51,7 @@ impl Prepared {
             scene.conditions.constraints.iter().map(|constraint| constraint.count()).sum();
         let collisions = collisions(&self.case, scene);
         let mut of_plan: Vec<Warning> = collisions.iter().filter_map(Collision::warning).collect();
+        of_plan.extend(landmarks_far(scene));
         of_plan.extend(suspect_landmarks(&input.case, &self.case));
         of_plan.extend(default_density(input));
         let warnings = self.warnings.iter().chain(&scene.warnings).chain(&of_plan);

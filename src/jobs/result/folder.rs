@@ -156,6 +156,26 @@ pub fn remove_check(folder: &Path) -> Result<(), JobError> {
     remove(folder, &names.collect::<Vec<_>>())
 }
 
+/// Refuses to remove an earlier answer where its disk has no room for as much again: the next one could not be written, and both
+/// would be lost.
+fn require_room(folder: &Path, answer: &[String], free: u64) -> Result<(), JobError> {
+    let size = |name: &String| folder.join(name).symlink_metadata().map_or(0, |found| found.len());
+    let bytes: u64 = answer.iter().map(size).sum();
+    if bytes <= free {
+        return Ok(());
+    }
+    let detail = format!(
+        "it has an earlier result of {bytes} bytes, and its disk has {free} bytes left, too few for as much again: nothing was removed"
+    );
+    let source = std::io::Error::new(ErrorKind::StorageFull, detail);
+    Err(JobError::Write { file: folder.display().to_string(), source })
+}
+
+/// The bytes left on the disk of a folder, as far as that is known.
+fn free_bytes(folder: &Path) -> u64 {
+    rustix::fs::statvfs(folder).map_or(u64::MAX, |disk| disk.f_bavail.saturating_mul(disk.f_frsize))
+}
+
 /// Writes files and lists them.
 pub struct ResultFolder<'a> {
     folder: &'a Path,
@@ -195,8 +215,10 @@ impl<'a> ResultFolder<'a> {
         check(place)?;
         let failed = |source| JobError::Write { file: folder.display().to_string(), source };
         std::fs::create_dir_all(folder).map_err(failed)?;
+        let earlier = answer(folder)?;
+        require_room(folder, &earlier, free_bytes(folder))?;
         record::add(folder, own(folder)?)?;
-        remove(folder, &answer(folder)?)?;
+        remove(folder, &earlier)?;
         remove(folder, &place.sources.beside_result())?;
         Ok(ResultFolder { folder, files: Vec::new(), inputs: inputs(place) })
     }
@@ -216,5 +238,29 @@ impl<'a> ResultFolder<'a> {
             sha256,
         });
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::schema::ErrorCode;
+
+    #[test]
+    fn an_earlier_answer_stays_where_there_is_no_room_for_as_much_again() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut names = Vec::new();
+        for (name, content) in [("skin.vtp", "skin"), (MANIFEST, "manifest")] {
+            put_as(folder.path(), name, content.as_bytes(), true).unwrap();
+            names.push(name.to_owned());
+        }
+        assert_eq!(answer(folder.path()).unwrap().len(), 2);
+        assert!(require_room(folder.path(), &names, 12).is_ok());
+        let refused = require_room(folder.path(), &names, 11).unwrap_err();
+        assert!(refused.to_string().contains("earlier result of 12 bytes"), "{refused}");
+        assert_eq!(refused.kind(), ErrorCode::Storage);
+        // Nothing has to go where nothing was.
+        assert!(require_room(folder.path(), &[], 0).is_ok());
+        assert!(free_bytes(folder.path()) > 0);
     }
 }

@@ -6,7 +6,7 @@ use mechanics::chart::{
     ClassKind, ClassesPicture, DisplacementPicture, FaceDirection, NodeClasses, PngError,
     SlicesPicture, front_of,
 };
-use mechanics::mesh::{Frame, TriangleSurface, Vector};
+use mechanics::mesh::{Frame, TriangleSurface, Vector, bounds_of};
 use mechanics::prediction::{NodeClass, Scene};
 
 /// Every class of a scene with its number of nodes, segments first; classes without a node are omitted,
@@ -95,10 +95,7 @@ pub fn slices_picture(anatomy: &Anatomy, frame: Frame) -> Result<String, PngErro
     let mesh = &anatomy.volume;
     let cells: Vec<[u32; 4]> =
         mesh.cells.iter().filter_map(|(_, nodes)| nodes.try_into().ok()).collect();
-    let boxed = mesh.nodes.iter().fold(
-        (Vector::repeat(f64::INFINITY), Vector::repeat(f64::NEG_INFINITY)),
-        |(low, high), node| (low.inf(node), high.sup(node)),
-    );
+    let [low, high] = bounds_of(&mesh.nodes).unwrap_or_default();
     let subtitle = format!(
         "{} tetrahedra, {} nodes; smallest dihedral angle {:.1}°, 0.1 % below {:.1}°, largest {:.1}°",
         report.tetrahedra,
@@ -112,7 +109,7 @@ pub fn slices_picture(anatomy: &Anatomy, frame: Frame) -> Result<String, PngErro
         subtitle: &subtitle,
         points: &mesh.nodes,
         tetrahedra: &cells,
-        middle: (boxed.0 + boxed.1) / 2.0,
+        middle: (low + high) / 2.0,
         face_direction: if frame == Frame::Ras {
             FaceDirection::ras()
         } else {

@@ -124,6 +124,7 @@ fn load_steps_are_made_with_contact_and_are_a_table_of_the_report() {
     let place = JobContext { sources: &sources, limits: &limits, out: folder.path() };
     let result = work(&JobInput::Predict(asked(spec)), &place, &Unobserved).unwrap().result;
     // Nothing of one block meets anything.
+    assert_eq!(result.load_steps.len(), 3);
     assert!(result.load_steps.iter().all(|step| step.contact.is_none()));
     let html = std::fs::read_to_string(folder.path().join("report.html")).unwrap();
     for words in ["<h2>Load steps</h2>", "33.3 %", "66.7 %", "100.0 %"] {

@@ -362,6 +362,21 @@ fn landmarks_of_bone_in_metres_or_far_from_the_mesh_are_reported() {
 }
 
 #[test]
+fn a_landmark_far_from_the_tissue_is_told_before_anything_is_solved() {
+    let plan = json!({"segments": [{"name": "right", "translation_mm": [0, -4, 0]}]});
+    let found = checked(json!({"landmarks": {"astray": [0, 0, 400]}}), plan.clone());
+    let far: Vec<_> = found.warnings.iter().filter(|own| own.code == "landmark-far").collect();
+    assert_eq!(far.len(), 1, "{:?}", found.warnings);
+    assert!(far[0].detail.contains("astray"), "{}", far[0].detail);
+    let (sources, input) =
+        cubes(json!({"landmarks": {"astray": [0, 0, 400]}}), plan, json!({"method": "fem_linear"}));
+    let out = tempfile::tempdir().unwrap();
+    let place = JobContext { sources: &sources, limits: &Limits::default(), out: out.path() };
+    let told = work(&JobInput::Predict(input), &place, &Unobserved).unwrap().result.warnings;
+    assert_eq!(told.iter().find(|own| own.code == "landmark-far"), Some(far[0]));
+}
+
+#[test]
 fn norms_that_a_case_states_stand_beside_its_measures_and_unknown_ones_are_refused() {
     let at = |x: f64, y: f64, z: f64| json!({"position_mm": [x, y, z]});
     let landmarks =

@@ -1,5 +1,7 @@
 //! Plan responses over HTTP: built once, applied many times, refused when they do not fit.
 
+use std::collections::BTreeSet;
+
 use mechanics::format::VolumeOutput;
 use mechanics::format::vtk::vtu;
 use mechanics::mesh::{CellShape, Frame, Vector, sample};
@@ -98,6 +100,41 @@ async fn a_plan_applied_to_a_response_tears_the_tissue_where_its_prediction_does
         let direct = built(&server, spec).await;
         assert_eq!(told, tearing_of(&direct["results"]), "{plan}");
     }
+}
+
+#[tokio::test]
+async fn what_a_prediction_warns_of_is_told_by_a_response_or_named_as_not_looked_for() {
+    let server = Server::start();
+    let mut case = SMALL.case();
+    case["skin"] = json!({"node_set": "z_max"});
+    case["segments"] = json!([{"name": "left", "nodes": {"node_set": "x_min"}}]);
+    case["fixed"] = json!([{"node_set": "x_max"}]);
+    case["landmarks"] = json!({"astray": [0, 0, 400]});
+    let case = kept(&server, &SMALL, &case).await;
+    built(&server, json!({"kind": "response", "case": case})).await;
+    let shifted = json!({"segments": [{"name": "left", "translation_mm": [-15, 20, 0]}]});
+    let turned = json!({"segments": [
+        {"name": "left", "rotation_deg": [0, 30, 0], "pivot_mm": [0, 30, 15]}]});
+    let mut of_predictions = BTreeSet::new();
+    for plan in [shifted, turned] {
+        let applied = apply(&server, &case, &plan, "application/json").await;
+        let applied = applied.expect(StatusCode::OK);
+        let told = warnings_of(&applied).map(|told| told["code"].as_str().unwrap().to_owned());
+        let mut known: BTreeSet<String> = told.collect();
+        let unmeasured: Vec<String> =
+            serde_json::from_value(applied["not_measured"].clone()).unwrap();
+        known.extend(unmeasured);
+        let spec = json!({"kind": "predict", "method": "fem_linear", "case": case, "plan": plan, "outputs": ["skin.csv"]});
+        let direct = built(&server, spec).await;
+        for warning in warnings_of(&direct["results"]) {
+            let code = warning["code"].as_str().unwrap();
+            assert!(known.contains(code), "{code} of {plan} is not among {known:?}");
+            of_predictions.insert(code.to_owned());
+        }
+    }
+    assert!(of_predictions.contains("landmark-far"), "{of_predictions:?}");
+    let beyond = ["large-rotation", "large-strain"];
+    assert!(beyond.iter().any(|&code| of_predictions.contains(code)), "{of_predictions:?}");
 }
 
 #[tokio::test]
@@ -570,12 +607,17 @@ async fn skin_that_passes_through_itself_is_reported_by_predictions_and_where_a_
         "bones-overlap",
         "bone-in-tissue",
         "bone-through-skin",
+        "large-rotation",
+        "large-strain",
+        "skin-outruns-plan",
+        "sliding-off-wall",
+        "landmark-far",
+        "landmarks-crowded",
+        "landmarks-swapped",
     ];
     let without_skin = of_mesh.join(", ");
-    assert_eq!(
-        unasked["not_measured"],
-        json!([of_mesh[0], of_mesh[1], of_mesh[2], of_mesh[3], of_mesh[4], overlaps])
-    );
+    let all: Vec<&str> = of_mesh.into_iter().chain([overlaps.as_str()]).collect();
+    assert_eq!(unasked["not_measured"], json!(all));
     assert!(!codes(&unasked).contains(&overlaps));
     let asked = ask_for("?check_skin=true", "application/json").await;
     assert!(asked.header("server-timing").contains("check;dur="));

@@ -61,7 +61,7 @@ impl Accumulator {
     }
 }
 
-/// The coarse matrix over aggregates in a layout of its own.
+/// The coarse matrix over aggregates in an ordering of its own.
 pub(super) struct Coarse {
     pub matrix: HalfMatrix<f64, 6>,
     pub ordering: RowOrdering,

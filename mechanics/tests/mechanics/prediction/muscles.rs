@@ -331,6 +331,19 @@ fn a_muscle_of_few_cells_is_reported() {
 }
 
 #[test]
+fn a_muscle_thinner_than_the_way_between_points_of_finer_cells_has_no_share() {
+    let mesh = block(Vector::repeat(30.0), [3, 3, 3], CellShape::Hex8);
+    // Within a fifth of a millimetre of a quadrature point of a cell of 10 mm, and of none of a cell of 2.5 mm.
+    let line = vec![Vector::repeat(2.11), Vector::repeat(2.12)];
+    let muscles = vec![around("thread", vec![line], 0.2)];
+    let case = Case { fixed: vec![set("x_min")], muscles, ..case_of(mesh, material(15.0, 0.46)) };
+    let scene = Scene::new(&case, &pulling("thread", 1.0), &Settings::default()).unwrap();
+    let told = scene.warnings.iter().find(|warning| warning.code == "muscle-few-cells").unwrap();
+    assert_eq!(told.numbers, [("cells", 1.0)]);
+    assert!(told.detail.contains("no point"), "{}", told.detail);
+}
+
+#[test]
 fn a_muscle_in_cells_too_coarse_for_its_width_is_reported_with_how_much_of_it_pulls() {
     let told = |cells: [usize; 3], at: f64| {
         let mesh = block(Vector::new(120.0, 30.0, 30.0), cells, CellShape::Hex8);

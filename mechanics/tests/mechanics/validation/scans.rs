@@ -210,6 +210,13 @@ fn landmarks_tell_a_turned_sphere_which_closest_points_cannot() {
     let found = compared(&fixed, &turned, &few);
     assert_eq!((found.warped, found.landmark_errors.len()), (None, 3));
     assert_eq!(codes(&found.warnings), ["landmarks-insufficient"]);
+
+    let mut doubled = settings;
+    doubled.landmarks.insert("again".to_owned(), doubled.landmarks["1"]);
+    let found = compared(&fixed, &turned, &doubled);
+    assert_eq!(codes(&found.warnings), ["landmarks-insufficient"]);
+    let detail = &found.warnings[0].detail;
+    assert!(found.warped.is_none() && detail.contains("1 and again are at one place"), "{detail}");
 }
 
 #[test]
