@@ -9,10 +9,9 @@ use serde::Deserialize;
 use utoipa::IntoParams;
 
 use super::error::{ApiError, ApiResult};
-use super::parameters::id;
+use super::parameters::{LONGEST_PAGE, id};
 use super::with_header;
 
-const LONGEST_PAGE: u32 = 200;
 const USUAL_PAGE: u32 = 50;
 
 /// The parameters of a list without others.
@@ -85,12 +84,6 @@ pub fn checked_limit(limit: Option<u32>) -> ApiResult<u32> {
     }
     let detail = format!("limit is {limit}, and has to be 1 to {LONGEST_PAGE}");
     Err(ApiError::invalid_parameter("limit", detail))
-}
-
-/// The refusal of a limit that is no number.
-pub(super) fn wrong_limit() -> ApiError {
-    let detail = format!("limit has to be a number from 1 to {LONGEST_PAGE}");
-    ApiError::invalid_parameter("limit", detail)
 }
 
 /// The key in a cursor, if it is of the kind of this list.

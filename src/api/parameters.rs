@@ -6,9 +6,11 @@ use serde::de::DeserializeOwned;
 use uuid::Uuid;
 
 use super::error::{ApiError, ApiResult};
-use super::paging::wrong_limit;
 use crate::schema::ErrorCode;
 use crate::schema::key::is_key_id;
+
+/// The most rows of a page of a list.
+pub const LONGEST_PAGE: u32 = 200;
 
 /// The query, without unknown parameters: a misspelt one would be a silent default.
 pub struct Parameters<T>(pub T);
@@ -24,7 +26,8 @@ impl<T: DeserializeOwned, S: Sync> FromRequestParts<S> for Parameters<T> {
                 let detail = detail.rsplit("query string: ").next().unwrap_or_default();
                 let detail = detail.replace("unknown variant", "unknown word");
                 if named(&detail) == "limit" {
-                    return Err(wrong_limit());
+                    let detail = format!("limit has to be a number from 1 to {LONGEST_PAGE}");
+                    return Err(ApiError::invalid_parameter("limit", detail));
                 }
                 Err(ApiError::invalid_parameter(named(&detail), detail.clone()))
             }

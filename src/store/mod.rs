@@ -35,6 +35,7 @@ mod plans;
 mod queue;
 mod references;
 mod responses;
+mod retention;
 mod spare;
 mod sweep;
 mod tenants;

@@ -125,7 +125,7 @@ async fn a_mesh_that_a_job_made_is_not_too_old_while_the_job_is_there(on: Deploy
     store.retain(Some(1)).await.unwrap();
     on.execute("UPDATE meshes SET created = 1").await;
     assert_eq!(store.erase_old().await.unwrap(), 0);
-    on.execute("UPDATE jobs SET finished = 1").await;
+    on.execute("UPDATE jobs SET updated = 1").await;
     assert_eq!(store.erase_old().await.unwrap(), 1, "the job, and the mesh with it");
     assert_eq!(blob_count(&store).await, 0);
 }

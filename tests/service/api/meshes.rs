@@ -40,7 +40,8 @@ async fn an_upload_is_reported_and_the_same_bytes_are_the_same_mesh() {
     assert_eq!(report["cells"]["hex8"], 64);
     assert_eq!(report["node_sets"]["z_min"], 25);
     let second = ask(upload()).await;
-    assert_eq!(second.expect(StatusCode::OK)["id"], id);
+    let mesh = second.expect(StatusCode::OK);
+    assert_eq!(mesh["id"], id);
     let other_unit = server.post("/v1/meshes?units=m&allow_any_scale=true");
     let other_unit =
         other_unit.header("content-type", "application/octet-stream").body(bytes.clone());
