@@ -11,9 +11,6 @@ use tower::ServiceExt as _;
 use super::*;
 use crate::api::middleware::{self, MiddlewareState};
 use crate::api::{Service, admin, document};
-use crate::config::Config;
-use crate::library::meshes::Library;
-use crate::store::Store;
 
 /// Every route: its scope, and whether it is audited.
 const SERVICE: &str = "
@@ -154,9 +151,7 @@ fn a_request_that_no_handler_answers_looks_or_changes_by_its_method() {
 /// The response of a service whose routes were not registered by `Resources`.
 async fn answer(declared: Declared, method: Method, path: &str) -> (StatusCode, String) {
     let folder = tempfile::tempdir().unwrap();
-    let store = Store::open(folder.path()).await.unwrap();
-    let config = Config::new(|_| None).unwrap();
-    let service = Service::new(config, store.clone(), Library::new(store, 0));
+    let service = Service::example(folder.path(), &[]).await;
     let door = MiddlewareState { service: service.clone(), declared: declared.into() };
     let router = Router::new()
         .route("/v1/new", get(async |_: Service| "looked").put(async |_: Service| "changed"))

@@ -72,28 +72,17 @@ impl ServedFile {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::config::Config;
-    use crate::library::meshes::Library;
     use crate::schema::ErrorCode;
-    use crate::store::{NewMesh, Store};
+    use crate::store::NewMesh;
 
     #[tokio::test]
     async fn what_was_erased_after_it_was_found_is_not_found_and_what_is_lost_is_damage() {
         let folder = tempfile::tempdir().unwrap();
-        let store = Store::open(folder.path()).await.unwrap();
-        let config = Config::new(|_| None).unwrap();
-        let service = Service::new(config, store.clone(), Library::new(store.clone(), 0));
+        let service = Service::example(folder.path(), &[]).await;
+        let store = service.store.clone();
         let [erased, lost] = ["e", "f"].map(|digit| digit.repeat(64));
         for hash in [&erased, &lost] {
-            let mesh = NewMesh {
-                id: uuid::Uuid::now_v7().to_string(),
-                sha256: hash.clone(),
-                options: String::new(),
-                blob: hash.clone(),
-                bytes: "mesh".into(),
-                standalone: true,
-                report: "{}".to_owned(),
-            };
+            let mesh = NewMesh::example(hash);
             assert!(store.add_mesh(&mesh).await.unwrap());
             if hash == &erased {
                 store.delete_mesh(&mesh.id).await.unwrap();

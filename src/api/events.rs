@@ -219,16 +219,13 @@ mod tests {
     use axum::body::to_bytes;
 
     use super::*;
-    use crate::config::Config;
-    use crate::library::meshes::Library;
     use crate::store::NewJob;
 
     #[tokio::test]
     async fn the_stream_of_a_job_that_is_dismissed_and_removed_at_once_ends_with_that() {
         let folder = tempfile::tempdir().unwrap();
-        let store = Store::open(folder.path()).await.unwrap();
-        let config = Config::new(|_| None).unwrap();
-        let service = Service::new(config, store.clone(), Library::new(store.clone(), 0));
+        let service = Service::example(folder.path(), &[]).await;
+        let store = service.store.clone();
         let job = NewJob::example("01890000-0000-7000-8000-000000000001");
         store.enqueue(&job, 10).await.unwrap();
         let followed = follow(service, Id(job.id.clone()), None, HeaderMap::new()).await.unwrap();

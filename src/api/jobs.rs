@@ -321,9 +321,6 @@ mod tests {
     use futures::future::BoxFuture;
 
     use super::*;
-    use crate::config::Config;
-    use crate::library::meshes::Library;
-    use crate::store::Store;
 
     fn listed(service: &Service) -> BoxFuture<'static, ApiResult> {
         let (status, kind, tag, case, cursor, limit) = (None, None, None, None, None, None);
@@ -334,9 +331,8 @@ mod tests {
     #[tokio::test]
     async fn a_job_that_is_removed_as_it_is_found_is_made_anew_and_one_removed_later_is_gone() {
         let folder = tempfile::tempdir().unwrap();
-        let store = Store::open(folder.path()).await.unwrap();
-        let config = Config::new(|_| None).unwrap();
-        let service = Service::new(config, store.clone(), Library::new(store.clone(), 0));
+        let service = Service::example(folder.path(), &[]).await;
+        let store = service.store.clone();
         let asked = KeyedRequest::at(&service, &HeaderMap::new(), "/v1/jobs", &[]).unwrap();
         let new = asked.reserve(&service).await.unwrap();
         let job = NewJob::example(&new.id);
@@ -355,9 +351,7 @@ mod tests {
     #[tokio::test]
     async fn a_list_waits_for_the_turn_of_its_tenant_and_no_more_wait_than_may() {
         let folder = tempfile::tempdir().unwrap();
-        let store = Store::open(folder.path()).await.unwrap();
-        let config = Config::new(|name| (name == "waiting-requests").then(|| "1".into())).unwrap();
-        let service = Service::new(config, store.clone(), Library::new(store, 0));
+        let service = Service::example(folder.path(), &[("waiting-requests", "1")]).await;
         let held = [service.list_permit().await.unwrap(), service.list_permit().await.unwrap()];
         let mut first = listed(&service);
         assert!((&mut first).now_or_never().is_none());

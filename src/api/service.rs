@@ -93,6 +93,15 @@ impl Service {
         }
     }
 
+    /// A service on a folder, with these settings and the usual ones.
+    #[cfg(test)]
+    pub async fn example(folder: &std::path::Path, settings: &[(&str, &str)]) -> Service {
+        let store = Store::open(folder).await.unwrap();
+        let own = |name: &str| settings.iter().find(|(own, _)| *own == name);
+        let config = Config::new(|name| own(name).map(|(_, value)| (*value).to_owned())).unwrap();
+        Service::new(config, store.clone(), Library::new(store, 0))
+    }
+
     /// The same service scoped to a tenant, for a request of one of its clients; changes are audited.
     pub(super) fn scoped_to(
         &self,

@@ -20,6 +20,22 @@ pub struct NewMesh {
     pub report: String,
 }
 
+#[cfg(test)]
+impl NewMesh {
+    /// An uploaded mesh whose bytes are said to have this hash.
+    pub fn example(hash: &str) -> NewMesh {
+        NewMesh {
+            id: uuid::Uuid::now_v7().to_string(),
+            sha256: hash.to_owned(),
+            options: String::new(),
+            blob: hash.to_owned(),
+            bytes: Bytes::from_static(b"mesh"),
+            standalone: true,
+            report: "{}".to_owned(),
+        }
+    }
+}
+
 #[derive(Clone, Debug)]
 pub struct MeshRow {
     pub id: String,

@@ -150,15 +150,7 @@ mod tests {
     async fn what_is_no_longer_old_when_its_turn_comes_is_kept_and_the_audit_log_says_so() {
         let folder = tempfile::TempDir::new().unwrap();
         let store = Store::open(folder.path()).await.unwrap();
-        let mesh = NewMesh {
-            id: "a mesh".to_owned(),
-            sha256: "of the upload".to_owned(),
-            options: String::new(),
-            blob: "0a1b".to_owned(),
-            bytes: bytes::Bytes::from_static(b"mesh"),
-            standalone: true,
-            report: "{}".to_owned(),
-        };
+        let mesh = NewMesh::example("0a1b");
         assert!(store.add_mesh(&mesh).await.unwrap());
         assert!(!store.erase_noted(Kind::Mesh, &mesh.id, DAY_MS).await.unwrap());
         assert!(store.mesh(&mesh.id).await.unwrap().is_some());

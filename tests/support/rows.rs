@@ -5,7 +5,7 @@ use std::time::Duration;
 use bytes::Bytes;
 use facies::schema::key::{KeyDocument, Scope};
 use facies::schema::wire::canonical::sha256_hex;
-use facies::store::{Enqueued, JobRow, NewJob, NewMesh, Published, PublishedFile, Store};
+use facies::store::{Enqueued, JobRow, NewCase, NewJob, NewMesh, Published, PublishedFile, Store};
 use tempfile::TempDir;
 
 pub const LEASE: Duration = Duration::from_secs(60);
@@ -34,6 +34,19 @@ pub fn new_job(document: &str, hash: &str) -> NewJob {
         learns_from: None,
         traceparent: None,
         waits_for: None,
+    }
+}
+
+/// A case without meshes, plans or jobs.
+pub fn new_case() -> NewCase {
+    NewCase {
+        id: uuid::Uuid::now_v7().to_string(),
+        document: "{}".into(),
+        report: "{}".into(),
+        tags: vec![],
+        mesh_ids: vec![],
+        meshes: vec![],
+        meshing: None,
     }
 }
 

@@ -28,7 +28,7 @@ mod surface_topology;
 pub mod volume;
 pub mod warning;
 
-pub use bounds::bounds_of;
+pub use bounds::{EMPTY_BOUNDS, bounds_of};
 pub use closest_point::{ClosestPoint, SearchError, SurfaceSearch};
 pub use frame::Frame;
 pub use ignored::{ArrayUse, IgnoredArray, IgnoredArrays, ValuesOf};

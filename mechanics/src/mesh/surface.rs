@@ -1,6 +1,6 @@
 //! Triangle surfaces: skin, bone.
 
-use super::{Vector, bounds_of};
+use super::{EMPTY_BOUNDS, Vector, bounds_of};
 
 /// Triangles with outward orientation where the surface is closed; points in mm.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -50,8 +50,7 @@ impl TriangleSurface {
     /// Without triangles the lowest is above the highest.
     pub fn bounds(&self) -> (Vector, Vector) {
         let used = self.triangles.iter().flatten().map(|&point| &self.points[point as usize]);
-        let empty = [f64::INFINITY, f64::NEG_INFINITY].map(Vector::repeat);
-        bounds_of(used).unwrap_or(empty).into()
+        bounds_of(used).unwrap_or(EMPTY_BOUNDS).into()
     }
 
     /// For each point a third of the area of its triangles, in mm².

@@ -21,7 +21,7 @@
 
 use super::rigid_numbers::{SAMPLES, rigid_numbers};
 use crate::boundary::{ConnectedPart, Holder, NodeClass};
-use crate::mesh::{Vector, bounds_of};
+use crate::mesh::{EMPTY_BOUNDS, Vector, bounds_of};
 use crate::plan::RigidMovement;
 use crate::plan::doubt::farthest_apart;
 use crate::prediction::Scene;
@@ -119,10 +119,7 @@ pub fn by_rule_of_thumb(scene: &Scene) -> Nonlinearity {
 /// What the estimate needs, for the segments of these numbers and the parts where only these move.
 pub(super) fn of_scene(scene: &Scene, segments: &[usize], parts: &[ConnectedPart]) -> Linearity {
     let mut holders = parts.iter().flat_map(|part| &part.held).map(|rows| rows.holder);
-    let box_of = |&segment: &usize| {
-        let empty = [f64::INFINITY, f64::NEG_INFINITY].map(Vector::repeat);
-        bounds_of(joined_nodes(scene, segment)).unwrap_or(empty)
-    };
+    let box_of = |&segment: &usize| bounds_of(joined_nodes(scene, segment)).unwrap_or(EMPTY_BOUNDS);
     Linearity {
         thickness: thickness(scene),
         something_stays: holders.any(|holder| holder == Holder::Rest),

@@ -8,7 +8,7 @@ use facies::store::{
 };
 
 use crate::deployments::Deployment;
-use crate::rows::{blob_count, mesh, new_job};
+use crate::rows::{blob_count, mesh, new_case, new_job};
 use crate::support::trials::trials;
 
 trials! {
@@ -31,13 +31,10 @@ fn of_a_case(content: &'static str) -> NewMesh {
 
 async fn case(store: &Store, document: &str, meshes: &[&NewMesh]) -> String {
     let case = NewCase {
-        id: uuid::Uuid::now_v7().to_string(),
         document: document.into(),
-        report: "{}".into(),
-        tags: Vec::new(),
         mesh_ids: meshes.iter().map(|mesh| mesh.id.clone()).collect(),
         meshes: meshes.iter().map(|mesh| (*mesh).clone()).collect(),
-        meshing: None,
+        ..new_case()
     };
     assert_eq!(store.add_case(&case, 100).await.unwrap(), AddedCase::Stored);
     case.id

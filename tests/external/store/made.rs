@@ -1,12 +1,11 @@
 //! Meshes that jobs made: published with the result or not at all, and erased with it.
 
 use facies::store::{
-    AddedCase, Change, Dismissal, MadeMesh, MeshDeletion, NewCase, NewMesh, Published, Store,
-    StoreError,
+    AddedCase, Change, Dismissal, MadeMesh, MeshDeletion, NewMesh, Published, Store, StoreError,
 };
 
 use crate::deployments::Deployment;
-use crate::rows::{LEASE, blob_count, enqueue, file, mesh, new_job};
+use crate::rows::{LEASE, blob_count, enqueue, file, mesh, new_case, new_job};
 use crate::support::trials::trials;
 
 trials! {
@@ -73,15 +72,7 @@ async fn a_case_that_is_erased_while_its_job_publishes_leaves_no_mesh(on: Deploy
     let store = on.open().await;
     let other = on.again(&store).await;
     for round in 0..20 {
-        let case = NewCase {
-            id: uuid::Uuid::now_v7().to_string(),
-            document: "{}".into(),
-            report: "{}".into(),
-            tags: vec![],
-            mesh_ids: vec![],
-            meshes: vec![],
-            meshing: None,
-        };
+        let case = new_case();
         assert_eq!(store.add_case(&case, 100).await.unwrap(), AddedCase::Stored);
         let mut job = new_job("{}", &format!("job {round}"));
         job.case_id = Some(case.id.clone());

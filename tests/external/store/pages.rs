@@ -13,7 +13,7 @@ use tracing::subscriber::NoSubscriber;
 use tracing_subscriber::layer::{Context, Layer, SubscriberExt};
 
 use crate::deployments::Deployment;
-use crate::rows::{lose_jobs, make_keys, new_job};
+use crate::rows::{lose_jobs, make_keys, new_case, new_job};
 use crate::support::trials::trials;
 
 trials! {
@@ -137,15 +137,8 @@ async fn counted<T>(work: impl Future<Output = Vec<T>>) -> (usize, usize) {
 /// On PostgreSQL only, since statements of SQLite are told by a thread of the driver's own; the code is the same.
 async fn a_page_is_one_statement_however_many_rows_it_has(on: Deployment) {
     let store = on.open().await;
-    let case = |id: &str| NewCase {
-        id: id.into(),
-        document: "{}".into(),
-        report: "{}".into(),
-        tags: vec!["a".into(), "b".into()],
-        mesh_ids: Vec::new(),
-        meshes: Vec::new(),
-        meshing: None,
-    };
+    let case =
+        |id: &str| NewCase { id: id.into(), tags: vec!["a".into(), "b".into()], ..new_case() };
     let id = || uuid::Uuid::now_v7().to_string();
     let parent = id();
     assert_eq!(store.add_case(&case(&parent), 100).await.unwrap(), AddedCase::Stored);

@@ -8,7 +8,7 @@ use tokio::task::JoinSet;
 
 use crate::deployments::Deployment;
 use crate::rows::mesh;
-use crate::rows::{LEASE, blob_count, enqueue, file, new_job, result};
+use crate::rows::{LEASE, blob_count, enqueue, file, new_case, new_job, result};
 use crate::support::trials::trials;
 
 trials! {
@@ -126,13 +126,9 @@ async fn a_case_is_erased_while_jobs_come(on: Deployment) {
     for round in 0..10 {
         let mesh = mesh("of the case", &round.to_string());
         let case = facies::store::NewCase {
-            id: uuid::Uuid::now_v7().to_string(),
-            document: "{}".into(),
-            report: "{}".into(),
-            tags: vec![],
             mesh_ids: vec![mesh.id.clone()],
             meshes: vec![facies::store::NewMesh { standalone: false, ..mesh.clone() }],
-            meshing: None,
+            ..new_case()
         };
         assert_eq!(stores[0].add_case(&case, 100).await.unwrap(), AddedCase::Stored);
         let mut job = new_job("{}", &format!("job {round}"));

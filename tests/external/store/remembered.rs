@@ -4,7 +4,7 @@ use facies::schema::job::JobStatus;
 use facies::store::{AddedCase, Change, Dismissal, NewCase, Point, Reserved};
 
 use crate::deployments::Deployment;
-use crate::rows::{LEASE, enqueue, new_job, result};
+use crate::rows::{LEASE, enqueue, new_case, new_job, result};
 use crate::support::trials::trials;
 
 trials! {
@@ -130,15 +130,7 @@ async fn a_key_belongs_to_the_request_that_used_it_first(on: Deployment) {
 
 async fn what_was_erased_is_remembered_with_all_that_went_with_it(on: Deployment) {
     let store = on.open().await;
-    let case = NewCase {
-        id: uuid::Uuid::now_v7().to_string(),
-        document: "{}".into(),
-        report: "null".into(),
-        tags: Vec::new(),
-        mesh_ids: Vec::new(),
-        meshes: Vec::new(),
-        meshing: None,
-    };
+    let case = NewCase { report: "null".into(), ..new_case() };
     assert_eq!(store.add_case(&case, 100).await.unwrap(), AddedCase::Stored);
     let plan = uuid::Uuid::now_v7().to_string();
     for _ in 0..2 {

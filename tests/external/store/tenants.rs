@@ -1,11 +1,11 @@
 //! Rows of several tenants: each finds its own, and they take turns.
 
 use facies::schema::key::{KeyDocument, Scope};
-use facies::store::{AddedCase, Dismissal, Enqueued, NewCase, Store, StoreError, Tagged};
+use facies::store::{AddedCase, Dismissal, Enqueued, Store, StoreError, Tagged};
 use serde_json::json;
 
 use crate::deployments::Deployment;
-use crate::rows::{LEASE, enqueue, file, mesh, new_job, result};
+use crate::rows::{LEASE, enqueue, file, mesh, new_case, new_job, result};
 use crate::support::trials::trials;
 
 trials! {
@@ -78,15 +78,7 @@ async fn what_is_older_than_its_tenant_keeps_it_is_erased(on: Deployment) {
 
 async fn what_is_asked_for_again_or_tagged_is_kept_from_then_on(on: Deployment) {
     let store = on.open().await.of_tenant("a");
-    let case = NewCase {
-        id: uuid::Uuid::now_v7().to_string(),
-        document: "{}".into(),
-        report: "{}".into(),
-        tags: vec![],
-        mesh_ids: vec![],
-        meshes: vec![],
-        meshing: None,
-    };
+    let case = new_case();
     assert_eq!(store.add_case(&case, 9).await.unwrap(), AddedCase::Stored);
     let mut of_case = new_job("{}", "of the case");
     of_case.case_id = Some(case.id.clone());

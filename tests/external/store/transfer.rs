@@ -12,7 +12,7 @@ use facies::store::{
 
 use crate::deployments::Deployment;
 use crate::rows::mesh;
-use crate::rows::{LEASE, blob_count, enqueue, file, new_job};
+use crate::rows::{LEASE, blob_count, enqueue, file, new_case, new_job};
 use crate::store::made::made;
 use crate::support::trials::trials;
 
@@ -31,13 +31,11 @@ trials! {
 async fn fill(store: &Store) {
     let case_mesh = mesh("of the case", "units=mm");
     let case = NewCase {
-        id: uuid::Uuid::now_v7().to_string(),
         document: "{\"name\":\"Ünï\\u0000\"}".into(),
-        report: "{}".into(),
         tags: vec!["~".into(), "a".into()],
         mesh_ids: vec![case_mesh.id.clone()],
         meshes: vec![case_mesh.clone()],
-        meshing: None,
+        ..new_case()
     };
     assert_eq!(store.add_case(&case, 100).await.unwrap(), AddedCase::Stored);
     assert!(store.add_plan(&case.id, &uuid::Uuid::now_v7().to_string(), "{}").await.unwrap());

@@ -11,7 +11,7 @@ use nalgebra::Matrix3;
 
 use super::basis::{Basis, Local};
 use super::tissue_points::TissuePoint;
-use crate::mesh::{Vector, VolumeMesh, bounds_of};
+use crate::mesh::{EMPTY_BOUNDS, Vector, VolumeMesh, bounds_of};
 use crate::solver::element_connectivity::ElementConnectivity;
 
 /// The spacing chosen is this many mean edges of the mesh at least: the points at which tissue is
@@ -121,10 +121,9 @@ impl Lattice {
         control: ControlPoints,
     ) -> Lattice {
         let frame = Frame::principal(points);
-        let empty = [f64::INFINITY, f64::NEG_INFINITY].map(Vector::repeat);
         let of_cells = mesh.cells.iter().flat_map(|(_, nodes)| nodes);
         let of_cells = of_cells.map(|&node| frame.local(&mesh.nodes[node as usize]));
-        let [low, high] = bounds_of(of_cells).unwrap_or(empty);
+        let [low, high] = bounds_of(of_cells).unwrap_or(EMPTY_BOUNDS);
         let basis = |axis: usize, spans: usize| {
             Basis::clamped(degrees[axis], spans, [low[axis], high[axis]])
         };

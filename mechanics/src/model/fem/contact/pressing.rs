@@ -122,15 +122,13 @@ impl<'a> ContactProblem<'a> {
             if alternates {
                 rounds.look_half_way();
             } else {
-                let mut new = match is_near && !is_exact {
-                    true => 0,
-                    false => rounds.look(Alike::Nearly),
-                };
-                if new == 0 && !is_exact && (is_near || rounds.repeats) {
+                let skips = is_near && !is_exact;
+                let mut is_quiet = skips || rounds.finds_nothing(Alike::Nearly);
+                if is_quiet && !is_exact {
                     is_exact = true;
-                    new = rounds.look(Alike::Exactly);
+                    is_quiet = rounds.finds_nothing(Alike::Exactly);
                 }
-                if new == 0 && rounds.repeats {
+                if is_quiet {
                     last_moved_mm = 0.0;
                     break;
                 }
@@ -231,6 +229,11 @@ impl<'a, 'b> Rounds<'a, 'b> {
         let new = self.look_at(&displacement, alike);
         self.displacement = displacement;
         new
+    }
+
+    /// Whether that finds nothing new, and the set repeats.
+    fn finds_nothing(&mut self, alike: Alike) -> bool {
+        self.look(alike) == 0 && self.repeats
     }
 
     /// The same half way between this answer and the one before.
