@@ -48,7 +48,7 @@ pub struct Deepest {
 
 /// The deepest point of a surface that passes through itself. Its points have to be finite.
 pub(super) fn deepest_overlap(surface: &TriangleSurface) -> Option<Deepest> {
-    let passes = |pair: &TrianglePair| pass_inside(surface, pair, TOUCHING_MM);
+    let passes = |pair: &TrianglePair| pass_inside(surface, pair, TOLD_MM);
     deepest(surface, &self_crossings(surface, passes).pairs)
 }
 

@@ -139,11 +139,6 @@ impl<'a> FacingSurfaces<'a> {
         (largest.max(self.movement_of_bones()), edge)
     }
 
-    /// Whether there is any bone beside the tissue.
-    pub fn has_bones(&self) -> bool {
-        !self.bones.is_empty()
-    }
-
     /// The largest movement of bones, in mm.
     pub fn movement_of_bones(&self) -> f64 {
         self.bones.iter().map(|beside| beside.bone.largest_movement()).fold(0.0, f64::max)

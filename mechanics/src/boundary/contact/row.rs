@@ -10,17 +10,18 @@ use crate::mesh::Vector;
 pub enum Alike {
     /// While points are looked for, so that a point that slides over an edge does not alternate between faces.
     Nearly,
-    /// In an answer, on bone: a force along a normal of before would hold as friction does.
+    /// In an answer: a force along a normal of before would hold as friction does.
     Exactly,
 }
 
 impl Alike {
-    /// Gaps differ by less than this, in mm, and the cosine of the normals is above this: 2.6 or 0.02 degrees. Tissue turns a little with
-    /// every answer, bone rests.
+    /// Gaps differ by less than this, in mm, and the cosine of the normals is above this: 2.6, 0.1 or 0.02 degrees. Tissue turns a
+    /// little with every answer, bone rests.
     fn bounds(self, is_on_bone: bool) -> (f64, f64) {
         match (self, is_on_bone) {
+            (Alike::Nearly, _) => (1e-3, 0.999),
+            (Alike::Exactly, false) => (1e-4, 1.0 - 1.5e-6),
             (Alike::Exactly, true) => (1e-5, 1.0 - 6e-8),
-            _ => (1e-3, 0.999),
         }
     }
 }

@@ -222,7 +222,12 @@ fn jaws_that_close_by_twice_their_slit_and_four_times_their_cells_press_and_do_n
         let case = jaws(size);
         let found = solve(&case, &raised(10.0), &unilateral());
         let touch = found.contact.as_ref().unwrap();
-        assert!(touch.overlap.is_none() && touch.largest_penetration() < 1e-8, "{touch:?}");
+        let penetration = touch.largest_penetration();
+        assert!(
+            touch.overlap.is_none() && penetration < 1e-8,
+            "{:?} {penetration:e}",
+            touch.overlap
+        );
         // In front, near the hinge the slit stays open.
         assert!(touch.area() > 230.0 && touch.area() < 300.0, "{}", touch.area());
         let forces = touch.contact.pressed.iter().map(|pressed| pressed.force);

@@ -5,7 +5,8 @@ use std::num::NonZeroU32;
 
 use mechanics::mesh::sample::block;
 use mechanics::mesh::{CellShape, Vector};
-use mechanics::prediction::{Advance, Case, CaseSegment, Method, Settings};
+use mechanics::plan::{PlannedSegment, RigidMovement};
+use mechanics::prediction::{Advance, Case, CaseSegment, Method, Plan, Settings};
 
 use super::contact::{
     PRESSING, at, bar, blocks, force, jaws, pushed, raised, together, unilateral,
@@ -174,4 +175,28 @@ fn a_blade_that_passes_between_the_nodes_of_tissue_is_reported() {
         let outside = solve(&case, &raised(-1.0), &settings);
         assert!(outside.contact.is_none());
     }
+}
+
+/// A block that turns by ten degrees onto another one: points alternated between two states, and it ended as `contact-unsettled`.
+#[test]
+fn a_block_that_turns_onto_tissue_settles_between_two_states() {
+    let lower = block(Vector::new(20.0, 12.0, 8.0), [10, 6, 4], CellShape::Hex8);
+    let upper = block(Vector::new(14.0, 8.0, 6.0), [7, 4, 3], CellShape::Hex8);
+    let mesh = together(&[("lower", lower), ("upper", at(upper, [3.0, 2.0, 8.2]))]);
+    let case = Case {
+        segments: vec![CaseSegment { name: "jaw".to_owned(), nodes: set("upper/z_max") }],
+        fixed: vec![set("lower/z_min")],
+        skin: Some(set("lower/z_max")),
+        ..case_of(mesh, material(15.0, 0.45))
+    };
+    let turn = Vector::new(0.0, 10f64.to_radians(), 0.0);
+    let pivot = Vector::new(10.0, 6.0, 8.0);
+    let movement = RigidMovement::about_pivot(pivot, turn, Vector::new(0.0, 0.0, -1.5));
+    let segments = vec![PlannedSegment { name: "jaw".to_owned(), movement }];
+    let plan = Plan { segments, ..Plan::default() };
+    let found = solve(&case, &plan, &at_finite_strain());
+    let touch = found.contact.as_ref().unwrap();
+    assert!(touch.contact.last_moved_mm < 0.05, "{}", touch.contact.last_moved_mm);
+    assert!(touch.largest_penetration() < 0.05, "{}", touch.largest_penetration());
+    assert!((force(&found, "fixed") + force(&found, "jaw")).norm() < 1e-3);
 }

@@ -14,6 +14,6 @@ mod touch;
 pub(super) use active_set::{ActiveSet, MOST_PASSES, Task};
 pub(super) use equations::FreeUnknowns;
 pub(super) use kept_rows::KeptRows;
+pub(super) use pressing::{ALTERNATES, MOST_ROUNDS, UNSETTLED_MM};
 pub use pressing::{ContactProblem, InContact, Pressing, SETTLED_MM};
-pub(super) use pressing::{MOST_ROUNDS, UNSETTLED_MM};
 pub use touch::{Contact, Effort, PressedStep, PressingRow, forces_of};

@@ -21,6 +21,9 @@ pub const UNSETTLED_MM: f64 = 0.1;
 /// How often closest points are looked for again at the end of the movement.
 pub const MOST_ROUNDS: usize = 15;
 
+/// How often they are with the normals of the answer: surfaces of tissue turn with it.
+const EXACT_ROUNDS: usize = 12;
+
 /// What moves goes by at most this part of its longest edges in a step; the second where the first does not settle.
 const STEPS: [f64; 2] = [0.5, 0.125];
 
@@ -34,7 +37,7 @@ const NEAR_MM: f64 = 0.05;
 
 /// Closest points whose answer moves by more than this part of what it moved by before alternate between two states: they are looked
 /// for half way between these.
-const ALTERNATES: f64 = 0.5;
+pub const ALTERNATES: f64 = 0.5;
 
 /// Closest points that move the answer by less than this, in mm, are not looked for again; by more in the end, they are reported.
 pub const SETTLED_MM: f64 = 0.005;
@@ -105,38 +108,20 @@ impl<'a> ContactProblem<'a> {
         }
     }
 
-    /// Looks for closest points at the end of the movement until they no longer move the answer; how far they do, in mm.
+    /// Looks for closest points at the end of the movement until they no longer move the answer, with the normals of that answer if
+    /// that ends; how far they do, in mm.
     fn settle_points(
         &self,
         rounds: &mut Rounds,
         progress: &dyn Progress,
     ) -> Result<f64, ModelError> {
-        let mut last_moved_mm = f64::INFINITY;
-        let mut before_mm = f64::INFINITY;
-        // Whether rows have the normals of the bone where they press.
-        let mut is_exact = !self.surfaces.has_bones();
-        for _ in 0..MOST_ROUNDS {
-            let alternates = last_moved_mm > ALTERNATES * before_mm;
-            let is_near = last_moved_mm < NEAR_MM;
-            before_mm = last_moved_mm;
-            if alternates {
-                rounds.look_half_way();
-            } else {
-                let skips = is_near && !is_exact;
-                let mut is_quiet = skips || rounds.finds_nothing(Alike::Nearly);
-                if is_quiet && !is_exact {
-                    is_exact = true;
-                    is_quiet = rounds.finds_nothing(Alike::Exactly);
-                }
-                if is_quiet {
-                    last_moved_mm = 0.0;
-                    break;
-                }
-            }
-            let residual = if is_near { NEARLY } else { ON_THE_WAY };
-            last_moved_mm = rounds.settle(residual, FEW_PASSES, progress)?;
-            if is_exact && is_near && rounds.repeats && last_moved_mm < SETTLED_MM {
-                break;
+        let nearly = (Alike::Nearly, MOST_ROUNDS);
+        let mut last_moved_mm = rounds.settle_rows(nearly, NEAR_MM, progress)?;
+        if last_moved_mm < NEAR_MM {
+            let exactly = (Alike::Exactly, EXACT_ROUNDS);
+            last_moved_mm = rounds.settle_rows(exactly, SETTLED_MM, progress)?;
+            if last_moved_mm > SETTLED_MM {
+                last_moved_mm = rounds.settle_rows(nearly, SETTLED_MM, progress)?;
             }
         }
         if last_moved_mm > UNSETTLED_MM {
@@ -237,10 +222,10 @@ impl<'a, 'b> Rounds<'a, 'b> {
     }
 
     /// The same half way between this answer and the one before.
-    fn look_half_way(&mut self) {
+    fn look_half_way(&mut self, alike: Alike) {
         let pairs = self.displacement.iter().zip(&self.before);
         let half_way: Vec<Vector> = pairs.map(|(u, before)| (u + before) * 0.5).collect();
-        self.look_at(&half_way, Alike::Nearly);
+        self.look_at(&half_way, alike);
     }
 
     fn look_at(&mut self, displacement: &[Vector], alike: Alike) -> usize {
@@ -261,6 +246,31 @@ impl<'a, 'b> Rounds<'a, 'b> {
         let free = self.problem.free();
         let closes = |row: &ContactRow| row.gap_after_part(free, self.share) < -CLOSED_MM;
         self.has_touched() || self.kept_rows.rows.iter().any(closes)
+    }
+
+    /// Looks for closest points at most so often, until they move the answer by less than this, in mm; how far the last ones do.
+    fn settle_rows(
+        &mut self,
+        (alike, most): (Alike, usize),
+        until_mm: f64,
+        progress: &dyn Progress,
+    ) -> Result<f64, ModelError> {
+        let (mut before_mm, mut last_mm) = (f64::INFINITY, f64::INFINITY);
+        for _ in 0..most {
+            if last_mm > ALTERNATES * before_mm {
+                self.look_half_way(alike);
+            } else if self.finds_nothing(alike) {
+                return Ok(0.0);
+            }
+            let is_near = alike == Alike::Exactly || last_mm < NEAR_MM;
+            let residual = if is_near { NEARLY } else { ON_THE_WAY };
+            before_mm = last_mm;
+            last_mm = self.settle(residual, FEW_PASSES, progress)?;
+            if self.repeats && last_mm < until_mm {
+                break;
+            }
+        }
+        Ok(last_mm)
     }
 
     /// The set that presses after at most so many passes, for rows that stay as they are, and the answer with it; how far the

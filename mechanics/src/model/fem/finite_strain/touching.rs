@@ -12,8 +12,8 @@ use crate::boundary::contact::{Alike, CLOSED_MM, FacingSurfaces, with_pressing};
 use crate::mesh::Vector;
 use crate::model::dofs::DofMap;
 use crate::model::fem::contact::{
-    ActiveSet, Contact, Effort, FreeUnknowns, KeptRows, MOST_PASSES, MOST_ROUNDS, PressedStep,
-    Task, UNSETTLED_MM, forces_of,
+    ALTERNATES, ActiveSet, Contact, Effort, FreeUnknowns, KeptRows, MOST_PASSES, MOST_ROUNDS,
+    PressedStep, Task, UNSETTLED_MM, forces_of,
 };
 use crate::model::problem::ModelError;
 use crate::progress::Progress;
@@ -24,8 +24,11 @@ use crate::solver::preconditioned::Preconditioned;
 /// Relative residual of what contact adds to a step.
 const LOOSELY: f64 = 1e-3;
 
-/// How often rows take the normals of the bone where they press once it rests: each time Newton's method goes on.
-const EXACT_ROUNDS: usize = 4;
+/// How often rows take the normals of the state once bones rest: each time Newton's method goes on.
+const EXACT_ROUNDS: usize = 6;
+
+/// Rounds after which what points move the state by says that they alternate: before, it is tissue that comes to rest.
+const FIRST_ROUNDS: usize = 2;
 
 /// What touches, at one state of tissue and bones.
 #[derive(Clone)]
@@ -39,10 +42,13 @@ pub(super) struct Touching<'a> {
     pub most_ahead: f64,
     /// Rounds since the bones rest.
     late_rounds: usize,
-    /// Rounds of these in which rows took the normals of the bone where they press.
+    /// Rounds of these in which rows took the normals of the state.
     exact_rounds: usize,
     /// Rows that said something new in the last round.
     new: usize,
+    /// The displacement of the last round, and by how much it differs from that of the round before, in mm.
+    last: Vec<Vector>,
+    last_moved_mm: f64,
     /// Whether the set that presses repeated at the last step.
     repeats: bool,
     effort: Effort,
@@ -89,6 +95,8 @@ impl<'a> Touching<'a> {
             late_rounds: 0,
             exact_rounds: 0,
             new: 0,
+            last: Vec::new(),
+            last_moved_mm: 0.0,
             repeats: true,
             effort: Effort::default(),
             at_load_steps: Vec::new(),
@@ -105,12 +113,13 @@ impl<'a> Touching<'a> {
         if self.late_rounds > MOST_ROUNDS {
             return;
         }
+        let half_way = self.half_way(displacement);
+        let displacement = half_way.as_deref().unwrap_or(displacement);
         let rows = self.kept_rows.rows.iter().zip(&self.multipliers);
         let before: BTreeMap<u32, f64> = rows.map(|(row, m)| (row.node, *m)).collect();
         let mut found = self.surfaces.rows(displacement, share);
         found.retain(|row| !self.unknowns.equation(row).is_empty());
-        let has_bones = self.surfaces.has_bones();
-        let is_late = bones_rest && has_bones && self.exact_rounds < EXACT_ROUNDS;
+        let is_late = bones_rest && self.exact_rounds < EXACT_ROUNDS;
         let again = is_late.then(|| found.clone());
         self.new = self.kept_rows.take(found, Alike::Nearly, displacement, share).new;
         if let (0, Some(found)) = (self.new, again) {
@@ -120,6 +129,16 @@ impl<'a> Touching<'a> {
         let rows = self.kept_rows.rows.iter();
         self.multipliers =
             rows.map(|row| before.get(&row.node).copied().unwrap_or_default()).collect();
+    }
+
+    /// Half way between a displacement of tissue and that of the round before, where points alternate between two states.
+    fn half_way(&mut self, displacement: &[Vector]) -> Option<Vec<Vector>> {
+        let last = std::mem::replace(&mut self.last, displacement.to_vec());
+        let pairs = || displacement.iter().zip(&last);
+        let moved_mm = pairs().map(|(u, last)| (u - last).norm()).fold(0.0, f64::max);
+        let before_mm = std::mem::replace(&mut self.last_moved_mm, moved_mm);
+        let alternates = self.late_rounds > FIRST_ROUNDS && moved_mm > ALTERNATES * before_mm;
+        alternates.then(|| pairs().map(|(u, last)| (u + last) * 0.5).collect())
     }
 
     /// Whether nothing of contact is left to do after a displacement and a share of the movement of bones.
