@@ -49,6 +49,7 @@ mod stiff_layer;
 mod suspect_constants;
 mod unconstrained;
 mod walls;
+mod wrinkles;
 
 use std::collections::BTreeMap;
 
@@ -210,6 +211,7 @@ fn described(scene: &Scene, answer: Answer, progress: &dyn Progress) -> Predicti
         warnings.extend(inverted_cells(&det_f));
     }
     warnings.extend(far_skin::outrun(scene, &equilibrium.displacement));
+    warnings.extend(wrinkles::wrinkles(scene, &equilibrium.displacement));
     warnings.extend(small_strain::left(scene, &deformation, &nonlinearity));
     warnings.extend(exponential_tissue::warnings(scene, &equilibrium.displacement));
     warnings.extend(off_wall::left_wall(scene, &equilibrium.displacement));

@@ -5,7 +5,7 @@ use mechanics::mesh::Warning;
 
 /// Codes that precede all others, in this order: those of doubtful input or measurements, those of a result that
 /// has larger errors than reported elsewhere, and those of an impossible one.
-const GRAVE: [&str; 63] = [
+const GRAVE: [&str; 64] = [
     "nothing-moves",
     "nothing-performed",
     "units-suspect",
@@ -53,6 +53,7 @@ const GRAVE: [&str; 63] = [
     "outside-second-order-range",
     "nonlinearity-unknown",
     "another-equilibrium",
+    "membrane-wrinkles",
     "bulk-in-all-cells",
     "skin-outruns-plan",
     "skin-overlaps",

@@ -38,6 +38,18 @@ pub struct Membrane {
     pub lines: Vec<Vector>,
 }
 
+/// A triangle of the sheet, and how much it is pressed along itself.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PressedTriangle {
+    pub nodes: [u32; 3],
+    /// At rest, in mm², mm and mm.
+    pub area: f64,
+    pub edge: f64,
+    pub centre: Vector,
+    /// Against the least principal stress, in mN/mm; negative where it is stretched in all directions.
+    pub force: f64,
+}
+
 /// What a triangle needs for its matrix.
 #[derive(Clone)]
 pub(super) struct Triangle {
@@ -121,6 +133,29 @@ impl Membrane {
             let stress = h * triangle.tensor.stress(&(h.transpose() * h * 0.5));
             triangle.add_forces(nodes, &stress, forces);
         }
+    }
+
+    /// How much each triangle of three nodes is pressed along itself after a displacement of the nodes.
+    pub fn pressed<'a>(
+        &'a self,
+        mesh: &'a VolumeMesh,
+        displacement: &'a [Vector],
+    ) -> impl Iterator<Item = PressedTriangle> + 'a {
+        self.in_space(mesh).map(|(triangle, nodes)| {
+            let at_rest = nodes.map(|node| mesh.nodes[node as usize]);
+            let corners = nodes.map(|node| mesh.nodes[node as usize] + displacement[node as usize]);
+            // The normal has the eigenvalue 0.
+            let least = triangle.at(&corners).stress.symmetric_eigenvalues().min();
+            let area = triangle.volume / self.sheet.thickness();
+            let [a, b, c] = at_rest;
+            PressedTriangle {
+                nodes,
+                area,
+                edge: ((b - a).norm() + (c - b).norm() + (a - c).norm()) / 3.0,
+                centre: (a + b + c) / 3.0,
+                force: self.sheet.thickness() * (-least - triangle.tension),
+            }
+        })
     }
 
     /// Triangles with an area, and their nodes.

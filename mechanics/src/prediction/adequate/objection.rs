@@ -8,6 +8,7 @@
 //! | `skin-overlaps` | without contact, where it is deeper than at rest by more than is accepted, or nobody knows how deep | no |
 //! | `contact-overlap`, `contact-points-move` | by more than is accepted | no |
 //! | `contact-chatter` | always: there contact may pull | no |
+//! | `membrane-wrinkles` | always: no mesh is fine enough | no |
 //! | `solved-loosely` | always: estimates are of exact solutions | no |
 //!
 //! Others are contained in the estimates (`numerical-error-large`, `large-strain`, `locking`), say that an estimate is not known,
@@ -23,6 +24,7 @@ use crate::prediction::far_skin;
 use crate::prediction::loosely;
 use crate::prediction::scene::Scene;
 use crate::prediction::skin_overlap::{Deepest, SKIN_OVERLAPS, added_overlap, skin_overlap};
+use crate::prediction::wrinkles::wrinkles;
 
 /// An answer that may be adequate.
 #[derive(Clone, Copy)]
@@ -87,6 +89,7 @@ impl<'a> CandidateAnswer<'a> {
         let of_all = unstable
             .cloned()
             .chain(loosely(scene, &equilibrium.solver))
+            .chain(wrinkles(scene, &displacement))
             .chain(touches.filter(|own| speaks_against_contact(own, accepted)))
             .chain(without_contact.then(|| overlap(scene, &displacement, accepted)).flatten());
         let of_model = of_model.map(|warning| Objection { warning, is_of_model: true });
