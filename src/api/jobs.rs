@@ -106,14 +106,14 @@ async fn create(service: Service, caller: Caller, request: Request) -> ApiResult
     }
     let asked = KeyedRequest::at(&service, &headers, "/v1/jobs", &[&bytes])?;
     if let Some(known) = asked.known(&service).await?
-        && service.store.job(&known.id).await?.is_some()
+        && renewed(&service, &known.id).await?
     {
         return created(&service, &known.id, known.was_found, wait).await;
     }
     let mut accepted = job_input::of(&service, document).await?;
     // What comes before this changes nothing, so that it ends with its client.
     let new = asked.reserve(&service).await?;
-    if new.is_known && service.store.job(&new.id).await?.is_some() {
+    if new.is_known && renewed(&service, &new.id).await? {
         return created(&service, &new.id, new.was_found, wait).await;
     }
     accepted.id.clone_from(&new.id);
@@ -148,6 +148,12 @@ async fn enqueued(service: &Service, accepted: &NewJob, new: &NewId) -> ApiResul
     let detail =
         "equal jobs of other clients are removed as fast as they are found; send the request again";
     Err(ApiError::new(ErrorCode::Conflict, detail))
+}
+
+/// Begins the retention of a job anew that is asked for again; false where there is none.
+async fn renewed(service: &Service, id: &str) -> ApiResult<bool> {
+    let tagged = service.store.change_tags(id, &[], &[], 0).await?;
+    Ok(tagged != Tagged::NotFound)
 }
 
 /// Gives a job that was found the tags of the request; false where it was removed meanwhile.

@@ -13,6 +13,8 @@ use serde_json::Value;
 
 use super::serve::{ServeError, Server, stop_signal};
 use crate::config::Config;
+use crate::jobs::JobError;
+use crate::jobs::result::folder;
 use crate::telemetry;
 use crate::worker::slots::Workers;
 use client::{Client, ClientError, Part};
@@ -22,6 +24,10 @@ use mechanics::mesh::half_head::{STANDARD_FINENESS, half_head};
 use mechanics::mesh::refinement::refine;
 use mechanics::mesh::{CellShape, TriangleSurface};
 use report::Report;
+
+/// The folder of the face that smiles, within that of the results.
+const FACE: &str = "face";
+const RESULT: &str = "result.json";
 
 /// How often the state of a job is asked for.
 const LOOK: Duration = Duration::from_millis(100);
@@ -52,6 +58,8 @@ pub enum DemoError {
     Write(#[from] WriteError),
     #[error("the predicted skin: {0}")]
     Skin(#[from] FormatError),
+    #[error(transparent)]
+    Folder(#[from] JobError),
     #[error("{path}: {source}")]
     File { path: PathBuf, source: std::io::Error },
     #[error("job {job} is {status}: {detail}")]
@@ -64,6 +72,11 @@ impl DemoError {
     /// Whether another setting would help.
     pub fn is_setting(&self) -> bool {
         matches!(self, DemoError::Serve(error) if error.is_setting())
+    }
+
+    /// Whether its folder has files that it did not write.
+    pub fn is_refused(&self) -> bool {
+        matches!(self, DemoError::Folder(JobError::Refused(_)))
     }
 
     /// Whether everything works and a job failed nevertheless.
@@ -88,6 +101,10 @@ pub fn run(arguments: &Arguments) -> Result<(), DemoError> {
 async fn with_own_service(
     arguments: &Arguments,
 ) -> Result<(Workers, Result<(), DemoError>), DemoError> {
+    let face = arguments.out.join(FACE);
+    for (folder, names) in [(&arguments.out, &scene::FILES[..]), (&face, &scene::FACE_FILES[..])] {
+        folder::refuse_foreign(folder, names.iter().copied().chain([RESULT]))?;
+    }
     let data = arguments.data.clone().unwrap_or_else(|| arguments.out.join("service"));
     let config = Config::new(|name| setting(name, arguments.bind.as_deref(), &data))
         .map_err(ServeError::from)?;
@@ -140,7 +157,7 @@ async fn show(arguments: &Arguments, client: Client) -> Result<[FinishedJob; 4],
     let face = generic_face(settings);
     let form = scene::face_form(&face)?;
     let smile = predict(&client, &form, "face that smiles", scene::smile_of).await?;
-    let folder = arguments.out.join("face");
+    let folder = arguments.out.join(FACE);
     files.extend(fetch_files(&client, &smile, &scene::FACE_FILES, &folder).await?);
 
     // 4. What came out.
@@ -305,12 +322,10 @@ async fn fetch_files(
     std::fs::create_dir_all(folder)
         .map_err(|source| DemoError::File { path: folder.to_owned(), source })?;
     let mut written = Vec::new();
-    for &name in names.iter().chain(&["result.json"]) {
+    for &name in names.iter().chain(&[RESULT]) {
         let bytes = client.bytes(&job.file(name)).await?;
-        let path = folder.join(name);
-        std::fs::write(&path, &bytes)
-            .map_err(|source| DemoError::File { path: path.clone(), source })?;
-        written.push(path);
+        folder::put(folder, name, &bytes)?;
+        written.push(folder.join(name));
     }
     Ok(written)
 }

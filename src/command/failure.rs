@@ -67,6 +67,7 @@ impl CommandError {
             CommandError::Verdict { outcome, .. } => outcome.exit_code(),
             CommandError::Demo(error) if error.is_failed_job() => FAILED,
             CommandError::Demo(error) if error.is_setting() => CONFIGURATION,
+            CommandError::Demo(error) if error.is_refused() => REFUSED,
             CommandError::Serve(error) if error.is_setting() => CONFIGURATION,
             CommandError::Health(error) if error.is_setting() => CONFIGURATION,
             CommandError::Admin(error) if error.is_setting() => CONFIGURATION,

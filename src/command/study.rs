@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::claim::Claim;
-use super::documents::{CaseFile, read};
+use super::documents::{CaseFile, is_same, read};
 use super::failure::CommandError;
 use super::files::{FileSource, ScaleArguments};
 use super::screen::{print_files, print_warnings, run_with_progress};
@@ -108,6 +108,7 @@ pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
     if arguments.stability {
         return stability::run(&arguments.out, &methods::available());
     }
+    arguments.refuse_own_baseline()?;
     let mut input = arguments.input()?;
     let limits = Limits::default();
     let sources = FileSource::of_cases(input.cases.values(), arguments.scale);
@@ -235,6 +236,18 @@ impl Arguments {
             cases.insert(item.case.clone(), case);
         }
         Ok(())
+    }
+
+    /// The report would take the place of the one that it is compared with.
+    fn refuse_own_baseline(&self) -> Result<(), CommandError> {
+        let report = self.out.join(REPORT_JSON);
+        match &self.baseline {
+            Some(baseline) if is_same(baseline, &report) => Err(CommandError::Usage(format!(
+                "the baseline {} would be replaced by the new report: give another folder",
+                baseline.display()
+            ))),
+            _ => Ok(()),
+        }
     }
 
     /// The report of the baseline. One that is not there is no mistake of use: the outcome says so.

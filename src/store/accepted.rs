@@ -6,6 +6,7 @@ use super::database::{Transaction, is_reference, query};
 use super::events::record;
 use super::job_tags::insert_tags;
 use super::membership::learn;
+use super::referred::ReferredRows;
 use super::{Store, StoreError};
 use crate::schema::engine::EngineDocument;
 use crate::schema::job::JobStatus;
@@ -99,16 +100,22 @@ impl Store {
     /// Accepts a job, unless one with the same inputs is known.
     pub async fn enqueue(&self, job: &NewJob, longest_queue: i64) -> Result<Enqueued, StoreError> {
         let mut transaction = self.database.begin().await?;
-        let known = query(KNOWN)
+        let found = query(KNOWN)
             .bind(self.key(job))
             .bind(self.tenant())
             .fetch_optional(&mut transaction)
             .await?;
-        if let Some(row) = known {
+        let mut known = None;
+        if let Some(row) = found {
             let id: String = row.try_get(0)?;
             if !row.try_get::<bool, _>(1)? {
                 return Ok(Enqueued::Known(id));
             }
+            known = Some(id);
+        }
+        self.enter(&mut transaction).await?;
+        hold_cases(&mut transaction, job).await?;
+        if let Some(id) = known {
             query(RELEASED).bind(id).execute(&mut transaction).await?;
         }
         if self.is_queue_full(&mut transaction, longest_queue).await? {
@@ -117,7 +124,6 @@ impl Store {
         let Some(waits_for) = self.pending_meshing(&mut transaction, job).await? else {
             return Ok(Enqueued::NotMeshed);
         };
-        self.enter(&mut transaction).await?;
         match self.insert_job(&mut transaction, job, &waits_for).await {
             Ok(true) => {
                 record(&mut transaction, &job.id).await?;
@@ -171,7 +177,6 @@ impl Store {
         job: &NewJob,
     ) -> Result<Option<String>, sqlx::Error> {
         let Some(meshing) = &job.waits_for else { return Ok(Some(String::new())) };
-        query(CASE).bind(&job.case_id).fetch_optional(&mut *transaction).await?;
         let row = query(MESHING).bind(meshing).bind(self.tenant());
         let Some(row) = row.fetch_optional(&mut *transaction).await? else { return Ok(None) };
         let status: String = row.try_get(0)?;
@@ -219,7 +224,7 @@ impl Store {
         if let Some((cohort, version)) = &job.learns_from {
             learn(transaction, &job.id, (cohort, *version)).await?;
         }
-        for mesh in &job.mesh_ids {
+        for mesh in job.mesh_ids.iter().collect::<BTreeSet<_>>() {
             query(
                 "INSERT INTO job_meshes (job_id, mesh_id) VALUES ($1, $2) ON CONFLICT DO NOTHING",
             )
@@ -230,4 +235,13 @@ impl Store {
         }
         Ok(true)
     }
+}
+
+/// Holds the cases of a job before any job is held: the one that a meshing is to complete as the end of that does.
+async fn hold_cases(transaction: &mut Transaction, job: &NewJob) -> Result<(), sqlx::Error> {
+    if job.waits_for.is_some() {
+        query(CASE).bind(&job.case_id).fetch_optional(&mut *transaction).await?;
+    }
+    let cases = job.case_id.iter().chain(&job.shared_cases).map(String::as_str).collect();
+    ReferredRows { cases, ..ReferredRows::default() }.hold(transaction).await
 }

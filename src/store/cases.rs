@@ -4,8 +4,9 @@ use super::accepted::NewJob;
 use super::database::{Row, Transaction, is_duplicate, is_reference, query};
 use super::events::record;
 use super::made::column;
-use super::membership::{Leaving, leave};
+use super::membership::{Leaving, hold_cohorts, leave};
 use super::references::{Content, hashes};
+use super::referred::ReferredRows;
 use super::{NewMesh, Store, StoreError};
 use crate::schema::job::JobStatus;
 
@@ -83,6 +84,8 @@ const FILES_OF_CASE: &str = "SELECT job_files.blob FROM job_files \
 /// Jobs of several cases; those of one go with it.
 const DELETE_SHARED_JOBS: &str =
     "DELETE FROM jobs WHERE id IN (SELECT job_id FROM job_cases WHERE case_id = $1)";
+/// Locked before their tombstones are made, as by their own erasure.
+const PLANS_OF_CASE: &str = "SELECT id FROM plans WHERE case_id = $1 ORDER BY id FOR UPDATE";
 /// Locked first, so that a job of the case is either published by now or finds itself gone.
 const JOBS_OF_CASE: &str = "SELECT id FROM jobs WHERE case_id = $1 \
      OR id IN (SELECT job_id FROM job_cases WHERE case_id = $1) ORDER BY id FOR UPDATE";
@@ -216,14 +219,19 @@ impl Store {
         if version.is_some_and(|version| version != found) {
             return Ok(Change::OtherVersion(found));
         }
+        column(&mut transaction, PLANS_OF_CASE, id).await?;
         let jobs = column(&mut transaction, JOBS_OF_CASE, id).await?;
         if age > 0 && !self.is_old_case(&mut transaction, id, age).await? {
             return Ok(Change::OtherVersion(found));
         }
         let mut blobs = column(&mut transaction, FILES_OF_CASE, id).await?;
+        let leaving = Leaving::Case(id);
+        let is_member = hold_cohorts(&mut transaction, leaving).await?;
         let meshes = column(&mut transaction, MESHES_OF_CASE, id).await?;
         self.insert_tombstones_of_case(&mut transaction, id).await?;
-        leave(&mut transaction, Leaving::Case(id)).await?;
+        if is_member {
+            leave(&mut transaction, leaving).await?;
+        }
         query(DELETE_SHARED_JOBS).bind(id).execute(&mut transaction).await?;
         query("DELETE FROM cases WHERE id = $1").bind(id).execute(&mut transaction).await?;
         blobs.extend(self.remove_unused(&mut transaction, meshes).await?);
@@ -239,9 +247,15 @@ impl Store {
         transaction: &mut Transaction,
         case: &NewCase,
     ) -> Result<(), sqlx::Error> {
+        if case.meshing.is_some() {
+            self.enter(transaction).await?;
+        }
         for mesh in &case.meshes {
             self.insert_mesh(transaction, mesh).await?;
         }
+        let read = case.meshing.iter().flat_map(|job| &job.mesh_ids);
+        let meshes = case.mesh_ids.iter().chain(read).map(String::as_str).collect();
+        ReferredRows { meshes, ..ReferredRows::default() }.hold(transaction).await?;
         query(INSERT)
             .bind(&case.id)
             .bind(&case.document)
@@ -259,7 +273,6 @@ impl Store {
         }
         refer(transaction, &case.id, &case.mesh_ids).await?;
         if let Some(job) = &case.meshing {
-            self.enter(transaction).await?;
             self.insert_job(transaction, job, "").await?;
             record(transaction, &job.id).await?;
         }

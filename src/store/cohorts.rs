@@ -4,6 +4,7 @@
 use super::cases::{AFTER_ALL, Change};
 use super::database::{Row, Transaction, is_duplicate, is_reference, query};
 use super::made::column;
+use super::referred::ReferredRows;
 use super::{Store, StoreError};
 use crate::schema::job::JobStatus;
 
@@ -146,6 +147,13 @@ impl Store {
         transaction: &mut Transaction,
         cohort: &NewCohort,
     ) -> Result<(), sqlx::Error> {
+        let mut referred = ReferredRows::default();
+        for member in &cohort.members {
+            referred.cases.insert(&member.case_id);
+            referred.jobs.insert(&member.job_id);
+            referred.meshes.insert(&member.mesh_id);
+        }
+        referred.hold(transaction).await?;
         query(INSERT)
             .bind(&cohort.id)
             .bind(self.tenant())

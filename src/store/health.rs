@@ -3,6 +3,7 @@
 use std::time::{Duration, Instant};
 
 use super::database::{is_read_only, query};
+use super::spare::free_bytes;
 use super::{Store, StoreError};
 
 const CLOCK: &str = "SELECT now_ms FROM clock";
@@ -65,7 +66,6 @@ impl Store {
 
     /// Bytes free for this user on the disk of the data folder.
     pub fn free_space(&self) -> Result<u64, StoreError> {
-        let disk = rustix::fs::statvfs(&self.folder).map_err(std::io::Error::from)?;
-        Ok(disk.f_bavail.saturating_mul(disk.f_frsize))
+        Ok(free_bytes(&self.folder)?)
     }
 }

@@ -3,9 +3,9 @@
 use super::cases::AFTER_ALL;
 use super::database::{Row, Transaction, query};
 use super::events::record;
-use super::made::meshes_of_job;
-use super::membership::{Leaving, forget_model, leave};
-use super::waiting::fail_waiting;
+use super::made::{column, meshes_of_job};
+use super::membership::{Leaving, forget_model, hold_cohorts, leave};
+use super::waiting::{fail_waiting, hold_case};
 use super::{Store, StoreError, tenants};
 use crate::schema::job::JobStatus;
 
@@ -107,8 +107,7 @@ const WITH_ROWS: &str = "SELECT id FROM jobs WHERE rows_key = $1 AND tenant = $2
 const DISMISS: &str = "UPDATE jobs SET status = 'dismissed', lease_token = NULL, lease_expires = NULL, \
      finished = (SELECT now_ms FROM clock), updated = (SELECT now_ms FROM clock) \
      WHERE id = $1 AND tenant = $2 AND status IN ('accepted', 'running')";
-const FILES: &str = "SELECT job_files.blob FROM job_files JOIN jobs ON jobs.id = job_files.job_id \
-     WHERE jobs.id = $1 AND jobs.tenant = $2";
+const FILES: &str = "SELECT blob FROM job_files WHERE job_id = $1";
 /// Locked before the cohorts that it leaves.
 const ENDED: &str = "SELECT 1 FROM jobs WHERE id = $1 AND tenant = $2 \
      AND status IN ('successful', 'failed', 'dismissed') \
@@ -211,6 +210,7 @@ impl Store {
     /// nothing else refers to, unless somebody uploaded them for their own sake. A prediction leaves every cohort.
     pub async fn dismiss(&self, id: &str) -> Result<Dismissal, StoreError> {
         let mut transaction = self.database.begin().await?;
+        hold_case(&mut transaction, id).await?;
         let dismissed =
             query(DISMISS).bind(id).bind(self.tenant()).execute(&mut transaction).await?;
         if dismissed == 1 {
@@ -235,15 +235,17 @@ impl Store {
         id: &str,
         age: i64,
     ) -> Result<Dismissal, StoreError> {
-        let rows = query(FILES).bind(id).bind(self.tenant()).fetch_all(&mut transaction).await?;
-        let mut blobs =
-            rows.iter().map(|row| row.try_get(0)).collect::<Result<Vec<String>, _>>()?;
-        let meshes = meshes_of_job(&mut transaction, id).await?;
         let ended = query(ENDED).bind(id).bind(self.tenant()).bind(age);
         if ended.fetch_optional(&mut transaction).await?.is_none() {
             return Ok(Dismissal::NotFound);
         }
-        leave(&mut transaction, Leaving::Prediction(id)).await?;
+        let mut blobs = column(&mut transaction, FILES, id).await?;
+        let leaving = Leaving::Prediction(id);
+        let is_member = hold_cohorts(&mut transaction, leaving).await?;
+        let meshes = meshes_of_job(&mut transaction, id).await?;
+        if is_member {
+            leave(&mut transaction, leaving).await?;
+        }
         forget_model(&mut transaction, id).await?;
         query(REMOVE).bind(id).execute(&mut transaction).await?;
         self.insert_tombstone(&mut transaction, id).await?;

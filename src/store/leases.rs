@@ -6,12 +6,13 @@ use std::time::Duration;
 use bytes::Bytes;
 use serde::Deserialize;
 
+use super::cases::refer;
 use super::database::{Statement, Transaction, query};
 use super::engines::note_engine;
 use super::events::record;
 use super::made::MadeMesh;
 use super::references::{Content, hashes};
-use super::waiting::{MeshedCase, complete, fail_waiting, hold_case};
+use super::waiting::{MeshedCase, complete, fail_waiting, hold_case, hold_cases};
 use super::{Store, StoreError};
 
 /// The right of one attempt to write to its job.
@@ -101,16 +102,18 @@ const REAP: &str = "UPDATE jobs SET losses = losses + 1, lease_token = NULL, lea
      finished = CASE WHEN losses + 1 >= $1 THEN (SELECT now_ms FROM clock) END, \
      updated = (SELECT now_ms FROM clock) \
      WHERE id IN (SELECT id FROM jobs WHERE status = 'running' \
-       AND lease_expires < (SELECT now_ms FROM clock) FOR UPDATE SKIP LOCKED) \
+       AND lease_expires < $4 FOR UPDATE SKIP LOCKED) \
      RETURNING id, attempt, status";
 /// Leases and pauses from before the clock went back keep their length from now on.
 const CLOCK_WENT_BACK: [&str; 2] = [
     "UPDATE jobs SET lease_expires = lease_expires - heartbeat + (SELECT now_ms FROM clock), \
      heartbeat = (SELECT now_ms FROM clock) \
-     WHERE status = 'running' AND heartbeat > (SELECT now_ms FROM clock)",
+     WHERE id IN (SELECT id FROM jobs \
+       WHERE status = 'running' AND heartbeat > (SELECT now_ms FROM clock) ORDER BY id FOR UPDATE)",
     "UPDATE jobs SET claimable_from = claimable_from - updated + (SELECT now_ms FROM clock), \
      updated = (SELECT now_ms FROM clock) \
-     WHERE status = 'accepted' AND claimable_from > updated AND updated > (SELECT now_ms FROM clock)",
+     WHERE id IN (SELECT id FROM jobs WHERE status = 'accepted' AND claimable_from > updated \
+       AND updated > (SELECT now_ms FROM clock) ORDER BY id FOR UPDATE)",
 ];
 const INSERT_FILE: &str =
     "INSERT INTO job_files (job_id, name, media_type, blob, bytes) VALUES ($1, $2, $3, $4, $5)";
@@ -212,9 +215,14 @@ impl Store {
                 .execute(&mut *transaction)
                 .await?;
         }
-        self.insert_made(transaction, &lease.job, made.meshes).await?;
+        let mut completed = None;
         if let Some(case) = made.case {
-            complete(transaction, &lease.job, case).await?;
+            completed = complete(transaction, &lease.job, case).await?;
+        }
+        let others = made.case.map_or(&[][..], |case| &case.mesh_ids);
+        self.insert_made(transaction, &lease.job, made.meshes, others).await?;
+        if let Some(case) = completed {
+            refer(transaction, &case, others).await?;
         }
         note_engine(transaction, &lease.job, made.result).await?;
         record(transaction, &lease.job).await?;
@@ -251,6 +259,7 @@ impl Store {
 
     async fn end(&self, lease: &Lease, query: Statement) -> Result<bool, StoreError> {
         let mut transaction = self.database.begin().await?;
+        hold_case(&mut transaction, &lease.job).await?;
         let changed = query.execute(&mut transaction).await?;
         let mut waited = Vec::new();
         if changed == 1 {
@@ -266,14 +275,16 @@ impl Store {
     /// Takes jobs from workers that gave no sign of life for a lease, however the clock was set meanwhile. `error` is for those
     /// that this happened to `attempts` times.
     pub async fn reap(&self, attempts: u32, error: &str) -> Result<Vec<LostJob>, StoreError> {
-        let mut transaction = self.database.begin().await?;
         for keep in CLOCK_WENT_BACK {
-            query(keep).execute(&mut transaction).await?;
+            query(keep).execute(&self.database.writer().await?).await?;
         }
+        let mut transaction = self.database.begin().await?;
+        let now = hold_cases(&mut transaction).await?;
         let rows = query(REAP)
             .bind(i64::from(attempts))
             .bind(error)
             .bind(class_of(error))
+            .bind(now)
             .fetch_all(&mut transaction)
             .await?;
         let mut waited = Vec::new();

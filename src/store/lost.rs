@@ -2,7 +2,7 @@
 
 use super::database::query;
 use super::events::record;
-use super::waiting::wait_again;
+use super::waiting::{hold_case, wait_again};
 use super::{Store, StoreError};
 
 /// A job that failed through no fault of its own.
@@ -53,6 +53,7 @@ impl Store {
     /// Accepts such a job again, and those that failed with it; false where there is none of this id.
     pub async fn requeue(&self, id: &str) -> Result<bool, StoreError> {
         let mut transaction = self.database.begin().await?;
+        hold_case(&mut transaction, id).await?;
         let changed = query(REQUEUE).bind(id).execute(&mut transaction).await?;
         let mut waited = Vec::new();
         if changed == 1 {

@@ -1,10 +1,9 @@
 //! Meshes made by jobs: stored with the result, and erased with the job or its case unless something else refers to
 //! them.
-//!
-//! Whoever locks jobs and meshes locks the jobs first: a publication and an erasure wait for each other, and not both.
 
 use super::database::{Transaction, is_duplicate, query};
 use super::meshes::{MeshRow, NewMesh};
+use super::referred::ReferredRows;
 use super::{Store, StoreError};
 
 /// A mesh that a job made, to be stored with its result.
@@ -15,7 +14,7 @@ pub struct MadeMesh {
     pub known: Option<MeshRow>,
 }
 
-const KNOWN: &str = "SELECT id FROM meshes WHERE id = $1 AND tenant = $2 FOR UPDATE";
+const KNOWN: &str = "SELECT id FROM meshes WHERE id = $1 AND tenant = $2";
 const REFER: &str =
     "INSERT INTO made_meshes (job_id, mesh_id) VALUES ($1, $2) ON CONFLICT DO NOTHING";
 /// Locked, so that a request which is about to refer to one of them has either done so or finds it gone.
@@ -42,19 +41,26 @@ impl MadeMesh {
 }
 
 impl Store {
-    /// Stores the meshes of a job; `Contended`, for a retry, where one of them was stored or erased meanwhile.
+    /// Stores the meshes of a job and holds those that were there, with the `others` that are about to be referred to; `Contended`, for
+    /// a retry, where one of them was stored or erased meanwhile.
     pub(super) async fn insert_made(
         &self,
         transaction: &mut Transaction,
         job: &str,
         made: &[MadeMesh],
+        others: &[String],
     ) -> Result<(), StoreError> {
-        let mut made: Vec<&MadeMesh> = made.iter().collect();
-        made.sort_by_key(|made| made.id());
+        // First, while nothing is held that who removes the same content may wait for.
+        for made in made.iter().filter(|made| made.known.is_none()) {
+            self.insert_mesh(transaction, &made.mesh).await.map_err(contended)?;
+        }
+        let meshes = made.iter().map(MadeMesh::id).chain(others.iter().map(String::as_str));
+        ReferredRows { meshes: meshes.collect(), ..ReferredRows::default() }
+            .hold(transaction)
+            .await?;
         for made in made {
-            match &made.known {
-                Some(row) => self.require_stored(transaction, row).await?,
-                None => self.insert_mesh(transaction, &made.mesh).await.map_err(contended)?,
+            if let Some(row) = &made.known {
+                self.require_stored(transaction, row).await?;
             }
             query(REFER).bind(job).bind(made.id()).execute(&mut *transaction).await?;
         }

@@ -1,6 +1,4 @@
 //! Membership in cohorts: removal with erased cases, and the models learned from a member.
-//!
-//! Whoever locks jobs and cohorts locks the jobs first.
 
 use super::database::{Transaction, query};
 use super::made::column;
@@ -66,15 +64,20 @@ impl<'a> Leaving<'a> {
     }
 }
 
-/// Takes members out of every cohort, each of which has another version from then on.
+/// Holds the cohorts that are left; false where there are none.
+pub(super) async fn hold_cohorts(
+    transaction: &mut Transaction,
+    leaving: Leaving<'_>,
+) -> Result<bool, sqlx::Error> {
+    Ok(!column(transaction, leaving.sql().lock, leaving.id()).await?.is_empty())
+}
+
+/// Takes members out of every cohort, each of which is held and has another version from then on.
 pub(super) async fn leave(
     transaction: &mut Transaction,
     leaving: Leaving<'_>,
 ) -> Result<(), sqlx::Error> {
-    let LeavingSql { lock, note, advance, leave } = leaving.sql();
-    if column(transaction, lock, leaving.id()).await?.is_empty() {
-        return Ok(());
-    }
+    let LeavingSql { note, advance, leave, .. } = leaving.sql();
     for step in [note, advance, leave] {
         query(step).bind(leaving.id()).execute(&mut *transaction).await?;
     }

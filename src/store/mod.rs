@@ -1,5 +1,10 @@
 //! Persistent store: rows in a database, bytes in blobs. Every query lives here, one file for each table; jobs have several: `accepted`,
 //! `claims`, `leases`, `waiting`, `lost`, `queue`, `jobs` and `job_tags`, in the order of a job's life.
+//!
+//! A transaction locks rows in this order, those of one table in the order of their ids, so that of two one waits for the other and
+//! not both: blobs, tenants, cases, plans, jobs, cohorts, meshes. Rows that belong to one of these, such as tags, are changed by who
+//! has locked it. Several jobs of a case are locked by who has locked the case, in any order. A new row, which nobody else sees, may
+//! come at any time; what it refers to is locked before (`referred`). Single statements of one row need no care.
 
 mod accepted;
 mod audit;
@@ -14,6 +19,8 @@ mod database;
 mod engines;
 mod error;
 mod events;
+mod exported_rows;
+mod exported_values;
 mod files;
 mod fsck;
 mod handle;
@@ -34,6 +41,7 @@ mod owner;
 mod plans;
 mod queue;
 mod references;
+mod referred;
 mod responses;
 mod retention;
 mod spare;

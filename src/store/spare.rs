@@ -76,8 +76,7 @@ impl Spare {
 
     /// Bytes free on its disk; as many as there can be where that is not told.
     fn free(&self) -> u64 {
-        let disk = self.file.parent().and_then(|folder| statvfs(folder).ok());
-        disk.map_or(BYTES, |disk| disk.f_bavail.saturating_mul(disk.f_frsize))
+        self.file.parent().and_then(|folder| free_bytes(folder).ok()).unwrap_or(BYTES)
     }
 
     fn take(&self, bytes: u64) -> std::io::Result<()> {
@@ -96,6 +95,12 @@ impl Spare {
         }
         taken
     }
+}
+
+/// Bytes free for this user on the disk of a folder.
+pub fn free_bytes(folder: &Path) -> std::io::Result<u64> {
+    let disk = statvfs(folder)?;
+    Ok(disk.f_bavail.saturating_mul(disk.f_frsize))
 }
 
 fn allocate(file: &File, bytes: u64) -> Result<(), Errno> {

@@ -5,14 +5,14 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs::{DirBuilder, File};
-use std::io::{BufRead, BufReader, BufWriter, ErrorKind, Lines, Write};
+use std::io::Write;
 use std::os::unix::fs::DirBuilderExt;
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
-use serde_json::Value as Json;
 
-use super::database::{Executor, Row, Statement, Transaction, Value, newest_step, query, query_of};
+use super::database::{Transaction, newest_step, query, query_of};
+use super::exported_rows::{ExportedRows, absent, at, export_table, import_table, unreadable};
 use super::references::{Content, hold};
 use super::{Store, StoreError};
 use crate::schema::wire::canonical::sha256_hex;
@@ -59,30 +59,6 @@ struct Manifest {
     schema: i64,
     rows: BTreeMap<String, usize>,
     blobs: BTreeSet<String>,
-}
-
-/// The first line of a file of rows: the names of the columns and their types.
-#[derive(Serialize, Deserialize)]
-struct Head {
-    columns: Vec<(String, Kind)>,
-}
-
-#[derive(Clone, Copy, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-enum Kind {
-    Text,
-    Integer,
-    Real,
-}
-
-impl Kind {
-    fn name(self) -> &'static str {
-        match self {
-            Kind::Text => "text",
-            Kind::Integer => "integers",
-            Kind::Real => "numbers",
-        }
-    }
 }
 
 /// The bytes of an exported blob, whose file has their hash for its name.
@@ -155,7 +131,7 @@ impl Store {
         }
         self.refuse_unless_empty().await?;
         // All of it before anything is stored.
-        check_rows(folder, &manifest)?;
+        self.check_rows(folder, &manifest).await?;
         for sha256 in &manifest.blobs {
             read_exported(folder, sha256)?;
         }
@@ -165,15 +141,42 @@ impl Store {
             stored.extend(self.put(&[content]).await?);
         }
         let mut transaction = self.database.begin().await?;
-        let mut moved = TransferCounts { rows: 0, blobs: stored.len() };
         if !hold(&mut transaction, &stored).await? {
             return Err(StoreError::Contended);
         }
-        for table in TABLES {
-            moved.rows += import_table(&mut transaction, table, folder).await?;
+        match import_tables(&mut transaction, folder).await {
+            Ok(rows) => {
+                transaction.commit().await?;
+                Ok(TransferCounts { rows, blobs: stored.len() })
+            }
+            Err(error) => {
+                transaction.rollback().await;
+                self.discard(manifest.blobs.into_iter().collect()).await;
+                Err(error)
+            }
         }
-        transaction.commit().await?;
-        Ok(moved)
+    }
+
+    /// Looks at everything that a manifest names except the bytes, before anything is stored.
+    async fn check_rows(&self, folder: &Path, manifest: &Manifest) -> Result<(), StoreError> {
+        let is_hash = |blob: &str| {
+            blob.len() == 64 && blob.bytes().all(|byte| matches!(byte, b'0'..=b'9' | b'a'..=b'f'))
+        };
+        if let Some(strange) = manifest.blobs.iter().find(|blob| !is_hash(blob)) {
+            return Err(StoreError::Export(format!(
+                "{MANIFEST}: {strange:?} is no hash of a blob"
+            )));
+        }
+        for table in TABLES {
+            let columns = self.database.columns(table).await?;
+            let rows = ExportedRows::open(folder, table)?;
+            let rows = rows.map_or(Ok(0), |rows| rows.check(&columns, &manifest.blobs))?;
+            if manifest.rows.get(table) != Some(&rows) {
+                let file = folder.join(format!("{table}.ndjson"));
+                return Err(StoreError::Export(format!("{} is cut short", file.display())));
+            }
+        }
+        Ok(())
     }
 
     async fn refuse_unless_empty(&self) -> Result<(), StoreError> {
@@ -189,187 +192,18 @@ impl Store {
     }
 }
 
-/// An error of the file system with its place and what has to be there.
-fn at(path: &Path, wanted: &'static str) -> impl Fn(std::io::Error) -> std::io::Error {
-    let path = path.display().to_string();
-    move |error| std::io::Error::new(error.kind(), format!("{path}: {error}; {wanted}"))
-}
-
-/// What an export lacks is a fault of the export, and not of the disk.
-fn absent(error: std::io::Error) -> StoreError {
-    match error.kind() {
-        ErrorKind::NotFound => StoreError::Export(error.to_string()),
-        _ => StoreError::Files(error),
-    }
-}
-
-async fn export_table(
-    snapshot: &mut Transaction,
-    table: &'static str,
-    file: &Path,
-) -> Result<usize, StoreError> {
-    let mut out = BufWriter::new(File::create(file)?);
+async fn import_tables(transaction: &mut Transaction, folder: &Path) -> Result<usize, StoreError> {
     let mut rows = 0;
-    let mut take = |row: Row| {
-        if rows == 0 {
-            write_line(&mut out, &Head { columns: head(&row)? })?;
-        }
-        rows += 1;
-        let values: Vec<Json> = row.values()?.into_iter().map(json).collect();
-        write_line(&mut out, &values)
-    };
-    let all = query_of(format!("SELECT * FROM {table}")).without_timeout();
-    all.run(Executor::Transaction(snapshot), &mut take).await?;
-    out.into_inner().map_err(std::io::IntoInnerError::into_error)?.sync_all()?;
-    Ok(rows)
-}
-
-/// The rows of an exported table, one after the other.
-struct ExportedRows {
-    /// The file, for errors.
-    file: String,
-    columns: Vec<(String, Kind)>,
-    lines: Lines<BufReader<File>>,
-    read: usize,
-}
-
-impl ExportedRows {
-    /// `None` where the table had no rows.
-    fn open(folder: &Path, table: &str) -> Result<Option<ExportedRows>, StoreError> {
-        let file = folder.join(format!("{table}.ndjson"));
-        let opened = File::open(&file).map_err(at(&file, "the manifest of the export names it"));
-        let mut lines = BufReader::new(opened.map_err(absent)?).lines();
-        let Some(head) = lines.next() else { return Ok(None) };
-        let Head { columns } = serde_json::from_str(&head?).map_err(unreadable)?;
-        let is_name = |name: &str| {
-            name.bytes()
-                .all(|byte| byte.is_ascii_lowercase() || byte.is_ascii_digit() || byte == b'_')
-        };
-        if let Some((strange, _)) = columns.iter().find(|(name, _)| !is_name(name)) {
-            return Err(StoreError::Export(format!("{table} has no column {strange:?}")));
-        }
-        Ok(Some(ExportedRows { file: file.display().to_string(), columns, lines, read: 0 }))
-    }
-
-    /// The next row, a value for each column, of its type.
-    fn next_row(&mut self) -> Result<Option<Vec<Value>>, StoreError> {
-        let Some(line) = self.lines.next() else { return Ok(None) };
-        self.read += 1;
-        let (row, wanted) = (self.read, self.columns.len());
-        let fault = |what: String| StoreError::Export(format!("{}, row {row}: {what}", self.file));
-        let values: Vec<Json> =
-            serde_json::from_str(&line?).map_err(|error| fault(error.to_string()))?;
-        if values.len() != wanted {
-            return Err(fault(format!("{} values for {wanted} columns", values.len())));
-        }
-        let value = |(json, (name, kind)): (Json, &(String, Kind))| {
-            value_of(json, *kind)
-                .ok_or_else(|| fault(format!("column {name} holds {}", kind.name())))
-        };
-        values.into_iter().zip(&self.columns).map(value).collect::<Result<_, _>>().map(Some)
-    }
-
-    /// Reads all rows; each that names a blob has to name one of the manifest. Returns how many.
-    fn check(mut self, blobs: &BTreeSet<String>) -> Result<usize, StoreError> {
-        let column = self.columns.iter().position(|(name, _)| name == "blob");
-        while let Some(values) = self.next_row()? {
-            let blob = column.map(|column| &values[column]);
-            let is_known =
-                |blob: &Value| matches!(blob, Value::Text(Some(hash)) if blobs.contains(hash));
-            if blob.is_some_and(|blob| !is_known(blob)) {
-                let what = "its blob is none of those of the manifest";
-                let detail = format!("{}, row {}: {what}", self.file, self.read);
-                return Err(StoreError::Export(detail));
-            }
-        }
-        Ok(self.read)
-    }
-}
-
-/// Looks at everything that a manifest names except the bytes, before anything is stored.
-fn check_rows(folder: &Path, manifest: &Manifest) -> Result<(), StoreError> {
-    let is_hash = |blob: &str| {
-        blob.len() == 64 && blob.bytes().all(|byte| matches!(byte, b'0'..=b'9' | b'a'..=b'f'))
-    };
-    if let Some(strange) = manifest.blobs.iter().find(|blob| !is_hash(blob)) {
-        return Err(StoreError::Export(format!("{MANIFEST}: {strange:?} is no hash of a blob")));
-    }
     for table in TABLES {
-        let rows = ExportedRows::open(folder, table)?;
-        let rows = rows.map_or(Ok(0), |rows| rows.check(&manifest.blobs))?;
-        if manifest.rows.get(table) != Some(&rows) {
-            let file = folder.join(format!("{table}.ndjson"));
-            return Err(StoreError::Export(format!("{} is cut short", file.display())));
-        }
+        rows += import_table(transaction, table, folder).await?;
     }
-    Ok(())
-}
-
-async fn import_table(
-    transaction: &mut Transaction,
-    table: &'static str,
-    folder: &Path,
-) -> Result<usize, StoreError> {
-    let Some(mut rows) = ExportedRows::open(folder, table)? else { return Ok(0) };
-    let names: Vec<&str> = rows.columns.iter().map(|(name, _)| name.as_str()).collect();
-    let places: Vec<String> = (1..=names.len()).map(|number| format!("${number}")).collect();
-    let (names, places) = (names.join(", "), places.join(", "));
-    let insert = format!("INSERT INTO {table} ({names}) VALUES ({places})");
-    while let Some(values) = rows.next_row()? {
-        let statement = query_of(insert.clone());
-        let statement = values.into_iter().fold(statement, Statement::bind);
-        statement.execute(&mut *transaction).await?;
-    }
-    Ok(rows.read)
-}
-
-fn head(row: &Row) -> Result<Vec<(String, Kind)>, sqlx::Error> {
-    let kind = |(name, value)| {
-        let kind = match value {
-            Value::Text(_) => Kind::Text,
-            Value::Integer(_) => Kind::Integer,
-            Value::Real(_) => Kind::Real,
-        };
-        (name, kind)
-    };
-    Ok(row.columns()?.into_iter().map(kind).collect())
-}
-
-fn json(value: Value) -> Json {
-    match value {
-        Value::Text(text) => text.into(),
-        Value::Integer(number) => number.into(),
-        Value::Real(number) => number.into(),
-    }
-}
-
-/// `None` for a value of another type.
-fn value_of(json: Json, kind: Kind) -> Option<Value> {
-    Some(match (kind, json) {
-        (Kind::Text, Json::Null) => Value::Text(None),
-        (Kind::Integer, Json::Null) => Value::Integer(None),
-        (Kind::Real, Json::Null) => Value::Real(None),
-        (Kind::Text, Json::String(text)) => Value::Text(Some(text)),
-        (Kind::Integer, Json::Number(number)) => Value::Integer(Some(number.as_i64()?)),
-        (Kind::Real, Json::Number(number)) => Value::Real(Some(number.as_f64()?)),
-        _ => return None,
-    })
-}
-
-fn write_line(out: &mut impl Write, line: &impl Serialize) -> Result<(), sqlx::Error> {
-    let mut text = serde_json::to_vec(line).map_err(std::io::Error::from)?;
-    text.push(b'\n');
-    Ok(out.write_all(&text)?)
+    Ok(rows)
 }
 
 fn write_durably(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
     let mut file = File::create(path)?;
     file.write_all(bytes)?;
     file.sync_all()
-}
-
-fn unreadable(error: serde_json::Error) -> StoreError {
-    StoreError::Export(error.to_string())
 }
 
 #[cfg(test)]

@@ -3,7 +3,6 @@
 
 use serde_json::{Value, json};
 
-use super::cases::refer;
 use super::database::{Row, Transaction, query};
 use crate::schema::ErrorCode;
 use crate::schema::job::JobErrorDocument;
@@ -20,6 +19,8 @@ pub struct MeshedCase {
 
 /// Locked before its jobs, as by an erasure.
 const LOCK: &str = "SELECT 1 FROM cases WHERE meshing = $1 FOR UPDATE";
+const LOCK_OVERDUE: &str = "SELECT 1 FROM cases WHERE meshing IN \
+     (SELECT id FROM jobs WHERE status = 'running' AND lease_expires < $1) ORDER BY id FOR UPDATE";
 const COMPLETE: &str = "UPDATE cases SET document = $2, report = $3, version = version + 1, \
      updated = (SELECT now_ms FROM clock) WHERE meshing = $1 RETURNING id";
 const GO_ON: &str = "UPDATE jobs SET waits_for = '' WHERE case_id = $1 AND waits_for = $2";
@@ -52,18 +53,24 @@ pub(super) async fn hold_case(
     Ok(())
 }
 
-/// Gives the case that a job has meshed its mesh, and lets those go on that wait for it. Other jobs have no such case.
+/// The same for all jobs whose lease has run out by now. When that is.
+pub(super) async fn hold_cases(transaction: &mut Transaction) -> Result<i64, sqlx::Error> {
+    let now = query("SELECT now_ms FROM clock").fetch_one(&mut *transaction).await?.try_get(0)?;
+    query(LOCK_OVERDUE).bind(now).fetch_all(&mut *transaction).await?;
+    Ok(now)
+}
+
+/// Gives the case that a job has meshed its document, and lets those go on that wait for it. Its id; other jobs have no such case.
 pub(super) async fn complete(
     transaction: &mut Transaction,
     meshing: &str,
     case: &MeshedCase,
-) -> Result<(), sqlx::Error> {
+) -> Result<Option<String>, sqlx::Error> {
     let completed = query(COMPLETE).bind(meshing).bind(&case.document).bind(&case.report);
-    let Some(row) = completed.fetch_optional(&mut *transaction).await? else { return Ok(()) };
+    let Some(row) = completed.fetch_optional(&mut *transaction).await? else { return Ok(None) };
     let id: String = row.try_get(0)?;
-    refer(transaction, &id, &case.mesh_ids).await?;
     query(GO_ON).bind(&id).bind(meshing).execute(&mut *transaction).await?;
-    Ok(())
+    Ok(Some(id))
 }
 
 /// Fails the jobs that wait for a meshing, where that has ended without a mesh. Their ids.

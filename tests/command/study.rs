@@ -101,6 +101,11 @@ fn a_study_is_not_worse_than_itself_and_worse_than_one_with_half_its_errors() {
     fs::write(&baseline, serde_json::to_string(&report).unwrap()).unwrap();
     let (code, told, _) = study(folder.path(), &spec(), &["--baseline", path(&baseline)]);
     assert_eq!(code, 1, "{told}");
+    let own = folder.path().join("out/report.json");
+    let before = fs::read(&own).unwrap();
+    let (code, told, _) = study(folder.path(), &spec(), &["--baseline", path(&own)]);
+    assert!(code == 2 && told.contains("give another folder"), "{code}: {told}");
+    assert_eq!(fs::read(&own).unwrap(), before);
 }
 
 #[test]

@@ -29,6 +29,7 @@ fn main() -> ExitCode {
         faults::small_disk::trials(),
         store::commits::trials(),
         store::erasure::trials(),
+        store::locks::trials(),
         store::lost_jobs::trials(),
         store::made::trials(),
         store::meshings::trials(),

@@ -28,7 +28,7 @@ pub fn new_job(document: &str, hash: &str) -> NewJob {
         spec_hash: hash.into(),
         rows_key: None,
         truths: None,
-        engine: "test".into(),
+        engine: "{}".into(),
         tags: vec!["a".into()],
         mesh_ids: vec![],
         learns_from: None,

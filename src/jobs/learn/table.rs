@@ -2,6 +2,7 @@
 //! largest movement of bone and the error of each method.
 
 use crate::schema::learn::result::LearningDocument;
+use mechanics::format::csv::cell;
 
 /// The name of the file.
 pub const TABLE_FILE: &str = "learning.csv";
@@ -9,7 +10,7 @@ pub const TABLE_FILE: &str = "learning.csv";
 /// Means over the skin in mm and their 95th percentiles, patient by patient, and the means of all in the last row.
 pub fn table_csv(found: &LearningDocument) -> String {
     let errors = found.table.iter().flat_map(|own| {
-        ["mean_mm", "p95_mm"].map(|statistic| quoted(&format!("{} {statistic}", own.name)))
+        ["mean_mm", "p95_mm"].map(|statistic| cell(&format!("{} {statistic}", own.name)))
     });
     let heads = ["patient", "class", "largest_bone_movement_mm"].map(str::to_owned);
     let mut rows: Vec<Vec<String>> = vec![heads.into_iter().chain(errors).collect()];
@@ -18,7 +19,7 @@ pub fn table_csv(found: &LearningDocument) -> String {
             own.cases.get(place).map(|case| [case.mean, case.p95]).into_iter().flatten()
         });
         let numbers = std::iter::once(patient.largest_bone_movement_mm).chain(of_case);
-        let names = [quoted(&patient.name), quoted(&patient.class)];
+        let names = [cell(&patient.name), cell(&patient.class)];
         rows.push(names.into_iter().chain(numbers.map(|own| own.to_string())).collect());
     }
     let largest = found.patients.iter().map(|own| own.largest_bone_movement_mm).sum::<f64>();
@@ -27,12 +28,4 @@ pub fn table_csv(found: &LearningDocument) -> String {
     let names = ["mean".to_owned(), String::new()];
     rows.push(names.into_iter().chain(numbers.map(|own| own.to_string())).collect());
     rows.iter().map(|row| row.join(",") + "\n").collect()
-}
-
-/// As RFC 4180 has it.
-fn quoted(text: &str) -> String {
-    match text.contains([',', '"', '\n', '\r']) {
-        true => format!("\"{}\"", text.replace('"', "\"\"")),
-        false => text.to_owned(),
-    }
 }

@@ -2,11 +2,11 @@
 
 use std::fmt::Write;
 
-use super::files::cell;
 use super::words::{in_words, scene_in_words, variant_in_words};
 use crate::schema::study::cell_sizes::CellSizesDocument;
 use crate::schema::study::report::ReportDocument;
 use mechanics::chart::{CellSizesPicture, CellSizesSeries};
+use mechanics::format::csv::cell;
 
 pub const CELL_SIZES_CSV: &str = "cell-sizes.csv";
 

@@ -5,6 +5,7 @@ use std::fmt::Write;
 use crate::schema::study::report::{
     OutcomeName, ReportDocument, RowDocument, RowVerdict, SkippedDocument,
 };
+use mechanics::format::csv::cell;
 
 pub const REPORT_JSON: &str = "report.json";
 pub const REPORT_CSV: &str = "report.csv";
@@ -96,18 +97,6 @@ fn csv_cells(row: &RowDocument) -> [String; COLUMNS.len()] {
         number(|n| n.effectivity),
         numbers.and_then(|n| n.chosen.as_deref()).map_or_else(String::new, cell),
     ]
-}
-
-/// A text safe in spreadsheets: one that begins like a formula gets an apostrophe before it.
-pub fn cell(text: &str) -> String {
-    let guarded = match text.starts_with(['=', '+', '-', '@', '\t', '\r']) {
-        true => format!("'{text}"),
-        false => text.to_owned(),
-    };
-    match guarded.contains([',', '"', '\r', '\n']) {
-        true => format!("\"{}\"", guarded.replace('"', "\"\"")),
-        false => guarded,
-    }
 }
 
 /// The rows as test cases, a suite for each scene. There is a failure or an error exactly if the outcome is not

@@ -1,7 +1,7 @@
 //! Database handle for either engine: connections, migration, queries.
 
 use super::run::{Open, Pool, Transaction, Writer};
-use super::schema::Migrated;
+use super::schema::{Column, Migrated};
 use super::{postgres, schema, sqlite};
 use crate::fair_semaphore::{FairSemaphore, Full, Permit};
 use crate::store::error::StoreError;
@@ -225,6 +225,11 @@ impl Database {
             (_, Pool::Postgres(pool)) => Open::Postgres(postgres::snapshot(pool).await?),
         };
         Ok(Transaction::new(open, None))
+    }
+
+    /// The columns of a table.
+    pub async fn columns(&self, table: &str) -> Result<Vec<Column>, StoreError> {
+        Ok(schema::columns(&self.reader, table).await?)
     }
 
     /// Brings what was erased out of the files of an embedded database; false while somebody stands in the way. A server

@@ -3,7 +3,7 @@
 //!
 //! Text for both: `$1` placeholders, TEXT, BIGINT and DOUBLE PRECISION, RETURNING, ON CONFLICT, row values and
 //! `string_agg`, which SQLite has since 3.44. A row that is read in order to be changed is read with
-//! `FOR UPDATE`: PostgreSQL locks it, SQLite, whose transactions exclude each other, is handed the text without it.
+//! `FOR UPDATE`, and one that has to stay with `FOR KEY SHARE`: PostgreSQL locks it, SQLite, whose transactions exclude each other, is handed the text without it.
 
 mod errors;
 mod handle;
@@ -17,5 +17,6 @@ pub use errors::{is_duplicate, is_full, is_read_only, is_reference, is_refused, 
 pub(super) use handle::{Address, BeforeWriting, Database};
 use run::Pool;
 pub(super) use run::{Executor, Transaction};
+pub(super) use schema::Column;
 pub use schema::{Migrated, newest as newest_step};
 pub(super) use value::{Row, RowSink, Statement, Value, query, query_of};

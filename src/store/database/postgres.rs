@@ -14,6 +14,10 @@ use super::{Row, RowSink, Statement, Value};
 pub const CLOCK: &str = "CREATE OR REPLACE VIEW clock AS \
      SELECT CAST(EXTRACT(EPOCH FROM clock_timestamp()) * 1000 AS BIGINT) AS now_ms";
 
+/// The columns of a table, their types, and whether each has to hold something.
+pub const COLUMNS: &str = "SELECT CAST(column_name AS TEXT), UPPER(data_type), is_nullable = 'NO' \
+     FROM information_schema.columns WHERE table_schema = current_schema() AND table_name = $1";
+
 /// The disk is full.
 pub const FULL: &str = "53100";
 /// A replica takes no row.

@@ -5,7 +5,8 @@ use std::sync::LazyLock;
 use sqlx::migrate::{MigrateError, Migration, MigrationType, Migrator};
 use sqlx::{AssertSqlSafe, SqlSafeStr, SqlStr};
 
-use super::{Pool, postgres, query, sqlite};
+use super::value::null_of;
+use super::{Pool, Row, Value, postgres, query, sqlite};
 use crate::store::error::StoreError;
 
 /// The files of `migrations/`, in order. Their macro in sqlx would compile every engine a second time, for the
@@ -86,6 +87,27 @@ pub async fn check(pool: &Pool) -> Result<(), StoreError> {
         }
     }
     Ok(())
+}
+
+/// A column of a table.
+pub(in crate::store) struct Column {
+    pub name: String,
+    pub null: Value,
+    /// Whether it takes no NULL.
+    pub is_needed: bool,
+}
+
+pub(super) async fn columns(pool: &Pool, table: &str) -> Result<Vec<Column>, sqlx::Error> {
+    let sql = match pool {
+        Pool::Sqlite(_) => sqlite::COLUMNS,
+        Pool::Postgres(_) => postgres::COLUMNS,
+    };
+    let rows = query(sql).bind(table).fetch_all(pool).await?;
+    let column = |row: &Row| {
+        let null = null_of(&row.try_get::<String, _>(1)?)?;
+        Ok(Column { name: row.try_get(0)?, null, is_needed: row.try_get(2)? })
+    };
+    rows.iter().map(column).collect()
 }
 
 /// The steps that a database has taken, with their checksums, in order.

@@ -18,6 +18,10 @@ use super::{Row, RowSink, Statement, Value};
 pub const CLOCK: &str = "CREATE VIEW IF NOT EXISTS clock AS \
      SELECT CAST(unixepoch('subsec') * 1000 AS INTEGER) AS now_ms";
 
+/// The columns of a table, their types, and whether each has to hold something.
+pub const COLUMNS: &str =
+    "SELECT name, UPPER(type), \"notnull\" = 1 OR pk > 0 FROM pragma_table_info($1)";
+
 /// The disk is full.
 pub const FULL: &str = "13";
 /// The file cannot be written.
@@ -114,7 +118,7 @@ pub async fn run(
 
 /// SQLite has no row locks and needs none: a writer has the whole database.
 fn without_row_locks(sql: Cow<'static, str>) -> Cow<'static, str> {
-    const LOCKS: [&str; 2] = [" FOR UPDATE SKIP LOCKED", " FOR UPDATE"];
+    const LOCKS: [&str; 3] = [" FOR UPDATE SKIP LOCKED", " FOR UPDATE", " FOR KEY SHARE"];
     LOCKS.iter().fold(sql, |sql, lock| match sql.contains(lock) {
         true => Cow::Owned(sql.replace(lock, "")),
         false => sql,

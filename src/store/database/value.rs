@@ -13,6 +13,12 @@ pub(in crate::store) enum Value {
     Real(Option<f64>),
 }
 
+impl Value {
+    pub fn is_null(&self) -> bool {
+        matches!(self, Value::Text(None) | Value::Integer(None) | Value::Real(None))
+    }
+}
+
 macro_rules! value_from {
     ($($from:ty => $variant:ident($value:ident) $made:expr;)*) => {
         $(impl From<$from> for Value {
@@ -100,11 +106,15 @@ impl Row {
 
 /// The name of a column, and NULL of its type.
 fn typed<C: Column>(column: &C) -> Result<(String, Value), sqlx::Error> {
-    let null = match column.type_info().name() {
+    Ok((column.name().to_owned(), null_of(column.type_info().name())?))
+}
+
+/// NULL of a type, by its name.
+pub(super) fn null_of(name: &str) -> Result<Value, sqlx::Error> {
+    Ok(match name {
         "TEXT" => Value::Text(None),
         "INTEGER" | "BIGINT" | "INT8" => Value::Integer(None),
-        "REAL" | "FLOAT8" => Value::Real(None),
+        "REAL" | "FLOAT8" | "DOUBLE PRECISION" => Value::Real(None),
         other => return Err(sqlx::Error::Decode(format!("a column of type {other}").into())),
-    };
-    Ok((column.name().to_owned(), null))
+    })
 }

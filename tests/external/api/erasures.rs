@@ -16,6 +16,7 @@ use crate::support::trials::trials;
 trials! {
     on_shared {
         what_is_kept_too_long_is_erased_under_a_download_and_not_under_a_job
+        a_job_that_is_posted_again_with_its_key_is_not_too_old
     }
     alone {
         a_case_is_erased_under_a_job_and_under_a_download_that_ends_whole
@@ -97,4 +98,22 @@ async fn what_is_kept_too_long_is_erased_under_a_download_and_not_under_a_job(on
     ask(server.get(&format!("/v1/cases/{old}"))).await.problem(410, "gone");
     signal(slot, "CONT");
     succeeds(&server, &id, 1).await;
+}
+
+async fn a_job_that_is_posted_again_with_its_key_is_not_too_old(on: Deployment) {
+    let server = Server::start_command(serve_shared(&on), TempDir::new().unwrap());
+    let case = server.case(&SMALL).await;
+    let post = async || {
+        let request = server.post("/v1/jobs").header("idempotency-key", "k");
+        let request = request.header("prefer", "wait=30").json(&tagged(&case, 1.0, "a"));
+        ask(request).await.expect(StatusCode::OK)
+    };
+    let job = post().await;
+    let store = on.open().await;
+    store.retain(Some(1)).await.unwrap();
+    on.execute("UPDATE jobs SET updated = 1").await;
+    assert_eq!(post().await["id"], job["id"]);
+    assert_eq!(store.erase_old().await.unwrap(), 0);
+    on.execute("UPDATE jobs SET updated = 1").await;
+    assert_eq!(store.erase_old().await.unwrap(), 1);
 }

@@ -2,6 +2,7 @@
 
 pub mod commits;
 pub mod erasure;
+pub mod locks;
 pub mod lost_jobs;
 pub mod made;
 pub mod meshings;

@@ -9,6 +9,7 @@ use facies::store::{
     AddedCase, AuditedAction, Dismissal, MemberRow, NewCase, NewCohort, Published, Store,
     StoreError,
 };
+use serde_json::{Value, json};
 
 use crate::deployments::Deployment;
 use crate::rows::mesh;
@@ -21,6 +22,8 @@ trials! {
         an_export_has_every_table
         an_import_is_all_or_nothing
         a_row_of_an_export_that_does_not_fit_is_refused_before_anything_is_stored
+        what_the_service_could_not_read_is_refused_with_its_row_and_column
+        an_export_with_other_columns_than_the_tables_is_refused
     }
     on_shared {
         a_deployment_moves_to_postgresql_and_back
@@ -198,4 +201,112 @@ async fn a_row_of_an_export_that_does_not_fit_is_refused_before_anything_is_stor
     }
     std::fs::write(&meshes, whole).unwrap();
     assert_eq!(store.import(&folder).await.unwrap().blobs, 1);
+}
+
+/// The lines of a table of an export, as JSON.
+fn lines(folder: &Path, table: &str) -> Vec<Value> {
+    let text = std::fs::read_to_string(folder.join(format!("{table}.ndjson"))).unwrap();
+    text.lines().map(|line| serde_json::from_str(line).unwrap()).collect()
+}
+
+fn write(folder: &Path, table: &str, lines: &[Value]) {
+    let text: String = lines.iter().map(|line| format!("{line}\n")).collect();
+    std::fs::write(folder.join(format!("{table}.ndjson")), text).unwrap();
+}
+
+/// What an import says where the lines of one table are others.
+async fn refusal(store: &Store, folder: &Path, table: &str, lines: &[Value]) -> String {
+    let file = folder.join(format!("{table}.ndjson"));
+    let whole = std::fs::read(&file).unwrap();
+    write(folder, table, lines);
+    let error = store.import(folder).await.unwrap_err();
+    assert!(matches!(error, StoreError::Export(_)), "{table}: {error}");
+    assert_eq!(blob_count(store).await, 0, "{table}: {error}");
+    assert!(store.tenants(None, 1).await.unwrap().is_empty(), "{table}: {error}");
+    std::fs::write(&file, whole).unwrap();
+    error.to_string()
+}
+
+/// An export of something in every table, and a deployment with nothing in it.
+async fn exported(on: &Deployment) -> (std::path::PathBuf, Store) {
+    let (source, folder) = (Deployment::embedded().await, on.folder().join("export"));
+    let exporting = source.open().await;
+    fill(&exporting).await;
+    exporting.export(&folder).await.unwrap();
+    (folder, on.open().await)
+}
+
+fn place_of(head: &Value, column: &str) -> usize {
+    let columns = head["columns"].as_array().unwrap();
+    columns.iter().position(|pair| pair[0] == column).unwrap()
+}
+
+async fn what_the_service_could_not_read_is_refused_with_its_row_and_column(on: Deployment) {
+    let (folder, store) = exported(&on).await;
+    let faults = [
+        ("jobs", "kind", json!("abc"), "column kind holds a kind of job"),
+        ("jobs", "status", json!("abc"), "column status holds the status of a job"),
+        ("jobs", "engine", json!("[]"), "column engine holds an object of JSON"),
+        ("jobs", "truths", json!("{}"), "column truths holds a list of JSON"),
+        ("job_events", "status", json!(""), "column status holds the status of a job"),
+        ("cases", "document", json!(""), "column document holds an object of JSON"),
+        ("cases", "report", json!("abc"), "column report holds an object of JSON or null"),
+        ("plans", "document", json!("5"), "column document holds an object of JSON"),
+        ("meshes", "report", json!(""), "column report holds an object of JSON"),
+        ("keys", "scopes", json!("root"), "column scopes holds scopes"),
+        ("meshes", "id", json!(null), "column id must not be null"),
+        ("audit", "outcome", json!(null), "column outcome must not be null"),
+        ("plans", "case_id", json!("nobody"), "it refers to a row that is not there"),
+    ];
+    for (table, column, value, wanted) in faults {
+        let mut changed = lines(&folder, table);
+        let place = place_of(&changed[0], column);
+        changed[1][place] = value;
+        let error = refusal(&store, &folder, table, &changed).await;
+        assert!(error.contains(&format!("{table}.ndjson, row 1: {wanted}")), "{error}");
+    }
+    let mut changed = lines(&folder, "jobs");
+    let id = place_of(&changed[0], "id");
+    changed[2][id] = changed[1][id].clone();
+    let error = refusal(&store, &folder, "jobs", &changed).await;
+    assert!(error.contains("jobs.ndjson, row 2: a row before it has the same key"), "{error}");
+
+    // As that of a case which is being meshed.
+    let mut changed = lines(&folder, "cases");
+    let report = place_of(&changed[0], "report");
+    changed[1][report] = json!("null");
+    write(&folder, "cases", &changed);
+    store.import(&folder).await.unwrap();
+}
+
+async fn an_export_with_other_columns_than_the_tables_is_refused(on: Deployment) {
+    let (folder, store) = exported(&on).await;
+    let whole = lines(&folder, "tenants");
+    let columns = whole[0]["columns"].as_array().unwrap();
+    let with = |added: Value| {
+        let columns = columns.iter().cloned().chain([added]).collect::<Vec<_>>();
+        let mut changed = vec![json!({ "columns": columns })];
+        for row in &whole[1..] {
+            let mut row = row.clone();
+            row.as_array_mut().unwrap().push(json!(null));
+            changed.push(row);
+        }
+        changed
+    };
+    let mut shorter = whole.clone();
+    shorter[0]["columns"].as_array_mut().unwrap().pop();
+    shorter[1..].iter_mut().for_each(|row| drop(row.as_array_mut().unwrap().pop()));
+    let last = columns.last().unwrap()[0].as_str().unwrap();
+    let mut typed = whole.clone();
+    typed[0]["columns"][place_of(&whole[0], "served")][1] = json!("text");
+    let faults = [
+        (with(json!(["name", "text"])), "column name is there twice".to_owned()),
+        (with(json!(["colour", "text"])), "tenants has no column colour".to_owned()),
+        (shorter, format!("column {last} is missing")),
+        (typed, "column served holds integers, not text".to_owned()),
+    ];
+    for (changed, wanted) in faults {
+        let error = refusal(&store, &folder, "tenants", &changed).await;
+        assert!(error.contains(&format!("tenants.ndjson: {wanted}")), "{error}");
+    }
 }

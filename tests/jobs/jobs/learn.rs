@@ -153,6 +153,7 @@ fn what_mechanics_misses_alike_is_added_to_the_next_prediction() {
 fn the_table_has_a_row_for_each_patient_with_class_and_largest_movement_of_bone() {
     let (sources, mut input) = operated();
     input.spec.cases[1].class = Some("forward, far".to_owned());
+    input.spec.cases[2].class = Some("=1+1".to_owned());
     let (output, out) = done(JobInput::Learn(input), &sources).unwrap();
     let found = output.result.learning.unwrap();
     for (number, patient) in (1..).zip(&found.patients) {
@@ -165,6 +166,7 @@ fn the_table_has_a_row_for_each_patient_with_class_and_largest_movement_of_bone(
         "patient,class,largest_bone_movement_mm,no movement mean_mm,no movement p95_mm,fem_linear mean_mm"
     ));
     assert!(rows[2].starts_with("2,\"forward, far\",2") && rows.len() == 6, "{table}");
+    assert!(rows[3].starts_with("3,'=1+1,3"), "no formula: {table}");
     let last: Vec<&str> = rows[5].split(',').collect();
     let mean: f64 = last[5].parse().unwrap();
     assert!(last[..3] == ["mean", "", "2.5"] && (mean - 0.5).abs() < 1e-6, "{table}");

@@ -49,3 +49,15 @@ fn the_demo_predicts_a_face_and_says_how_good_the_numbers_are_twice() {
         }
     }
 }
+
+#[test]
+fn the_demo_replaces_no_file_that_no_command_wrote() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let own = folder.path().join("skin.vtp");
+    std::fs::write(&own, "mine").expect("a file");
+    let Output { status, stderr, .. } = demo(folder.path());
+    let told = String::from_utf8_lossy(&stderr);
+    assert!(status.code() == Some(2) && told.contains("give another folder"), "{told}");
+    let left: Vec<_> = std::fs::read_dir(folder.path()).expect("the folder").collect();
+    assert_eq!((left.len(), std::fs::read(&own).expect("the file")), (1, b"mine".to_vec()));
+}

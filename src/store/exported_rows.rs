@@ -1,0 +1,268 @@
+//! Files of rows: one for each table of an export, whose first line names the columns and their types.
+
+use std::collections::BTreeSet;
+use std::fs::File;
+use std::io::{BufRead, BufReader, BufWriter, ErrorKind, Lines, Write};
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+use serde_json::Value as Json;
+
+use super::StoreError;
+use super::database::{
+    Column, Executor, Row, Statement, Transaction, Value, is_duplicate, is_reference, query_of,
+};
+use super::exported_values::TextForm;
+
+/// The first line of a file of rows: the names of the columns and their types.
+#[derive(Serialize, Deserialize)]
+struct Head {
+    columns: Vec<(String, Kind)>,
+}
+
+#[derive(Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+enum Kind {
+    Text,
+    Integer,
+    Real,
+}
+
+impl Kind {
+    fn of(value: &Value) -> Kind {
+        match value {
+            Value::Text(_) => Kind::Text,
+            Value::Integer(_) => Kind::Integer,
+            Value::Real(_) => Kind::Real,
+        }
+    }
+
+    fn name(self) -> &'static str {
+        match self {
+            Kind::Text => "text",
+            Kind::Integer => "integers",
+            Kind::Real => "numbers",
+        }
+    }
+}
+
+/// An error of the file system with its place and what has to be there.
+pub(super) fn at(path: &Path, wanted: &'static str) -> impl Fn(std::io::Error) -> std::io::Error {
+    let path = path.display().to_string();
+    move |error| std::io::Error::new(error.kind(), format!("{path}: {error}; {wanted}"))
+}
+
+/// What an export lacks is a fault of the export, and not of the disk.
+pub(super) fn absent(error: std::io::Error) -> StoreError {
+    match error.kind() {
+        ErrorKind::NotFound => StoreError::Export(error.to_string()),
+        _ => StoreError::Files(error),
+    }
+}
+
+pub(super) async fn export_table(
+    snapshot: &mut Transaction,
+    table: &'static str,
+    file: &Path,
+) -> Result<usize, StoreError> {
+    let mut out = BufWriter::new(File::create(file)?);
+    let mut rows = 0;
+    let mut take = |row: Row| {
+        if rows == 0 {
+            write_line(&mut out, &Head { columns: head(&row)? })?;
+        }
+        rows += 1;
+        let values: Vec<Json> = row.values()?.into_iter().map(json).collect();
+        write_line(&mut out, &values)
+    };
+    let all = query_of(format!("SELECT * FROM {table}")).without_timeout();
+    all.run(Executor::Transaction(snapshot), &mut take).await?;
+    out.into_inner().map_err(std::io::IntoInnerError::into_error)?.sync_all()?;
+    Ok(rows)
+}
+
+/// The rows of an exported table, one after the other.
+pub(super) struct ExportedRows {
+    table: String,
+    /// The file, for errors.
+    file: String,
+    columns: Vec<(String, Kind)>,
+    lines: Lines<BufReader<File>>,
+    read: usize,
+}
+
+impl ExportedRows {
+    /// `None` where the table had no rows.
+    pub fn open(folder: &Path, table: &str) -> Result<Option<ExportedRows>, StoreError> {
+        let file = folder.join(format!("{table}.ndjson"));
+        let opened = File::open(&file).map_err(at(&file, "the manifest of the export names it"));
+        let mut lines = BufReader::new(opened.map_err(absent)?).lines();
+        let Some(head) = lines.next() else { return Ok(None) };
+        let Head { columns } = serde_json::from_str(&head?).map_err(unreadable)?;
+        let is_name = |name: &str| {
+            name.bytes()
+                .all(|byte| byte.is_ascii_lowercase() || byte.is_ascii_digit() || byte == b'_')
+        };
+        if let Some((strange, _)) = columns.iter().find(|(name, _)| !is_name(name)) {
+            return Err(StoreError::Export(format!("{table} has no column {strange:?}")));
+        }
+        let (table, file) = (table.to_owned(), file.display().to_string());
+        Ok(Some(ExportedRows { table, file, columns, lines, read: 0 }))
+    }
+
+    /// The next row, a value for each column, of its type.
+    fn next_row(&mut self) -> Result<Option<Vec<Value>>, StoreError> {
+        let Some(line) = self.lines.next() else { return Ok(None) };
+        self.read += 1;
+        let wanted = self.columns.len();
+        let values: Vec<Json> =
+            serde_json::from_str(&line?).map_err(|error| self.fault(&error.to_string()))?;
+        if values.len() != wanted {
+            return Err(self.fault(&format!("{} values for {wanted} columns", values.len())));
+        }
+        let value = |(json, (name, kind)): (Json, &(String, Kind))| {
+            value_of(json, *kind)
+                .ok_or_else(|| self.fault(&format!("column {name} holds {}", kind.name())))
+        };
+        values.into_iter().zip(&self.columns).map(value).collect::<Result<_, _>>().map(Some)
+    }
+
+    /// Of the row that was read last.
+    fn fault(&self, what: &str) -> StoreError {
+        StoreError::Export(format!("{}, row {}: {what}", self.file, self.read))
+    }
+
+    /// An error of the database that is a fault of the row.
+    fn refused(&self, error: sqlx::Error) -> StoreError {
+        if is_duplicate(&error) {
+            return self.fault(&format!("a row before it has the same key ({error})"));
+        }
+        if is_reference(&error) {
+            return self.fault(&format!("it refers to a row that is not there ({error})"));
+        }
+        error.into()
+    }
+
+    /// The columns have to be those of the table, each once.
+    fn check_columns(&self, known: &[Column]) -> Result<(), StoreError> {
+        let fault = |what: String| StoreError::Export(format!("{}: {what}", self.file));
+        for (place, (name, kind)) in self.columns.iter().enumerate() {
+            if self.columns[..place].iter().any(|(before, _)| before == name) {
+                return Err(fault(format!("column {name} is there twice")));
+            }
+            let Some(column) = known.iter().find(|column| column.name == *name) else {
+                return Err(fault(format!("{} has no column {name}", self.table)));
+            };
+            let wanted = Kind::of(&column.null);
+            if *kind != wanted {
+                let (found, wanted) = (kind.name(), wanted.name());
+                return Err(fault(format!("column {name} holds {wanted}, not {found}")));
+            }
+        }
+        let is_missing =
+            |column: &&Column| !self.columns.iter().any(|(name, _)| *name == column.name);
+        match known.iter().find(is_missing) {
+            Some(Column { name, .. }) => Err(fault(format!("column {name} is missing"))),
+            None => Ok(()),
+        }
+    }
+
+    /// Whether each column has to hold something, and what.
+    fn check_values(
+        &self,
+        values: &[Value],
+        wanted: &[(bool, Option<TextForm>)],
+    ) -> Result<(), StoreError> {
+        for ((value, (name, _)), (is_needed, wanted)) in
+            values.iter().zip(&self.columns).zip(wanted)
+        {
+            if *is_needed && value.is_null() {
+                return Err(self.fault(&format!("column {name} must not be null")));
+            }
+            let (Value::Text(Some(text)), Some(wanted)) = (value, wanted) else { continue };
+            if !wanted.is(text) {
+                return Err(self.fault(&format!("column {name} holds {}", wanted.name())));
+            }
+        }
+        Ok(())
+    }
+
+    /// Reads all rows, whose values have to be what the columns of the table take and what the service can read; each that names
+    /// a blob has to name one of the manifest. Returns how many.
+    pub fn check(
+        mut self,
+        known: &[Column],
+        blobs: &BTreeSet<String>,
+    ) -> Result<usize, StoreError> {
+        self.check_columns(known)?;
+        let column = self.columns.iter().position(|(name, _)| name == "blob");
+        let is_needed =
+            |name: &str| known.iter().any(|column| column.name == name && column.is_needed);
+        let wanted =
+            |(name, _): &(String, Kind)| (is_needed(name), TextForm::of(&self.table, name));
+        let wanted: Vec<(bool, Option<TextForm>)> = self.columns.iter().map(wanted).collect();
+        while let Some(values) = self.next_row()? {
+            self.check_values(&values, &wanted)?;
+            let blob = column.map(|column| &values[column]);
+            let is_known =
+                |blob: &Value| matches!(blob, Value::Text(Some(hash)) if blobs.contains(hash));
+            if blob.is_some_and(|blob| !is_known(blob)) {
+                return Err(self.fault("its blob is none of those of the manifest"));
+            }
+        }
+        Ok(self.read)
+    }
+}
+
+pub(super) async fn import_table(
+    transaction: &mut Transaction,
+    table: &'static str,
+    folder: &Path,
+) -> Result<usize, StoreError> {
+    let Some(mut rows) = ExportedRows::open(folder, table)? else { return Ok(0) };
+    let names: Vec<&str> = rows.columns.iter().map(|(name, _)| name.as_str()).collect();
+    let places: Vec<String> = (1..=names.len()).map(|number| format!("${number}")).collect();
+    let (names, places) = (names.join(", "), places.join(", "));
+    let insert = format!("INSERT INTO {table} ({names}) VALUES ({places})");
+    while let Some(values) = rows.next_row()? {
+        let statement = query_of(insert.clone());
+        let statement = values.into_iter().fold(statement, Statement::bind);
+        statement.execute(&mut *transaction).await.map_err(|error| rows.refused(error))?;
+    }
+    Ok(rows.read)
+}
+
+fn head(row: &Row) -> Result<Vec<(String, Kind)>, sqlx::Error> {
+    Ok(row.columns()?.into_iter().map(|(name, value)| (name, Kind::of(&value))).collect())
+}
+
+fn json(value: Value) -> Json {
+    match value {
+        Value::Text(text) => text.into(),
+        Value::Integer(number) => number.into(),
+        Value::Real(number) => number.into(),
+    }
+}
+
+/// `None` for a value of another type.
+fn value_of(json: Json, kind: Kind) -> Option<Value> {
+    Some(match (kind, json) {
+        (Kind::Text, Json::Null) => Value::Text(None),
+        (Kind::Integer, Json::Null) => Value::Integer(None),
+        (Kind::Real, Json::Null) => Value::Real(None),
+        (Kind::Text, Json::String(text)) => Value::Text(Some(text)),
+        (Kind::Integer, Json::Number(number)) => Value::Integer(Some(number.as_i64()?)),
+        (Kind::Real, Json::Number(number)) => Value::Real(Some(number.as_f64()?)),
+        _ => return None,
+    })
+}
+
+fn write_line(out: &mut impl Write, line: &impl Serialize) -> Result<(), sqlx::Error> {
+    let mut text = serde_json::to_vec(line).map_err(std::io::Error::from)?;
+    text.push(b'\n');
+    Ok(out.write_all(&text)?)
+}
+
+pub(super) fn unreadable(error: serde_json::Error) -> StoreError {
+    StoreError::Export(error.to_string())
+}
