@@ -63,6 +63,7 @@ fn made_up_form() -> QuadraticForm {
         values: (0..count * 3 * NODES).map(wave).collect(),
         scales: vec![1e-5; count],
         third: vec![[1e-4; 6]; 2],
+        coupling: vec![[1e-5; 24]; 364],
     }
 }
 

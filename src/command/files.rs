@@ -7,7 +7,7 @@ use std::sync::Mutex;
 
 use clap::{Args, ValueEnum};
 
-use crate::jobs::{MeshSize, MeshSource, SourceError, StoredMesh};
+use crate::jobs::{MeshSize, MeshSource, SourceError, StoredMesh, StoredShape};
 use crate::schema::case::document::LengthUnit;
 use crate::schema::learn::model::MODEL_FILE;
 use crate::schema::wire::canonical;
@@ -132,8 +132,17 @@ impl MeshSource for FileSource {
         let stored = StoredMesh::new(mesh, stated, canonical::sha256_hex(&bytes));
         let size = MeshSize::of(&stored.shape, measured);
         size.check(self.allow_any_scale).map_err(|problem| {
+            let remedy = match &stored.shape {
+                StoredShape::Image(_) => {
+                    "the unit and the spacing are those that the file of the image states, which --units does not replace: correct them in \
+                     the file (`xyzt_units` and `pixdim` of NIfTI, `space units` and `space directions` of NRRD)"
+                }
+                StoredShape::Volume(_) | StoredShape::Surface(_) => {
+                    "state the unit by --units or by `units` of the case"
+                }
+            };
             let detail = format!(
-                "{}: state the unit by --units or by `units` of the case, or take the mesh as it is by --allow-any-scale",
+                "{}: {remedy}, or take it as it is by --allow-any-scale",
                 problem.detail
             );
             SourceError::Refused { id: id.to_owned(), code: problem.code, detail }

@@ -32,6 +32,9 @@ pub enum JobError {
     Search(SearchError),
     #[error("the scan could not be meshed: {0}")]
     Anatomy(AnatomyError),
+    /// With what the check of the scan found of its values.
+    #[error("the scan could not be meshed: {error}; its check found: {found}")]
+    DoubtfulScan { error: AnatomyError, found: String },
     #[error("the study could not be run: {0}")]
     Study(#[from] StudyError),
     #[error("{which} ran out: {allowed} {unit} are allowed by `budget`")]
@@ -58,7 +61,7 @@ impl JobError {
     pub fn class(&self) -> ErrorClass {
         match self {
             JobError::Refused(_) | JobError::Alignment(_) => ErrorClass::Input,
-            JobError::Anatomy(error) => class_of(error),
+            JobError::Anatomy(error) | JobError::DoubtfulScan { error, .. } => class_of(error),
             JobError::Prediction(ModelError::Solver(SolverError::Stopped))
             | JobError::Cancelled => ErrorClass::Cancelled,
             JobError::Prediction(ModelError::Solver(SolverError::OverBudget { .. }))
@@ -89,7 +92,7 @@ impl JobError {
         match self {
             JobError::Refused(problem) => problem.code,
             JobError::Prediction(error) => error.into(),
-            JobError::Anatomy(error) => error.into(),
+            JobError::Anatomy(error) | JobError::DoubtfulScan { error, .. } => error.into(),
             JobError::Budget { .. } => ErrorCode::BudgetExceeded,
             JobError::Cancelled => ErrorCode::Cancelled,
             JobError::Alignment(_) => ErrorCode::AlignmentFailed,

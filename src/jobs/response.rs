@@ -229,5 +229,6 @@ fn write_second_order(
         },
         scale_mm: form.scales.clone(),
         third_order_mm: form.third.clone(),
+        third_order_coupling: form.coupling.clone(),
     })
 }

@@ -15,6 +15,7 @@ use crate::store::StoreError;
 use mechanics::format::{self, Mesh, ReadLimits, WriteError};
 use mechanics::mesh::{TriangleSurface, Vector};
 use mechanics::prediction::{Skin, skin_overlap};
+use mechanics::response::coupling::couples;
 use mechanics::response::{Amounts, COLUMNS_PER_SEGMENT, Linearity, QuadraticForm, Response};
 
 /// A response in memory.
@@ -150,6 +151,7 @@ fn second_order_of(
     if values.len() != 3 * pairs * description.node_ids.len()
         || document.scale_mm.len() != pairs
         || document.third_order_mm.len() != description.segments.len()
+        || !couples(3, description.segments.len(), document.third_order_coupling.len())
     {
         return Err(broken("its columns of second order do not fit"));
     }
@@ -172,6 +174,7 @@ mod tests {
             something_stays: true,
             boxes: vec![[corner, corner]],
             sampled: Vec::new(),
+            coupling: Vec::new(),
         };
         let solver = mechanics::prediction::SolveReport::at_rest(0, 0.0);
         let values = vec![0.0; 36 * nodes as usize];

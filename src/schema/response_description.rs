@@ -148,6 +148,7 @@ impl ResponseDescription {
                 thickness_mm: columns.linearity.thickness,
                 something_stays: columns.linearity.something_stays,
                 second_order_mm: columns.linearity.sampled.iter().map(|of| of.second).collect(),
+                second_order_coupling: columns.linearity.coupling.clone(),
                 range_mm: LINEAR_RANGE_MM,
             },
             second_order: origin.second_order,
@@ -186,6 +187,7 @@ impl ResponseDescription {
                     second,
                 })
                 .collect(),
+            coupling: self.linearity.second_order_coupling.clone(),
         }
     }
 

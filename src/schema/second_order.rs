@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 use mechanics::response::QuadraticForm;
+use mechanics::response::coupling::PROBES;
 
 /// The binary file of the columns.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
@@ -27,6 +28,11 @@ pub struct LinearityDocument {
     /// x, y, z through its centre; grows with the square. Absent if a rule of thumb is used.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub second_order_mm: Vec<[f64; 6]>,
+    /// What probes of the skin measure of the second-order term of each pair of these directions, of all segments one after the other,
+    /// in the order (0,0), (0,1), ... (1,1), ...: a plan has the sum of its squares times `second_order_mm`, times the length of all
+    /// of its products of these over the sum of its squares times the length of each.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub second_order_coupling: Vec<[f32; PROBES]>,
     /// The estimate above which a result is outside the linear range.
     pub range_mm: f64,
 }
@@ -42,12 +48,21 @@ pub struct SecondOrderDocument {
     /// For each segment the mean length on the skin of the third-order term for 1 mm along x, y, z and for 1 rad about
     /// x, y, z through its centre; grows with the cube.
     pub third_order_mm: Vec<[f64; 6]>,
+    /// The same as `second_order_coupling` of every three directions, (0,0,0), (0,0,1), ... (0,1,1), ...
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub third_order_coupling: Vec<[f32; PROBES]>,
 }
 
 impl SecondOrderDocument {
     /// The form with its columns.
     pub fn to_form(&self, numbers: usize, values: Vec<i16>) -> QuadraticForm {
         let (scales, third) = (self.scale_mm.clone(), self.third_order_mm.clone());
-        QuadraticForm { numbers, values, scales, third }
+        QuadraticForm {
+            numbers,
+            values,
+            scales,
+            third,
+            coupling: self.third_order_coupling.clone(),
+        }
     }
 }

@@ -190,6 +190,36 @@ fn surfaces_in_metres_are_meshed_where_the_unit_is_said() {
 }
 
 #[test]
+fn a_scan_whose_file_states_a_wrong_unit_is_refused_with_what_replaces_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let (scan, out) = (folder.path().join("ct.nrrd"), folder.path().join("out"));
+    let header = "NRRD0004\ntype: uchar\ndimension: 3\nspace: left-posterior-superior\nsizes: 4 4 4\n\
+                  space directions: (50,0,0) (0,50,0) (0,0,50)\nspace units: \"m\" \"m\" \"m\"\nspace origin: (0,0,0)\n\
+                  encoding: raw\n\n";
+    fs::write(&scan, [header.as_bytes(), &[0; 64]].concat()).unwrap();
+    let refused = facies(&["mesh", "--scan", path(&scan), "--out", path(&out)]);
+    assert_eq!(refused.status.code(), Some(2));
+    let told = text(&refused.stderr);
+    assert!(told.contains("units-suspect") && told.contains("`space units`"), "{told}");
+    assert!(!told.contains("state the unit by --units"), "{told}");
+}
+
+#[test]
+fn a_scan_that_cannot_be_meshed_is_refused_with_what_its_check_found() {
+    let folder = tempfile::tempdir().unwrap();
+    let (scan, out) = (folder.path().join("ct.nrrd"), folder.path().join("out"));
+    // Values without an intercept: nothing is air.
+    let header = "NRRD0004\ntype: uchar\ndimension: 3\nspace: left-posterior-superior\nsizes: 20 20 20\n\
+                  space directions: (5,0,0) (0,5,0) (0,0,5)\nspace origin: (0,0,0)\nencoding: raw\n\n";
+    fs::write(&scan, [header.as_bytes(), &[100; 8000]].concat()).unwrap();
+    let refused =
+        facies(&["mesh", "--scan", path(&scan), "--tetrahedra", "8000", "--out", path(&out)]);
+    assert_ne!(refused.status.code(), Some(0));
+    let told = text(&refused.stderr);
+    assert!(told.contains("could not be meshed") && told.contains("(no-hounsfield)"), "{told}");
+}
+
+#[test]
 fn a_skin_and_a_bone_give_what_their_scan_gives_and_segments_need_no_cuts() {
     let folder = tempfile::tempdir().unwrap();
     let file = |name: &str| folder.path().join(name);

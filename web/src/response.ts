@@ -98,7 +98,7 @@ export class SkinSum {
 
   /** What the second order leaves out, estimated at each node in mm: the mean that samples of the third order tell of the skin that moves
    * (docs/estimates.md), shared out as the second order is. Zero of a response of order 1, which says nothing of its nodes. */
-  leftOut_mm(samples: number[][]): Float32Array {
+  leftOut_mm(samples: number[][], coupling?: number[][]): Float32Array {
     const { displacement_mm, second_mm, columns: { nodes } } = this;
     if (second_mm === undefined) return new Float32Array(nodes);
     const found = lengths(second_mm);
@@ -106,7 +106,7 @@ export class SkinSum {
     const least = MOVING * first.reduce((most, one) => Math.max(most, one), 0);
     let [sum, moving] = [0, 0];
     first.forEach((one, node) => { if (one >= least) { sum += found[node]!; moving += 1; } });
-    const share = sum > 0 ? (thirdOrder(samples, this.factors) * moving) / sum : 0;
+    const share = sum > 0 ? (thirdOrder(samples, this.factors, coupling) * moving) / sum : 0;
     return found.map((one) => share * one);
   }
 
@@ -168,13 +168,24 @@ export class SkinSum {
 const MOVING = 0.1;
 
 /** The mean length over the skin that moves of the third order, in mm, from its samples for 1 mm along x, y, z and 1 rad about them: a cubic
- * term that is put together as if it were the same in every direction. */
-export function thirdOrder(samples: number[][], factors: number[]): number {
-  const parts = samples.map((own, segment) => {
-    const numbers = rigidNumbers(factors.slice(PER_SEGMENT * segment, PER_SEGMENT * (segment + 1)));
-    return numbers.reduce((sum, number, at) => sum + number * number * Math.cbrt(own[at] ?? 0) ** 2, 0);
-  });
-  return parts.reduce((sum, part) => sum + part, 0) ** 1.5;
+ * term that is put together as if it were the same in every direction, times what probes of every three directions say against that. */
+export function thirdOrder(samples: number[][], factors: number[], coupling: number[][] = []): number {
+  const numbers = samples.flatMap((_, segment) => rigidNumbers(factors.slice(PER_SEGMENT * segment, PER_SEGMENT * (segment + 1))));
+  const alone = (lengths: number[]) => lengths.reduce((sum, one, at) => sum + numbers[at]! ** 2 * Math.cbrt(one) ** 2, 0) ** 1.5;
+  const single: number[] = [];
+  const together: number[] = [];
+  let place = 0;
+  for (let j = 0; j < numbers.length && coupling.length > 0; j++) {
+    for (let k = j; k < numbers.length; k++) {
+      for (let l = k; l < numbers.length; l++) {
+        const probed = coupling[place++] ?? [];
+        if (j === l) single[j] = Math.hypot(...probed);
+        probed.forEach((one, at) => { together[at] = (together[at] ?? 0) + numbers[j]! * numbers[k]! * numbers[l]! * one; });
+      }
+    }
+  }
+  const probed = alone(single);
+  return alone(samples.flat()) * (probed > 0 ? Math.hypot(...together) / probed : 1);
 }
 
 /** The translation of the centre in mm and the rotation vector in radians, of the twelve numbers of a segment. */

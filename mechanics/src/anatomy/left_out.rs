@@ -2,7 +2,7 @@
 
 use crate::domain::LeftOut;
 use crate::mesh::{Vector, Warning};
-use crate::meshing::MeshingReport;
+use crate::meshing::{Gap, LostPiece, MeshingReport};
 
 /// Pieces of a scan of less than this share of what is kept are the table and tubes that its report tells of.
 const LARGE_OBJECT: f64 = 0.1;
@@ -12,8 +12,12 @@ const LEAST: f64 = 1.0;
 const SHARE: f64 = 0.01;
 /// Less tissue in no cell than this share is what cells are too coarse for; nodes of cells of 6 mm count a ball to 1 %.
 const MOST_LOST: f64 = 0.025;
-/// Less of the bone than this share, meshed as tissue, is what cells are too coarse for.
-const MOST_FILLED: f64 = 0.03;
+/// Of tissue in one piece, in ml.
+const LEAST_PIECE: f64 = 1.0;
+/// Shorter gaps in the skin are folds, in mm.
+const SMALL_GAP: f64 = 10.0;
+/// So many places are named.
+const TOLD: usize = 3;
 const MM3_IN_ML: f64 = 1000.0;
 
 /// The largest of some pieces, and all of them. Volumes in ml.
@@ -48,30 +52,47 @@ pub(super) fn left_out_of_mesh(report: &MeshingReport) -> Option<Warning> {
     (pieces.all > SHARE * pieces.kept).then(|| pieces.warning("tissue"))
 }
 
-/// Tissue thinner than cells, which the mesh lacks, and bone thinner than cells, which is tissue in it.
-pub(super) fn thinner_than_cells(report: &MeshingReport, bone: f64) -> Vec<Warning> {
+/// Tissue thinner than cells, which the mesh lacks.
+pub(super) fn thinner_than_cells(report: &MeshingReport) -> Option<Warning> {
     let ml = |mm3: f64| mm3 / MM3_IN_ML;
-    let (lost, filled) = (ml(report.volume_lost), ml(report.bone_filled));
-    let remedy = "more tetrahedra, or `size.fine` there, resolve it";
-    let place = report.sheets_lost.first().map_or(String::new(), |sheet| {
-        let [x, y, z] = sheet.centre.into();
-        format!(", most of it around ({x:.0}, {y:.0}, {z:.0}) mm")
-    });
+    let lost = ml(report.volume_lost);
+    let of =
+        |piece: &LostPiece| format!("{:.1} ml around ({}) mm", ml(piece.volume), place(&piece.at));
+    let places: Vec<String> = report.pieces_lost.iter().take(TOLD).map(of).collect();
+    let largest = ml(report.pieces_lost.first().map_or(0.0, |piece| piece.volume));
     let detail = format!(
-        "about {lost:.0} ml of tissue thinner than cells is missing from the mesh{place}; {:.0} ml are meshed, with cubes of {:.1} mm at \
-         the finest; {remedy}",
+        "about {:.1} ml of tissue thinner than cells is missing from the mesh, in one piece {}; {:.0} ml are meshed, with cubes of {:.1} mm at \
+         the finest; more tetrahedra, or `size.fine` there, resolve it",
+        lost.max(largest),
+        places.join(", "),
         ml(report.volume),
         report.finest
     );
-    let sheet = (lost > MOST_LOST * ml(report.volume) && lost > LEAST)
-        .then(|| Warning::new("thin-tissue-lost", detail).with("volume_ml", lost));
-    let [x, y, z] = report.bone_filled_centre.into();
+    let is_told = largest > LEAST_PIECE || lost > MOST_LOST * ml(report.volume) && lost > LEAST;
+    let warning = || Warning::new("thin-tissue-lost", detail).with("volume_ml", lost.max(largest));
+    is_told.then(|| warning().with("largest_ml", largest))
+}
+
+/// Air between tissue and tissue that reaches the outer air, as between lips, and is tissue in the mesh.
+pub(super) fn gaps_closed(report: &MeshingReport) -> Option<Warning> {
+    let gaps = report.gaps_closed.iter().filter(|gap| gap.at_skin);
+    let gaps: Vec<&Gap> = gaps.filter(|gap| (gap.high - gap.low).amax() > SMALL_GAP).collect();
+    let of = |gap: &&Gap| {
+        format!("{:.0} mm long around ({})", (gap.high - gap.low).amax(), place(&gap.centre))
+    };
+    let largest: Vec<String> = gaps.iter().take(TOLD).map(of).collect();
     let detail = format!(
-        "about {filled:.1} ml of bone thinner than cells is meshed as tissue, around ({x:.0}, {y:.0}, {z:.0}) mm in the mean; {remedy}"
+        "{} gaps of the skin thinner than cells are tissue in the mesh: {} mm. What is on both sides of one moves together there, as closed \
+         lips do; more tetrahedra, or `size.fine` there, keep it open",
+        gaps.len(),
+        largest.join(", ")
     );
-    let bone = (report.bone_filled > MOST_FILLED * bone && filled > LEAST)
-        .then(|| Warning::new("thin-bone-lost", detail).with("volume_ml", filled));
-    sheet.into_iter().chain(bone).collect()
+    let warning = || Warning::new("gaps-closed", detail).with("gaps", gaps.len() as f64);
+    (!gaps.is_empty()).then(warning)
+}
+
+fn place(at: &Vector) -> String {
+    format!("{:.0}, {:.0}, {:.0}", at.x, at.y, at.z)
 }
 
 impl Pieces {

@@ -17,6 +17,7 @@ mod size;
 pub mod skin_scan;
 mod skin_scan_error;
 pub mod surfaces;
+mod thin_bone;
 pub mod whole_bone;
 
 pub use closing::Closing;
@@ -27,6 +28,8 @@ pub use whole_bone::WholeBone;
 use std::collections::BTreeMap;
 
 use rayon::prelude::*;
+
+use thin_bone::join_thin_bone;
 
 use crate::domain::{Boundary, Domain, ImageDomainError, ImageOptions, SurfaceDomainError};
 use crate::image::ImageVolume;
@@ -168,11 +171,13 @@ pub fn build(
     if skin.is_empty() {
         return Err(AnatomyError::NoSkin { tissue_ml: tissue.report.volume / 1000.0 });
     }
-    let classes = classes(&tissue, (&bone, wall_voxels), teeth.as_ref(), rules);
+    let (classes, bare) = classes(&tissue, domain, (&bone, wall_voxels), teeth.as_ref(), rules);
     let mut warnings = classes.warnings.clone();
     warnings.extend(off_bone(&classes));
     warnings.extend(left_out::left_out_of_mesh(&tissue.report));
-    warnings.extend(left_out::thinner_than_cells(&tissue.report, bone.labels.volume()));
+    warnings.extend(left_out::thinner_than_cells(&tissue.report));
+    warnings.extend(left_out::gaps_closed(&tissue.report));
+    warnings.extend(bare);
     if rules.teeth_slide && teeth.is_none() && !bone.segments.is_empty() {
         warnings.push(teeth_joined());
     }
@@ -276,10 +281,11 @@ fn touching(bone: &Labelled) -> Vec<Warning> {
 
 fn classes(
     tissue: &TissueMesh,
+    domain: &dyn Domain,
     (bone, wall_voxels): (&Labelled, f64),
     teeth: Option<&Teeth>,
     rules: &AnatomyRules,
-) -> NodeClasses {
+) -> (NodeClasses, Vec<Warning>) {
     // Where boundaries meet, bone holds.
     let order = [Boundary::Bone, Boundary::Cut, Boundary::Skin, Boundary::Airway];
     let first = |set: &crate::meshing::BoundarySet| {
@@ -287,9 +293,10 @@ fn classes(
     };
     let marks: Vec<Option<Boundary>> = tissue.boundaries.iter().map(first).collect();
     let reach = BEHIND * bone.labels.placement().steps.iter().sum::<Vector>().norm();
+    let slides = |place: &Vector| teeth.is_some_and(|teeth| teeth.near(place));
     let contact = BoneContact {
         behind: &|place, normal| bone.labels.nearest_within(place, normal, reach, wall_voxels),
-        slides: &|place| teeth.is_some_and(|teeth| teeth.near(place)),
+        slides: &slides,
     };
     let class_rules = ClassRules {
         // Any two segments may be moved differently by some plan.
@@ -298,5 +305,8 @@ fn classes(
         scan_ends_fixed: rules.scan_ends_fixed,
         fixed_above: None,
     };
-    classify(TissueBoundary { mesh: &tissue.volume, marks: &marks }, &contact, &class_rules)
+    let boundary = TissueBoundary { mesh: &tissue.volume, marks: &marks };
+    let mut classes = classify(boundary, &contact, &class_rules);
+    let bare = join_thin_bone(boundary, domain, (bone, &slides), (&class_rules, &mut classes));
+    (classes, bare)
 }

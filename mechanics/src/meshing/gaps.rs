@@ -32,9 +32,11 @@ pub struct Gap {
     pub high: Vector,
     /// Lattice edges that met it.
     pub edges: usize,
+    /// What is beside it is, at one place at least, the outer skin.
+    pub at_skin: bool,
 }
 
-/// Gaps closed and sheets lost.
+/// Gaps of air closed and sheets lost.
 #[derive(Debug, Default)]
 pub(super) struct Thin {
     pub gaps: Vec<Gap>,
@@ -45,19 +47,17 @@ pub(super) struct Thin {
     pub filled: f64,
     /// Of all sheets as far as edges met them, in mm³.
     pub met: f64,
-    /// Of all gaps that are bone, in mm³, and their mean place.
-    pub bone: f64,
-    pub bone_centre: Vector,
 }
 
 /// A place on an edge of the lattice that does not lie on the side of its ends.
+#[derive(Clone, Copy)]
 struct EdgeCrossing {
     ends_inside: bool,
     place: Vector,
     /// What it stands for, in mm³.
     volume: f64,
-    /// Tissue ends there at bone.
-    at_bone: bool,
+    /// Where tissue ends on the way to it, or begins.
+    boundary: Boundary,
 }
 
 /// Candidates of gaps.
@@ -81,21 +81,17 @@ pub(super) fn find(
     let met = watch.map(&numbers, |&number| search.about(number))?;
     let met: Vec<EdgeCrossing> = met.into_iter().flatten().collect();
     let apart = APART * 2.0 * lattice.grid.unit;
-    let side = |inside: bool| {
-        let met = met.iter().filter(move |met| met.ends_inside == inside);
-        clusters(&met.map(|met| met.place).collect::<Vec<_>>(), apart)
-    };
-    let gaps = || met.iter().filter(|met| met.ends_inside);
-    let bone: f64 = gaps().filter(|met| met.at_bone).map(|met| met.volume).sum();
-    let moments = gaps().filter(|met| met.at_bone).map(|met| met.place * met.volume);
+    let (gaps, sheets): (Vec<EdgeCrossing>, Vec<EdgeCrossing>) =
+        met.into_iter().partition(|met| met.ends_inside);
+    let volume = |met: &[EdgeCrossing]| met.iter().map(|met| met.volume).sum::<f64>();
+    let air: Vec<EdgeCrossing> =
+        gaps.iter().filter(|met| met.boundary != Boundary::Bone).copied().collect();
     Ok(Thin {
-        gaps: side(true),
-        sheets: side(false),
+        gaps: clusters(&air, apart),
+        sheets: clusters(&sheets, apart),
         tissue: tissue(lattice, leaves),
-        filled: gaps().map(|met| met.volume).sum(),
-        met: met.iter().filter(|met| !met.ends_inside).map(|met| met.volume).sum(),
-        bone,
-        bone_centre: moments.sum::<Vector>() / bone.max(f64::MIN_POSITIVE),
+        filled: volume(&gaps),
+        met: volume(&sheets),
     })
 }
 
@@ -139,16 +135,16 @@ impl Search<'_> {
         }
         let ends = [from, to].map(|node| self.lattice.position(node));
         let place = Edge { ends, inside: ends_inside }.missed(self.domain, DEEP)?;
-        let at_bone =
-            ends_inside && self.domain.crossing(&ends[0], &place).boundary == Boundary::Bone;
-        Some(EdgeCrossing { ends_inside, place, volume: cube.powi(3) / EDGES, at_bone })
+        let [inside, outside] = if ends_inside { [ends[0], place] } else { [place, ends[0]] };
+        let boundary = self.domain.crossing(&inside, &outside).boundary;
+        Some(EdgeCrossing { ends_inside, place, volume: cube.powi(3) / EDGES, boundary })
     }
 }
 
 /// Places that lie in neighbouring cubes together, those with most places first.
-fn clusters(places: &[Vector], apart: f64) -> Vec<Gap> {
+fn clusters(met: &[EdgeCrossing], apart: f64) -> Vec<Gap> {
     let cube = |place: &Vector| <[i64; 3]>::from((place / apart).map(|x| x.floor() as i64));
-    let mut cubes: Vec<[i64; 3]> = places.iter().map(cube).collect();
+    let mut cubes: Vec<[i64; 3]> = met.iter().map(|met| cube(&met.place)).collect();
     cubes.sort_unstable();
     cubes.dedup();
     let mut joined = DisjointSets::new(cubes.len());
@@ -161,11 +157,17 @@ fn clusters(places: &[Vector], apart: f64) -> Vec<Gap> {
         }
     }
     let mut of_root: Vec<Option<Gap>> = vec![None; cubes.len()];
-    for place in places {
+    for EdgeCrossing { place, boundary, .. } in met {
         let number = cubes.binary_search(&cube(place)).unwrap_or_default();
         let gap = &mut of_root[joined.root(number as u32) as usize];
-        let gap =
-            gap.get_or_insert(Gap { centre: Vector::zeros(), low: *place, high: *place, edges: 0 });
+        let gap = gap.get_or_insert(Gap {
+            centre: Vector::zeros(),
+            low: *place,
+            high: *place,
+            edges: 0,
+            at_skin: false,
+        });
+        gap.at_skin |= *boundary == Boundary::Skin;
         gap.edges += 1;
         gap.centre += (place - gap.centre) / gap.edges as f64;
         gap.low = gap.low.inf(place);

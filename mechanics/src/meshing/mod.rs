@@ -24,6 +24,7 @@ mod grid;
 mod lattice;
 #[cfg(test)]
 mod lattice_tests;
+mod lost;
 mod missed;
 mod node_table;
 mod octree;
@@ -47,6 +48,7 @@ mod watch;
 pub use boundary_set::BoundarySet;
 pub use error::MeshingError;
 pub use gaps::Gap;
+pub use lost::LostPiece;
 pub use pieces::Piece;
 pub use report::{Angles, MeshingReport};
 pub use settings::MeshingSettings;

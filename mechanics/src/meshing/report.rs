@@ -4,9 +4,9 @@ use rayon::prelude::*;
 
 use super::draft::Draft;
 use super::gaps::Gap;
+use super::lost::LostPiece;
 use super::pieces::Piece;
 use super::shape::dihedral_cosines;
-use crate::mesh::Vector;
 
 /// The dihedral angles of a mesh, in degrees.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -50,15 +50,14 @@ pub struct MeshingReport {
     pub fitted: usize,
     /// Pieces that were left out, the largest first.
     pub dropped: Vec<Piece>,
-    /// Gaps in the tissue that are thinner than a cell and have been filled, the largest first.
+    /// Gaps of air that are thinner than a cell and have been filled, the largest first.
     pub gaps_closed: Vec<Gap>,
     /// Tissue that is thinner than a cell and has been lost, the largest first.
     pub sheets_lost: Vec<Gap>,
     /// Of all tissue that is thinner than cells and in none, about, in mm³.
     pub volume_lost: f64,
-    /// Of bone thinner than a cell that has been filled with tissue, in mm³, and its mean place.
-    pub bone_filled: f64,
-    pub bone_filled_centre: Vector,
+    /// The largest connected pieces of it, by points in cells beside, the largest first.
+    pub pieces_lost: Vec<LostPiece>,
 }
 
 impl MeshingReport {

@@ -9,6 +9,7 @@ use super::error::MeshingError;
 use super::gaps::{self, Thin};
 use super::grid::Grid;
 use super::lattice::Lattice;
+use super::lost::{self, LostPiece};
 use super::octree::Leaves;
 use super::pieces::Piece;
 use super::pinches::Pinched;
@@ -60,6 +61,7 @@ struct Counts {
     undone: usize,
     pinched: Pinched,
     thin: Thin,
+    lost: Vec<LostPiece>,
 }
 
 /// Meshes a body. The same body and settings give the same mesh, bit by bit, on any number of threads.
@@ -117,8 +119,7 @@ pub fn mesh(
         gaps_closed: counts.thin.gaps,
         sheets_lost: counts.thin.sheets,
         volume_lost: (tissue + filled - volume - apart).clamp(0.0, LOST_OF_MET * met),
-        bone_filled: counts.thin.bone,
-        bone_filled_centre: counts.thin.bone_centre,
+        pieces_lost: counts.lost,
     };
     watch.end();
     Ok(finished(draft, &regions, report))
@@ -176,12 +177,17 @@ fn fill_lattice(
     let (fans, pinched) = pinches::part(&mut warp);
     watch.stage()?;
     let draft = stencils::fill(&warp, &fans, watch)?;
+    let lost = match settings.find_gaps {
+        true => lost::find(&leaves, &draft, domain, watch)?,
+        false => Vec::new(),
+    };
     let counts = Counts {
         leaves: leaves.list.len(),
         snapped: warp.snapped,
         undone: warp.undone,
         pinched,
         thin,
+        lost,
     };
     if draft.tetrahedra.is_empty() {
         return Err(MeshingError::Empty { low, high, size: size.finest });

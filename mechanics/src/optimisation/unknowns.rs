@@ -306,8 +306,13 @@ mod tests {
         let constant =
             ConstantColumn { derivative: Vec::new(), value: 0.46, interval: (0.3, 0.49) };
         let numbers = COLUMNS_PER_SEGMENT;
-        let form =
-            QuadraticForm { numbers, values: Vec::new(), scales: Vec::new(), third: Vec::new() };
+        let form = QuadraticForm {
+            numbers,
+            values: Vec::new(),
+            scales: Vec::new(),
+            third: Vec::new(),
+            coupling: Vec::new(),
+        };
         let question = Question {
             response: &response,
             second_order: Some(&form),

@@ -128,10 +128,26 @@ impl BoneLabels {
         best
     }
 
+    /// A place in voxels from the centre of the first one, along the axes.
+    pub(super) fn index_of(&self, place: &Vector) -> Vector {
+        self.to_index * (place - self.placement.origin)
+    }
+
+    /// Whether a voxel is of bone that holds tissue or moves it.
+    pub(super) fn holds(&self, voxel: usize) -> bool {
+        let label = self.labels[voxel];
+        label == REST || label >= FIRST_SEGMENT
+    }
+
+    /// Of a voxel, in mm³.
+    pub fn voxel_volume(&self) -> f64 {
+        Matrix3::from_columns(&self.placement.steps).determinant().abs()
+    }
+
     /// Of all bone, in mm³.
     pub fn volume(&self) -> f64 {
         let voxels = self.labels.iter().filter(|&&label| label != NO_BONE).count();
-        voxels as f64 * Matrix3::from_columns(&self.placement.steps).determinant().abs()
+        voxels as f64 * self.voxel_volume()
     }
 
     /// The lowest and the highest centres of voxels of bone, in mm.

@@ -58,8 +58,12 @@ pub struct NodeClasses {
     pub roles: Vec<Role>,
     /// Nodes that are free because others beside them move otherwise.
     pub in_band: usize,
+    /// These, ascending, with the roles that they would have.
+    pub freed: Vec<(u32, Role)>,
     /// Nodes on bone that no bone was found behind.
     pub without_bone: usize,
+    /// These, ascending, before any is joined to bone that no cell resolved.
+    pub unbacked: Vec<u32>,
     pub warnings: Vec<Warning>,
 }
 
@@ -70,7 +74,7 @@ pub fn classify(
     rules: &ClassRules,
 ) -> NodeClasses {
     let normals = outward_normals(&tissue);
-    let mut without_bone = 0;
+    let mut unbacked = Vec::new();
     let mut overlaps = Overlaps::default();
     let mut roles = Vec::with_capacity(tissue.mesh.nodes.len());
     for (node, place) in tissue.mesh.nodes.iter().enumerate() {
@@ -79,12 +83,13 @@ pub fn classify(
             Some(Boundary::Cut) if rules.scan_ends_fixed => Some(Role::Fixed),
             Some(Boundary::Cut | Boundary::Skin | Boundary::Airway) | None => Some(Role::Free),
         };
-        without_bone += usize::from(on_bone.is_none());
+        unbacked.extend(on_bone.is_none().then_some(node as u32));
         let beyond = rules.fixed_above.is_some_and(|plane| plane.height(place) > 0.0);
         roles.push(overlaps.strongest(on_bone.unwrap_or(Role::Free), beyond));
     }
-    let in_band = free_near_other_segments(&tissue, rules, &mut roles);
-    NodeClasses { roles, in_band, without_bone, warnings: overlaps.warnings() }
+    let freed = free_near_other_segments(&tissue, rules, &mut roles);
+    let (in_band, without_bone) = (freed.len(), unbacked.len());
+    NodeClasses { roles, in_band, freed, without_bone, unbacked, warnings: overlaps.warnings() }
 }
 
 /// `None` where no bone lies behind a node that lies on bone.
@@ -135,23 +140,27 @@ impl Overlaps {
     }
 }
 
-/// Frees constrained nodes that are near nodes with another movement, or share a cell with one; returns how many.
+/// Frees constrained nodes that are near nodes with another movement, or share a cell with one; returns them.
 fn free_near_other_segments(
     tissue: &TissueBoundary<'_>,
     rules: &ClassRules,
     roles: &mut [Role],
-) -> usize {
-    let movement = |role: &Role| match role {
-        Role::Joined(segment) | Role::Sliding(Some(segment)) => Some(rules.movements[*segment]),
-        Role::Fixed | Role::Sliding(None) => Some(0),
-        Role::Free => None,
-    };
-    let movements: Vec<Option<u32>> = roles.iter().map(movement).collect();
+) -> Vec<(u32, Role)> {
+    let movements: Vec<Option<u32>> = roles.iter().map(|role| rules.movement(*role)).collect();
     let near = near_other_segments(tissue.mesh, &movements, rules.band_mm);
-    for &node in &near {
-        roles[node as usize] = Role::Free;
+    let freed = |node: u32| (node, std::mem::replace(&mut roles[node as usize], Role::Free));
+    near.into_iter().map(freed).collect()
+}
+
+impl ClassRules {
+    /// The number of the movement of nodes with a role; none of free ones.
+    pub(super) fn movement(&self, role: Role) -> Option<u32> {
+        match role {
+            Role::Joined(segment) | Role::Sliding(Some(segment)) => Some(self.movements[segment]),
+            Role::Fixed | Role::Sliding(None) => Some(0),
+            Role::Free => None,
+        }
     }
-    near.len()
 }
 
 /// For each node on bone the unit normal out of the tissue, by the area of its faces; those of which all nodes are on

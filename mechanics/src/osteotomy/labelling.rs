@@ -165,7 +165,10 @@ fn found(
         sum += grid.centre(voxel);
     }
     let left = Pieces::new(osteotomy, grid, |voxel| {
-        labels.owner(voxel) == Some(Owner::Rest) && osteotomy.admits(segment, &grid.centre(voxel))
+        let centre = grid.centre(voxel);
+        labels.owner(voxel) == Some(Owner::Rest)
+            && osteotomy.admits(segment, &centre)
+            && !osteotomy.is_across(segment, &centre)
     });
     FoundSegment {
         name: osteotomy.segments()[segment].name.clone(),

@@ -106,6 +106,14 @@ impl Osteotomy {
         })
     }
 
+    /// Whether a point that a segment admits lies, within the extent of a bounded cut of it, on the other side of that.
+    pub fn is_across(&self, segment: usize, point: &Vector) -> bool {
+        self.segments[segment].sides.iter().any(|side| {
+            let cut = &self.cuts[side.cut];
+            cut.is_bounded() && cut.reaches(point) && !cut.leaves(point, side.side)
+        })
+    }
+
     /// Whether a bounded cut parts two points of the bone, for every segment.
     pub fn severs(&self, one: &Vector, other: &Vector) -> bool {
         self.cuts.iter().any(|cut| cut.is_bounded() && cut.parts(one, other))

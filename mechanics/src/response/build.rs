@@ -4,8 +4,10 @@
 //! or u = e_i, j = 3, and zero wherever else a node is held. Sliding nodes are held across their wall and free
 //! along it: at n . u(x) where s carries the wall, at zero where something else does or nothing.
 
+use super::coupling::{PROBES, Probed};
 use super::inner_loads::load_case;
 use super::linearity::{self, Linearity, SampledSecond, joined_nodes};
+use super::probes::{Probes, Squares};
 use super::quadratic_form::{QuadraticForm, pairs};
 use super::response_error::ResponseError;
 use super::rigid_numbers::SAMPLES;
@@ -215,7 +217,7 @@ pub fn build_of(
     // 2. The tissue for each of them.
     let nodes = scene.skin.nodes().to_vec();
     let all = Cases { all: &cases, of_segments };
-    let Solved { solved, sampled, second_order } = solve(scene, &all, order, progress)?;
+    let Solved { solved, sampled, coupling, second_order } = solve(scene, &all, order, progress)?;
 
     // 3. Its skin.
     progress.phase(Phase::Surface);
@@ -229,6 +231,7 @@ pub fn build_of(
     let mut linearity = linearity::of_scene(scene, &chosen, &parts);
     let centres = segments.iter().map(|segment| segment.centre);
     let samples = centres.zip(sampled);
+    linearity.coupling = coupling;
     linearity.sampled = samples.map(|(centre, second)| SampledSecond { centre, second }).collect();
     let (solver, elements) = (hardest(&solved)?, scene.elements());
     let carries_wall =
@@ -253,9 +256,11 @@ pub fn build_of(
 
 /// The tissue for each load case, samples of its second order for each segment where elements have one, and all of it
 /// where that is asked for.
+#[derive(Default)]
 struct Solved {
     solved: Vec<Equilibrium>,
     sampled: Vec<[f64; SAMPLES]>,
+    coupling: Vec<Probed>,
     second_order: Option<QuadraticForm>,
 }
 
@@ -273,7 +278,7 @@ fn solve(
 ) -> Result<Solved, ResponseError> {
     let Some(system) = scene.assemble(progress)? else {
         let solved = scene.solve_cases(cases.all, progress)?;
-        return Ok(Solved { solved, sampled: Vec::new(), second_order: None });
+        return Ok(Solved { solved, ..Solved::default() });
     };
     let columns = system.solve(cases.all, progress)?;
     let pressures = system.pressures.as_ref().map(|pressures| &pressures.cells);
@@ -281,16 +286,21 @@ fn solve(
     let skin = &scene.skin;
     let of_segments = &columns[..cases.of_segments];
     let solutions = Solutions { series, system: &system, columns: of_segments, skin };
-    let sampled = match scene.has_pulling_fibres() {
-        true => Vec::new(),
-        false => solutions.second_of_each(progress)?,
-    };
-    let second_order = match order {
-        ResponseOrder::First => None,
-        ResponseOrder::Second => Some(solutions.quadratic_form(progress)?),
-    };
+    let (mut sampled, mut coupling, mut second_order) = (Vec::new(), Vec::new(), None);
+    if !scene.has_pulling_fibres() {
+        sampled = solutions.second_of_each(progress)?;
+        let probes = Probes::solve(&solutions, progress)?;
+        coupling = probes.second(&solutions)?;
+        if order == ResponseOrder::Second {
+            let mut squares = Squares::new(of_segments.len());
+            let pass = &mut |pair, solution: &_| squares.add(pair, solution);
+            let mut form = solutions.quadratic_form(pass, progress)?;
+            form.coupling = probes.third(&solutions, &squares.states, progress)?;
+            second_order = Some(form);
+        }
+    }
     let solved = columns.into_iter().map(|solved| solved.equilibrium).collect();
-    Ok(Solved { solved, sampled, second_order })
+    Ok(Solved { solved, sampled, coupling, second_order })
 }
 
 impl Columns {
@@ -361,11 +371,13 @@ fn check_memory(scene: &Scene, columns: usize, order: ResponseOrder) -> Result<(
         ResponseOrder::First => 0.0,
         ResponseOrder::Second => {
             let stored = pairs(columns).count() * 3 * size_of::<i16>();
-            let samples = 3 * SAMPLES * size_of::<Vector>();
+            let directions = columns / COLUMNS_PER_SEGMENT * SAMPLES;
+            let samples = (3 * SAMPLES + pairs(directions).count()) * size_of::<Vector>();
             stored as f64 * skin + (samples as f64 + BYTES_OF_PAIRS) * nodes
         }
     };
-    let needed_mb = (columns as f64 * nodes * BYTES_OF_NODE + second) / 1e6;
+    let probes = (2 * PROBES * size_of::<Vector>()) as f64;
+    let needed_mb = ((columns as f64 * BYTES_OF_NODE + probes) * nodes + second) / 1e6;
     let allowed_mb = scene.settings.memory_mb;
     match needed_mb > allowed_mb {
         true => Err(SolverError::OverBudget { needed_mb, allowed_mb }.into()),

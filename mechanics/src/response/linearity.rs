@@ -2,8 +2,8 @@
 //!
 //! Where elements have a second order, it is sampled: q_j, the mean length of the second-order term on the skin that moves
 //! (`moving_points`) for a unit of translation along and of rotation about each axis of each segment, and e = sum_j alpha_j^2 q_j
-//! for the numbers alpha of a plan. Exact along a sampled direction; what couples directions and segments is left out, and
-//! lengths are added as if all terms pointed the same way. Otherwise, of quadratic tetrahedra, a rule of thumb stands for it:
+//! for the numbers alpha of a plan, times what probes of the skin say of all directions together against the same sum of each
+//! alone (`coupling`). Exact along a sampled direction. Otherwise, of quadratic tetrahedra, a rule of thumb stands for it:
 //!
 //! e = 0.15 d^2 / h + 2.7 h (1 - cos theta)
 //!
@@ -19,6 +19,7 @@
 //! cos theta - 1 in each direction across the axis, and its free side by nu / (1 - nu) times that along
 //! the thickness; 2.7 = 1 + 2 nu / (1 - nu) at nu 0.46. An order of magnitude, not a bound.
 
+use super::coupling::{Probed, second_together};
 use super::rigid_numbers::{SAMPLES, rigid_numbers};
 use crate::boundary::{ConnectedPart, Holder, NodeClass};
 use crate::mesh::{EMPTY_BOUNDS, Vector, bounds_of};
@@ -48,6 +49,8 @@ pub struct Linearity {
     pub boxes: Vec<[Vector; 2]>,
     /// Of each segment; empty where the rule of thumb has to do.
     pub sampled: Vec<SampledSecond>,
+    /// Of every pair of sampled directions; empty where lengths are added without it.
+    pub coupling: Vec<Probed>,
 }
 
 /// Samples of the second order of one segment.
@@ -57,13 +60,6 @@ pub struct SampledSecond {
     pub centre: Vector,
     /// In mm for 1 mm along x, y, z and for 1 rad about x, y, z.
     pub second: [f64; SAMPLES],
-}
-
-impl SampledSecond {
-    fn of(&self, movement: &RigidMovement) -> f64 {
-        let numbers = rigid_numbers(movement, &self.centre);
-        numbers.iter().zip(&self.second).map(|(number, q)| number * number * q).sum()
-    }
 }
 
 /// How far movements are from the linear range.
@@ -102,9 +98,17 @@ impl Linearity {
         let turned = TURNED * self.thickness * (1.0 - largest_rotation.cos());
         let estimate = match self.sampled.is_empty() {
             true => stretched + turned,
-            false => self.sampled.iter().zip(movements).map(|(of, by)| of.of(by)).sum(),
+            false => self.by_samples(movements),
         };
         Nonlinearity { largest_rotation, largest_relative_movement: farthest, estimate }
+    }
+
+    fn by_samples(&self, movements: &[RigidMovement]) -> f64 {
+        let moved = self.sampled.iter().zip(movements);
+        let numbers: Vec<f64> = moved.flat_map(|(of, by)| rigid_numbers(by, &of.centre)).collect();
+        let lengths = self.sampled.iter().flat_map(|of| of.second);
+        let alone = numbers.iter().zip(lengths).map(|(number, q)| number * number * q);
+        alone.sum::<f64>() * second_together(&numbers, &self.coupling)
     }
 }
 
@@ -125,6 +129,7 @@ pub(super) fn of_scene(scene: &Scene, segments: &[usize], parts: &[ConnectedPart
         something_stays: holders.any(|holder| holder == Holder::Rest),
         boxes: segments.iter().map(box_of).collect(),
         sampled: Vec::new(),
+        coupling: Vec::new(),
     }
 }
 

@@ -8,8 +8,10 @@
 
 pub mod build;
 mod combined;
+pub mod coupling;
 mod inner_loads;
 pub mod linearity;
+mod probes;
 pub mod quadratic_form;
 mod response_error;
 mod rigid_numbers;

@@ -6,10 +6,13 @@
 //!
 //! What the second order leaves out is told from samples of the third: for each segment the mean length of u3 on the skin that moves
 //! for a unit of translation along each axis and of rotation about each axis, tau_j, put together as if the cubic term
-//! were the same in every direction: e3 = (sum_j alpha_j^2 tau_j^(2/3))^(3/2), exact along each sampled direction.
+//! were the same in every direction, times what probes say against that (`coupling`):
+//! e3 = c (sum_j alpha_j^2 tau_j^(2/3))^(3/2), exact along each sampled direction.
 
 use rayon::prelude::*;
 
+pub use super::coupling::pairs;
+use super::coupling::{Probed, third_together};
 use super::rigid_numbers::{SAMPLES, rigid_numbers};
 use super::superposition::{ResponseSegment, coefficients};
 use crate::mesh::Vector;
@@ -37,6 +40,8 @@ pub struct QuadraticForm {
     pub scales: Vec<f32>,
     /// tau for each segment, in mm.
     pub third: Vec<[f64; SAMPLES]>,
+    /// Of every three sampled directions; empty where they are put together without it.
+    pub coupling: Vec<Probed>,
 }
 
 /// Second and third order of a plan, as means over the skin that moves, in mm.
@@ -46,11 +51,6 @@ pub struct BeyondLinear {
     pub second: f64,
     /// Of |u3|, estimated.
     pub third: f64,
-}
-
-/// The pairs of so many numbers in their order.
-pub fn pairs(numbers: usize) -> impl Iterator<Item = [usize; 2]> {
-    (0..numbers).flat_map(move |k| (k..numbers).map(move |l| [k, l]))
 }
 
 /// A column as integers, and its scale.
@@ -114,13 +114,12 @@ impl QuadraticForm {
 
     /// The estimate of the third order for one movement of each segment.
     pub fn third_order(&self, segments: &[ResponseSegment], movements: &[RigidMovement]) -> f64 {
-        let moved = segments.iter().zip(movements).zip(&self.third);
-        let parts = moved.map(|((segment, movement), samples)| {
-            let numbers = rigid_numbers(movement, &segment.centre);
-            let parts = numbers.iter().zip(samples);
-            parts.map(|(number, tau)| number * number * tau.powf(2.0 / 3.0)).sum::<f64>()
-        });
-        parts.sum::<f64>().powf(1.5)
+        let moved = segments.iter().zip(movements);
+        let numbers = moved.flat_map(|(segment, by)| rigid_numbers(by, &segment.centre));
+        let numbers: Vec<f64> = numbers.collect();
+        let parts = numbers.iter().zip(self.third.iter().flatten());
+        let parts = parts.map(|(number, tau)| number * number * tau.powf(2.0 / 3.0));
+        parts.sum::<f64>().powf(1.5) * third_together(&numbers, &self.coupling)
     }
 }
 
@@ -167,8 +166,13 @@ mod tests {
     #[test]
     fn the_sum_in_sixteen_bits_is_the_sum_within_half_a_step_of_each_pair() {
         let (numbers, nodes) = (5, 1300);
-        let mut form =
-            QuadraticForm { numbers, values: Vec::new(), scales: Vec::new(), third: Vec::new() };
+        let mut form = QuadraticForm {
+            numbers,
+            values: Vec::new(),
+            scales: Vec::new(),
+            third: Vec::new(),
+            coupling: Vec::new(),
+        };
         let a = [0.7, -1.3, 0.0, 2.1, 0.4];
         let mut exact = vec![Vector::zeros(); nodes];
         let mut allowed = 1e-5;
@@ -193,7 +197,13 @@ mod tests {
     #[test]
     fn the_second_order_is_the_mean_over_what_the_first_moves() {
         let values = vec![100, 0, 0, 300, 0, 0, 900, 0, 0, 0, 0, 0];
-        let form = QuadraticForm { numbers: 1, values, scales: vec![0.01], third: Vec::new() };
+        let form = QuadraticForm {
+            numbers: 1,
+            values,
+            scales: vec![0.01],
+            third: Vec::new(),
+            coupling: Vec::new(),
+        };
         // Two nodes move, and a tenth of the farthest is the least that counts.
         let mut displacement = [2.0, 0.2, 0.19, 0.0].map(|length| Vector::y() * length);
         assert!((form.add(&[1.0], &mut displacement) - 2.0).abs() < 1e-6);
@@ -203,7 +213,13 @@ mod tests {
     fn the_third_order_grows_with_the_cube_of_a_sampled_direction() {
         let segments = [ResponseSegment { name: "jaw".into(), centre: Vector::x() }];
         let third = vec![[1e-3, 2e-3, 3e-3, 0.4, 0.5, 0.6]];
-        let form = QuadraticForm { numbers: 12, values: Vec::new(), scales: Vec::new(), third };
+        let form = QuadraticForm {
+            numbers: 12,
+            values: Vec::new(),
+            scales: Vec::new(),
+            third,
+            coupling: Vec::new(),
+        };
         let of = |angles: Vector, by: Vector| {
             form.third_order(&segments, &[RigidMovement::about_pivot(angles, Vector::x(), by)])
         };

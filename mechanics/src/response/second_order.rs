@@ -34,14 +34,23 @@ pub(super) struct Solutions<'a> {
     pub skin: &'a Skin,
 }
 
-/// A displacement and its pressures.
-struct State {
+/// A displacement and its pressures; empty where it is nothing.
+#[derive(Clone, Default)]
+pub(super) struct State {
     displacement: Vec<Vector>,
     pressures: Vec<f64>,
 }
 
 impl State {
-    fn as_moved(&self) -> LinearState<'_> {
+    pub(super) fn add(&mut self, other: &LinearState, factor: f64) {
+        let LinearState { displacement, pressures } = other;
+        self.displacement.resize(displacement.len(), Vector::zeros());
+        self.pressures.resize(pressures.len(), 0.0);
+        self.displacement.iter_mut().zip(*displacement).for_each(|(u, v)| *u += v * factor);
+        self.pressures.iter_mut().zip(*pressures).for_each(|(p, q)| *p += q * factor);
+    }
+
+    pub(super) fn as_moved(&self) -> LinearState<'_> {
         LinearState { displacement: &self.displacement, pressures: &self.pressures }
     }
 }
@@ -61,15 +70,20 @@ fn resisting(forces: Forces, factor: f64) -> Residual {
 }
 
 impl Solutions<'_> {
-    /// The columns of all pairs, and the samples of each segment.
-    pub fn quadratic_form(&self, progress: &dyn Progress) -> Result<QuadraticForm, ModelError> {
+    /// The columns of all pairs, and the samples of each segment; each solution is passed on.
+    pub fn quadratic_form(
+        &self,
+        pass: &mut dyn FnMut([usize; 2], &State),
+        progress: &dyn Progress,
+    ) -> Result<QuadraticForm, ModelError> {
         let numbers = self.columns.len();
         let all: Vec<[usize; 2]> = pairs(numbers).collect();
         let (mut values, mut scales) = (Vec::new(), Vec::new());
         for (done, some) in all.chunks(TOGETHER).enumerate() {
             progress.step(done * TOGETHER, all.len());
-            for column in self.columns_of(some, progress)? {
-                let (column, scale) = quantised(&column);
+            for (pair, state) in some.iter().zip(self.columns_of(some, progress)?) {
+                pass(*pair, &state);
+                let (column, scale) = quantised(&self.at_skin(&state.displacement));
                 values.extend(column);
                 scales.push(scale);
             }
@@ -77,15 +91,15 @@ impl Solutions<'_> {
         let segments = 0..numbers / COLUMNS_PER_SEGMENT;
         let third = segments.map(|segment| self.third_of(segment, progress));
         let third = third.collect::<Result<_, ModelError>>()?;
-        Ok(QuadraticForm { numbers, values, scales, third })
+        Ok(QuadraticForm { numbers, values, scales, third, coupling: Vec::new() })
     }
 
-    /// U of some pairs at the nodes of the skin.
+    /// U of some pairs.
     fn columns_of(
         &self,
         some: &[[usize; 2]],
         progress: &dyn Progress,
-    ) -> Result<Vec<Vec<Vector>>, ModelError> {
+    ) -> Result<Vec<State>, ModelError> {
         let mut used: Vec<usize> = some.iter().flatten().copied().collect();
         used.sort_unstable();
         used.dedup();
@@ -97,8 +111,7 @@ impl Solutions<'_> {
         let twice = some.iter().map(|[k, l]| if k == l { 1.0 } else { 2.0 });
         let residuals = forces.into_iter().zip(twice);
         let residuals = residuals.map(|(forces, factor)| resisting(forces, factor)).collect();
-        let solved = self.solved(residuals, LOOSE, progress)?;
-        Ok(solved.iter().map(|state| self.at_skin(&state.displacement)).collect())
+        self.solved(residuals, LOOSE, progress)
     }
 
     fn column(&self, column: usize) -> LinearState<'_> {
@@ -110,7 +123,7 @@ impl Solutions<'_> {
         self.skin.nodes().iter().map(|&node| displacement[node as usize]).collect()
     }
 
-    fn solved(
+    pub(super) fn solved(
         &self,
         residuals: Vec<Residual>,
         relative_residual: f64,
@@ -152,7 +165,7 @@ impl Solutions<'_> {
         segments.map(of).collect()
     }
 
-    fn samples(&self, segment: usize) -> Vec<State> {
+    pub(super) fn samples(&self, segment: usize) -> Vec<State> {
         (0..SAMPLES).map(|direction| self.sampled(segment, direction)).collect()
     }
 
@@ -178,24 +191,23 @@ impl Solutions<'_> {
         })
     }
 
-    /// A unit of translation along an axis, or of rotation about one, as a sum of columns.
+    /// A unit of translation along an axis, or of rotation about one.
     fn sampled(&self, segment: usize, direction: usize) -> State {
-        let (axis, first) = (direction % 3, segment * COLUMNS_PER_SEGMENT);
-        let [i, j] = [(axis + 1) % 3, (axis + 2) % 3];
-        let terms = match direction < 3 {
-            true => vec![(1.0, 4 * axis + 3)],
-            // u = e_axis x (x - centre): the entries (j, i) and (i, j) of R - I.
-            false => vec![(1.0, 4 * j + i), (-1.0, 4 * i + j)],
-        };
-        let of = |column: usize| self.column(first + column);
-        let mut state = State { displacement: Vec::new(), pressures: Vec::new() };
-        for (factor, column) in terms {
-            let LinearState { displacement, pressures } = of(column);
-            state.displacement.resize(displacement.len(), Vector::zeros());
-            state.pressures.resize(pressures.len(), 0.0);
-            state.displacement.iter_mut().zip(displacement).for_each(|(u, v)| *u += v * factor);
-            state.pressures.iter_mut().zip(pressures).for_each(|(p, q)| *p += q * factor);
+        let mut state = State::default();
+        for (factor, column) in terms(SAMPLES * segment + direction) {
+            state.add(&self.column(column), factor);
         }
         state
+    }
+}
+
+/// A sampled direction, of those of all segments, as a sum of columns.
+pub(super) fn terms(direction: usize) -> Vec<(f64, usize)> {
+    let (axis, first) = (direction % 3, direction / SAMPLES * COLUMNS_PER_SEGMENT);
+    let [i, j] = [(axis + 1) % 3, (axis + 2) % 3];
+    match direction % SAMPLES < 3 {
+        true => vec![(1.0, first + 4 * axis + 3)],
+        // u = e_axis x (x - centre): the entries (j, i) and (i, j) of R - I.
+        false => vec![(1.0, first + 4 * j + i), (-1.0, first + 4 * i + j)],
     }
 }

@@ -127,7 +127,7 @@ fn thin_bone_and_thin_tissue_that_cells_miss_are_told_with_volume_and_place() {
         of.unwrap_or_else(|| panic!("{:?}", made.warnings))
     };
     let bone = number(told("thin-bone-lost"), "volume_ml");
-    // Of the plate what lies on edges with both ends in tissue.
+    // Voxels of the plate in cells of tissue.
     assert!((0.5..1.1).contains(&(bone / 3.0)), "{bone}");
     let tissue = number(told("thin-tissue-lost"), "volume_ml");
     println!("{tissue} ml of tissue, {bone} ml of bone");

@@ -31,6 +31,7 @@ mod solver;
 mod study;
 #[path = "../support/mod.rs"]
 mod support;
+mod thin_bone;
 mod transform_text;
 mod validation;
 

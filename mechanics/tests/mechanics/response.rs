@@ -163,6 +163,7 @@ fn the_rule_of_thumb_covers_what_was_measured_on_the_slab() {
         something_stays: true,
         boxes: vec![[Vector::zeros(), Vector::new(12.0, 12.0, 0.0)]],
         sampled: Vec::new(),
+        coupling: Vec::new(),
     };
     for (direction, rows) in measured {
         for (share, difference) in rows {

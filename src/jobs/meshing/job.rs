@@ -5,6 +5,7 @@ use std::sync::Arc;
 use super::case::{bone_file, case_of};
 use super::check::{MadeAnatomy, check_anatomy};
 use super::cuts::{CUT_PATHS_FILE, CUT_PATHS_MEDIA_TYPE, cut_paths, cut_paths_csv};
+use super::doubt::with_doubts;
 use super::input::{MeshingInput, PreparedMeshing};
 use super::skin_scan::SKIN_SCAN_FILE;
 use crate::jobs::clock::Observed;
@@ -48,12 +49,13 @@ pub fn meshing_job(
     clock.check()?;
 
     // 2. The bone, parted.
-    let mut body = prepared.part(&clock)?;
+    let doubted = |error| with_doubts(error, &prepared);
+    let mut body = prepared.part(&clock).map_err(doubted)?;
     let skin = body.skin.take();
     clock.check()?;
 
     // 3. The mesh.
-    let anatomy = prepared.mesh(body, &clock)?;
+    let anatomy = prepared.mesh(body, &clock).map_err(doubted)?;
     clock.check()?;
 
     // 4. The case, and what holds it.

@@ -4,6 +4,7 @@ mod body;
 mod case;
 mod check;
 mod cuts;
+mod doubt;
 mod input;
 mod job;
 mod model;

@@ -132,7 +132,7 @@ impl OptimiseInput {
         let SearchResult { optimum, columns, response, .. } = &found;
         let names: Vec<NamedConstant> = constants.iter().map(TissueConstant::named).collect();
         let named = NamedOptimum { spec: &self.spec, response, constants: &names, optimum };
-        let materials = self.materials(constants, &rest.scene);
+        let materials = self.materials(constants, rest);
         let document = OptimisationDocument::new(&named, materials);
         let solver = solver_document(&columns.solver, &columns.elements);
         let Optimum { skin: displacement, beyond, .. } = found.optimum;

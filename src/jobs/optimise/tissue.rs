@@ -94,35 +94,41 @@ impl OptimiseInput {
         Ok(constants)
     }
 
-    /// The numbers of the regions of a name: `*` for those without any other material.
+    /// The numbers of the regions of a name: `*` for those without constants of their own to look for.
     fn regions_of(&self, name: &str, rest: &Prepared) -> Option<Vec<usize>> {
         let regions = || rest.scene.regions.iter().enumerate();
         if name != "*" {
             return regions().find(|(_, own)| *own == name).map(|(number, _)| vec![number]);
         }
-        let is_stated = |region: &str| {
-            rest.case.materials.contains_key(region)
-                || !self.spec.tissue_bounds_of(region).constants().is_empty()
+        let has_bounds = |region: &str| {
+            let mut all = self.spec.tissue_bounds.iter();
+            all.any(|(name, own)| name.trim() == region && !own.constants().is_empty())
         };
-        Some(regions().filter(|(_, own)| !is_stated(own)).map(|(number, _)| number).collect())
+        Some(regions().filter(|(_, own)| !has_bounds(own)).map(|(number, _)| number).collect())
     }
 
     /// The materials of the spec with the present constants of a scene; none if none are unknown.
     pub(super) fn materials(
         &self,
         constants: &[TissueConstant],
-        scene: &Scene,
+        rest: &Prepared,
     ) -> Option<MaterialDocuments> {
+        let scene = &rest.scene;
         let mut materials = self.spec.materials.clone().unwrap_or_default();
         for TissueConstant { region, bounds } in constants {
-            let own = bounds.regions.first().and_then(|&number| scene.materials.get(number))?;
-            let stated = materials.entry(region.clone()).or_default();
-            *stated = MaterialDocument {
-                young_modulus_kpa: Some(own.young_modulus()),
-                poisson_ratio: Some(own.poisson_ratio()),
-                density_g_per_cm3: Some(own.density()),
-                ..stated.clone()
-            };
+            for &number in &bounds.regions {
+                let own = scene.materials.get(number)?;
+                let name = &scene.regions[number];
+                let has_own = rest.case.materials.contains_key(name);
+                let stated = materials.entry(if has_own { name } else { region }.clone());
+                let stated = stated.or_default();
+                *stated = MaterialDocument {
+                    young_modulus_kpa: Some(own.young_modulus()),
+                    poisson_ratio: Some(own.poisson_ratio()),
+                    density_g_per_cm3: Some(own.density()),
+                    ..stated.clone()
+                };
+            }
         }
         (!constants.is_empty()).then_some(materials)
     }

@@ -9,7 +9,9 @@ use crate::schema::predict::expectation::{
     BandDocument, ExpectationDocument, ExpectedRungDocument, RESTS_ON,
 };
 use crate::schema::predict::time_band::TimeBandDocument;
-use mechanics::prediction::{Accepted, Rung, SECOND_ORDER_TAKES};
+use mechanics::boundary::NodeClass;
+use mechanics::mesh::Vector;
+use mechanics::prediction::{Accepted, Rung, SECOND_ORDER_TAKES, Scene};
 use mechanics::response::by_rule_of_thumb;
 
 /// The rule of thumb is conservative; it was too large by at most this factor (`docs/estimates.md`).
@@ -20,13 +22,18 @@ const TOO_LARGE: f64 = 6.0;
 const THIRD: f64 = 3.0;
 
 impl Prepared {
-    /// Whether movements alone tell the choice of `auto`: they say nothing of tissue that grows and of muscles that pull.
+    /// Whether movements of segments alone deform the tissue, so that they tell the choice of `auto`: they say nothing of
+    /// loads, prescribed displacements, tissue that grows and muscles that pull.
     pub(super) fn is_foreseen(&self) -> bool {
-        self.scene.distributed.inner.is_empty()
+        let Scene { distributed, forces, conditions, .. } = &self.scene;
+        let is_prescribed = |class: &NodeClass| *class == NodeClass::Prescribed;
+        distributed.inner.is_empty()
+            && forces.iter().all(|force| *force == Vector::zeros())
+            && !conditions.classes.iter().any(is_prescribed)
     }
 
-    /// The models of `auto` with the expected cost of each; none for other methods, of growth and muscles, and of a mesh that is
-    /// refined.
+    /// The models of `auto` with the expected cost of each; none for other methods, where more than movements deforms the
+    /// tissue, and of a mesh that is refined.
     pub fn expectation(&self, input: &PredictInput) -> Option<ExpectationDocument> {
         let accepted = input.spec.accepted()?;
         if input.spec.refine.is_some() || !self.is_foreseen() {

@@ -4,6 +4,7 @@ use crate::jobs::failure::JobError;
 use crate::schema::predict::refine::RefineDocument;
 use crate::schema::{ErrorCode, Faults, Pointer};
 use mechanics::mesh::bisection::Bisection;
+use mechanics::mesh::ignored::listed;
 use mechanics::prediction::{LANDMARK_FAR, Scene};
 
 /// Refuses cells that cannot be refined, and limits for parts of the skin and landmarks that are not there.
@@ -36,9 +37,4 @@ pub fn check_refinable(refine: &RefineDocument, scene: &Scene) -> Result<(), Job
         }
     }
     Ok(faults.into_result()?)
-}
-
-fn listed<'a>(names: impl Iterator<Item = &'a String>) -> String {
-    let names: Vec<&str> = names.map(String::as_str).collect();
-    if names.is_empty() { "none".to_owned() } else { names.join(", ") }
 }

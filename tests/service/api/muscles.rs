@@ -140,7 +140,8 @@ async fn growth_of_everything_else_is_refused_where_nothing_else_is_left() {
 }
 
 #[tokio::test]
-async fn a_check_says_that_it_does_not_foresee_the_choice_where_tissue_grows() {
+async fn a_check_says_that_it_does_not_foresee_the_choice_where_more_than_segments_deforms_tissue()
+{
     let server = Server::start();
     let case = case(&server).await;
     let why = async |plan: Value| {
@@ -151,8 +152,16 @@ async fn a_check_says_that_it_does_not_foresee_the_choice_where_tissue_grows() {
     };
     let (is_there, told) = why(json!({"segments": plan()["segments"]})).await;
     assert!(is_there && !told.contains("not foreseen"), "{told}");
-    let (is_there, told) = why(plan()).await;
-    assert!(!is_there && told.contains("not foreseen here: movements alone"), "{told}");
+    for other in [
+        json!({"loads": [{"gravity_m_per_s2": [0, 0, -9.81]}]}),
+        json!({"prescribed": [{"nodes": {"node_set": "skin"}, "displacement_mm": [1, null, null]}]}),
+        json!({}),
+    ] {
+        let mut plan = if other == json!({}) { plan() } else { other };
+        plan["segments"] = self::plan()["segments"].clone();
+        let (is_there, told) = why(plan).await;
+        assert!(!is_there && told.contains("not foreseen here: movements of segments"), "{told}");
+    }
 }
 
 #[tokio::test]

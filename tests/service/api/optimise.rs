@@ -418,6 +418,23 @@ fn bad_tissue() -> Vec<Row> {
 }
 
 #[tokio::test]
+async fn constants_of_all_regions_are_those_of_a_region_with_a_material_of_its_own_too() {
+    let server = Server::start();
+    let case = case(&server).await;
+    let target =
+        |(_, at): (String, [f64; 3])| json!({"point_mm": at, "displacement_mm": [1, null, 0.5]});
+    let targets: Vec<Value> = landmarks().into_iter().map(target).collect();
+    let mut spec = spec(&case, json!(targets), bounds(5.0, 0.0));
+    spec["materials"] = json!({"tissue": {"young_modulus_kpa": 7, "poisson_ratio": 0.4}});
+    spec["tissue_bounds"] = json!({"*": {"poisson_ratio": [0.42, 0.44]}});
+    let job = server.job(&spec).await.expect(StatusCode::OK);
+    let own = &job["results"]["optimisation"]["materials"]["tissue"];
+    let ratio = own["poisson_ratio"].as_f64().unwrap();
+    assert!((0.42..=0.44).contains(&ratio), "{own}");
+    assert_eq!(own["young_modulus_kpa"], 7.0, "{own}");
+}
+
+#[tokio::test]
 async fn what_an_operation_did_comes_back_with_the_tissue_that_was_lost_and_its_ratio() {
     let server = Server::start();
     let case = case(&server).await;

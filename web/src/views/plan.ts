@@ -147,7 +147,10 @@ class Planning {
       { name: "displacement", label: words.displacement, scheme: "length", range_mm: 10, values: () => this.moved_mm },
       ...(this.sum.second_mm === undefined ? [] : [
         { name: "second", label: words.secondOrder, scheme: "length" as const, range_mm: 1, values: () => lengths(this.sum.second_mm!) },
-        { name: "left", label: words.leftOutMap, scheme: "length" as const, range_mm: 1, values: () => this.sum.leftOut_mm(loaded.description.second_order!.third_order_mm) }]),
+        { name: "left", label: words.leftOutMap, scheme: "length" as const, range_mm: 1, values: () => {
+          const { third_order_mm, third_order_coupling } = loaded.description.second_order!;
+          return this.sum.leftOut_mm(third_order_mm, third_order_coupling);
+        } }]),
     ]);
     // What the strip says is of the response before.
     this.strip = undefined;

@@ -12,7 +12,7 @@ const AIM_MM = 0.1;
 const TOPICS = {
   model: ["another-equilibrium", "bulk-in-all-cells", "built-in-poisson-ratio", "conditions-ignored", "exponent-bounded", "fibres-ignored", "law-at-rest", "materials-ignored", "other-response", "volume-not-kept"],
   leftOut: ["cells-inverted", "large-rotation", "large-strain", "outside-linear-range", "outside-second-order-range", "sliding-normal-turned", "solved-loosely", "verification-differs"],
-  mesh: ["locking", "not-corrected", "numerical-error-large", "thin-stiff-layer"],
+  mesh: ["locking", "membrane-wrinkles", "not-corrected", "numerical-error-large", "thin-stiff-layer"],
   accepted: ["tolerance-not-met"],
 };
 

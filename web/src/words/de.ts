@@ -223,12 +223,12 @@ export const de: Words = {
   documentBroken: "Das Dokument oben ist kein JSON mehr: Schnitte werden nicht hineingeschrieben, bis es das wieder ist.",
 
   warningNames: {
-    "all-methods": "jedes Modell wurde gelöst, da keines genannt war", "another-equilibrium": "das Gewebe kann auch anders zur Ruhe kommen",
+    "all-methods": "jedes Modell wurde gelöst, da keines genannt war", "another-equilibrium": "das Gewebe kann auch anders zur Ruhe kommen", "membrane-wrinkles": "die Haut wird gestaucht, bis sie Falten wirft",
     "another-person-suspect": "die Flächen sind vielleicht von zwei Personen", "array-nonfinite": "Zahlen der Datei sind nicht endlich",
     "base-unmasked": "bewegter Knochen bringt die Aufnahmen mit zusammen",
     "before-operation-suspect": "die Aufnahme ist vielleicht von vor der Operation", "bone-loose": "loser Knochen ist als Gewebe vernetzt",
     "nodes-off-bone": "Knoten neben Knochen liegen an keinem und sind frei",
-    "thin-tissue-lost": "Gewebe, dünner als die Zellen, fehlt", "thin-bone-lost": "Knochen, dünner als die Zellen, ist als Gewebe vernetzt",
+    "gaps-closed": "Spalten der Haut sind geschlossen", "thin-tissue-lost": "Gewebe, dünner als die Zellen, fehlt", "thin-bone-lost": "Knochen, dünner als die Zellen, ist als Gewebe vernetzt",
     "surfaces-overlap": "Knochen überschneiden sich, wie sie gegeben sind", "fold-shallow": "die Grenze von Kinn und Lippen ist zweifelhaft",
     "bone-hollow": "Knochen umschließt Hohlräume, in denen kein Gewebe ist",
     "bone-made-whole": "Knochen wurde geschlossen, wo die Aufnahme Lücken zeigt", "bone-outside-skin": "Knochen liegt außerhalb der Haut",

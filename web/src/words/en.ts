@@ -222,11 +222,11 @@ export const en = {
 
   /** By their codes; the sentence of the service stands beside. */
   warningNames: {
-    "all-methods": "every model was solved, as none was named", "another-equilibrium": "the tissue may rest in another way too",
+    "all-methods": "every model was solved, as none was named", "another-equilibrium": "the tissue may rest in another way too", "membrane-wrinkles": "the skin is pressed until it wrinkles",
     "another-person-suspect": "the surfaces may be of two persons", "array-nonfinite": "numbers of the file are not finite",
     "base-unmasked": "bone that was moved helps to bring the scans together", "before-operation-suspect": "the scan may be one before the operation",
     "nodes-off-bone": "nodes beside bone lie on none, and are free",
-    "thin-tissue-lost": "tissue thinner than cells is missing", "thin-bone-lost": "bone thinner than cells is meshed as tissue",
+    "gaps-closed": "gaps of the skin are closed", "thin-tissue-lost": "tissue thinner than cells is missing", "thin-bone-lost": "bone thinner than cells is meshed as tissue",
     "surfaces-overlap": "bones overlap as they were given", "fold-shallow": "the border of chin and lips is doubtful",
     "bone-hollow": "bone encloses hollows, which hold no tissue",
     "bone-loose": "loose bone is meshed as tissue", "bone-made-whole": "bone was closed where the scan shows gaps",

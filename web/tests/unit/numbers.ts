@@ -19,6 +19,9 @@ function numbers(count: number): number[] {
     return state / 2147483647 - 0.5;
   });
 }
+function* triplesOf(count: number): Generator<[number, number, number]> {
+  for (let j = 0; j < count; j++) for (let k = j; k < count; k++) for (let l = k; l < count; l++) yield [j, k, l];
+}
 const linear = Float32Array.from(numbers(24 * 3 * NODES));
 const pairs = (24 * 25) / 2;
 const second = {
@@ -62,6 +65,12 @@ test("what the second order leaves out grows with the cube, and is shared out as
   assert(Math.abs(thirdOrder(samples, [...along, ...still]) - 8 * 2e-3) < 1e-12);
   const about = coefficients({ translation_mm: [0, 0, 0], rotation_deg: [0, 0, 30], pivot_mm: [1, 2, 3], centre_mm: [1, 2, 3] });
   assert(Math.abs(thirdOrder(samples, [...about, ...still]) - 0.6 * (Math.PI / 6) ** 3) < 1e-12);
+  // Probes that see the cross terms of the first two directions alone, of the same length as their cubes.
+  const oblique = coefficients({ translation_mm: [1, 1, 0], rotation_deg: [0, 0, 0], pivot_mm: [1, 2, 3], centre_mm: [1, 2, 3] });
+  const triples = [...triplesOf(12)];
+  const coupling = triples.map((triple) => [triple.every((one) => one < 2) ? 1 : 0]);
+  const together = thirdOrder(samples, [...oblique, ...still], coupling) / thirdOrder(samples, [...oblique, ...still]);
+  assert(Math.abs(together - 4 / 2 ** 1.5) < 1e-12, `${together}`);
   const sum = new SkinSum({ nodes: NODES, segments: 2, inner: [], linear, second });
   sum.move(0, twelve("maxilla", 0));
   sum.move(1, twelve("mandible", 1));

@@ -258,6 +258,8 @@ fn a_cut_that_ends_within_the_bone_is_named_with_its_bridge() {
     let rule = || vec![segment("part", &[(0, Side::Below)], &seeds)];
     let whole = parted(&block(), vec![cut(30.0)], rule());
     assert_eq!((whole.segments[0].voxels, whole.bridges.len()), (960, 0));
+    // What the disc parted from it is no bone of its own side.
+    assert_eq!(whole.segments[0].left.voxels, 0);
     // A radius of 13.5 mm leaves x = 15, 16 and 17, and at the corners x = 14 and 15.
     let short = parted(&block(), vec![cut(13.5)], rule());
     let [bridge] = &short.bridges[..] else { panic!("{:?}", short.bridges) };

@@ -364,6 +364,56 @@ fn the_second_order_response_is_four_times_nearer_to_newton_at_nine_millimetres_
     }
 }
 
+/// A block of 80 x 50 x 24 mm, one part of its bottom joined to a bone and another fixed.
+fn block_on_a_bone() -> Case {
+    let mut mesh = block(Vector::new(80.0, 50.0, 24.0), [8, 5, 3], CellShape::Tet4);
+    let bottom = mesh.node_sets["z_min"].iter().copied();
+    let (first, rest): (Vec<u32>, Vec<u32>) = bottom
+        .filter(|node| !(31.0..39.0).contains(&mesh.nodes[*node as usize].x))
+        .partition(|node| mesh.nodes[*node as usize].x < 35.0);
+    mesh.node_sets.extend([("first".to_owned(), first), ("rest".to_owned(), rest)]);
+    Case {
+        skin: Some(set("z_max")),
+        segments: vec![CaseSegment { name: "first".to_owned(), nodes: set("first") }],
+        fixed: vec![set("rest")],
+        ..case_of(mesh, material(15.0, 0.45))
+    }
+}
+
+#[test]
+fn oblique_plans_are_estimated_with_what_couples_their_directions() {
+    let case = block_on_a_bone();
+    for settings in [linear(), Settings::default()] {
+        let columns = to_second_order(&case, &settings);
+        let exactly = Settings { method: Method::FemNonlinear, ..settings.clone() };
+        for (by, degrees) in [
+            (Vector::new(2.0, 0.0, -2.0), 0.0),
+            (Vector::new(-2.0, 0.0, -2.0), 0.0),
+            (Vector::new(1.7, 1.7, -1.7), 0.0),
+            (Vector::new(2.0, 0.0, -2.0), 4.0),
+        ] {
+            let angles = Vector::y() * f64::to_radians(degrees);
+            let movement = [RigidMovement::about_pivot(angles, Vector::new(15.0, 25.0, 0.0), by)];
+            let (scene, exact) = solved(&case, &movement, &exactly);
+            let moving = scene.skin.moving_points(&exact.displacement);
+            let ([first, second], [second_mm, third_mm]) = applied(&columns, &movement);
+            let off = |skin: &[Vector]| {
+                let lengths = moving.iter().map(|&point| {
+                    let node = columns.nodes[point as usize] as usize;
+                    (exact.displacement[node] - skin[point as usize]).norm()
+                });
+                lengths.sum::<f64>() / moving.len() as f64
+            };
+            let by_probes = columns.linearity.of(&movement).estimate;
+            let told = [by_probes / second_mm, by_probes / off(&first), third_mm / off(&second)];
+            println!("{by:?} {degrees}: {told:.2?}");
+            let within = |told: f64, low: f64, high: f64| (low..high).contains(&told);
+            let is_near = within(told[0], 0.7, 1.4) && within(told[1], 0.5, 1.5);
+            assert!(is_near && within(told[2], 0.4, 2.0), "{by:?} {degrees}: {told:?}");
+        }
+    }
+}
+
 #[test]
 fn the_second_order_response_is_the_second_order_of_a_prediction() {
     for (shape, element) in

@@ -44,6 +44,9 @@ pub struct Forces {
     pub volumes: Vec<f64>,
 }
 
+/// The strains of a cell in some states.
+type Strained<'a> = dyn Fn(&[LinearState]) -> CellStrains + 'a;
+
 /// The tissue, and for each cell the numbers of the pressures of its corners; empty where no cell has any.
 pub struct ForceSeries<'a> {
     pub tissue: Tissue<'a>,
@@ -79,12 +82,13 @@ impl<'a> ForceSeries<'a> {
 
     /// The second order along s u1: N2(u1, u1), with what grows and pulls.
     pub fn second_along(&self, first: LinearState) -> Result<Forces, InvertedCell> {
-        let of_cell = |cell: &Cell, strained: &CellStrains| {
-            let mut terms = cell.second(strained, [0, 0]);
-            cell.second_order_of_inner(strained, &mut terms);
+        let of_cell = |cell: &Cell, strained: &Strained| {
+            let strained = strained(&[first]);
+            let mut terms = cell.second(&strained, [0, 0]);
+            cell.second_order_of_inner(&strained, &mut terms);
             vec![terms]
         };
-        let mut sum = self.sum(&[first], 1, &of_cell)?.remove(0);
+        let mut sum = self.sum(1, &of_cell)?.remove(0);
         if let Some(membrane) = self.tissue.membrane {
             let pair = [first.displacement; 2];
             membrane.add_second_order(self.tissue.mesh, pair, 1.0, &mut sum.nodes);
@@ -98,10 +102,11 @@ impl<'a> ForceSeries<'a> {
         states: &[LinearState],
         pairs: &[[usize; 2]],
     ) -> Result<Vec<Forces>, InvertedCell> {
-        let of_cell = |cell: &Cell, strained: &CellStrains| {
-            pairs.iter().map(|&pair| cell.second(strained, pair)).collect()
+        let of_cell = |cell: &Cell, strained: &Strained| {
+            let strained = strained(states);
+            pairs.iter().map(|&pair| cell.second(&strained, pair)).collect()
         };
-        let mut sums = self.sum(states, pairs.len(), &of_cell)?;
+        let mut sums = self.sum(pairs.len(), &of_cell)?;
         if let Some(membrane) = self.tissue.membrane {
             for (sum, pair) in sums.iter_mut().zip(pairs) {
                 let pair = pair.map(|state| states[state].displacement);
@@ -113,27 +118,36 @@ impl<'a> ForceSeries<'a> {
 
     /// The third order along s u1 + s^2 u2: 2 N2(u1, u2) + N3(u1, u1, u1).
     pub fn third(&self, first: LinearState, second: LinearState) -> Result<Forces, InvertedCell> {
-        let of_cell = |cell: &Cell, strained: &CellStrains| {
-            let (mut all, cross) = (cell.third(strained), cell.second(strained, [0, 1]));
-            all.add(&cross, 2.0);
-            cell.third_order_of_inner(strained, &mut all);
-            vec![all]
+        Ok(self.third_of_each(&[[first, second]])?.remove(0))
+    }
+
+    /// The same along each of some paths.
+    pub fn third_of_each(&self, paths: &[[LinearState; 2]]) -> Result<Vec<Forces>, InvertedCell> {
+        let of_cell = |cell: &Cell, strained: &Strained| {
+            let third = |path: &[LinearState; 2]| {
+                let strained = strained(path);
+                let (mut all, cross) = (cell.third(&strained), cell.second(&strained, [0, 1]));
+                all.add(&cross, 2.0);
+                cell.third_order_of_inner(&strained, &mut all);
+                all
+            };
+            paths.iter().map(third).collect()
         };
-        let mut sums = self.sum(&[first, second], 1, &of_cell)?;
-        let mut sum = sums.remove(0);
+        let mut sums = self.sum(paths.len(), &of_cell)?;
         if let Some(membrane) = self.tissue.membrane {
-            let pair = [first.displacement, second.displacement];
-            membrane.add_second_order(self.tissue.mesh, pair, 2.0, &mut sum.nodes);
-            membrane.add_third_order(self.tissue.mesh, pair[0], &mut sum.nodes);
+            for (sum, path) in sums.iter_mut().zip(paths) {
+                let pair = path.each_ref().map(|state| state.displacement);
+                membrane.add_second_order(self.tissue.mesh, pair, 2.0, &mut sum.nodes);
+                membrane.add_third_order(self.tissue.mesh, pair[0], &mut sum.nodes);
+            }
         }
-        Ok(sum)
+        Ok(sums)
     }
 
     fn sum(
         &self,
-        states: &[LinearState],
         count: usize,
-        of_cell: &(dyn Fn(&Cell, &CellStrains) -> Vec<CellTerms> + Sync),
+        of_cell: &(dyn Fn(&Cell, &Strained) -> Vec<CellTerms> + Sync),
     ) -> Result<Vec<Forces>, InvertedCell> {
         let mesh = self.tissue.mesh;
         let nothing = Forces {
@@ -144,7 +158,9 @@ impl<'a> ForceSeries<'a> {
         let terms = |cell: usize| {
             let pressures = self.pressures(cell);
             let built = Cell::new(&self.tissue, &self.inner, cell, pressures.is_some())?;
-            let strained = built.strained(mesh.cells.nodes(cell), pressures.as_ref(), states);
+            let nodes = mesh.cells.nodes(cell);
+            let strained =
+                |states: &[LinearState]| built.strained(nodes, pressures.as_ref(), states);
             Ok((pressures, of_cell(&built, &strained)))
         };
         for first in (0..mesh.cells.len()).step_by(CHUNK) {
