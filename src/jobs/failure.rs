@@ -34,7 +34,7 @@ pub enum JobError {
     Anatomy(AnatomyError),
     /// With what the check of the scan found of its values.
     #[error("the scan could not be meshed: {error}; its check found: {found}")]
-    DoubtfulScan { error: AnatomyError, found: String },
+    DoubtfulScan { error: Box<AnatomyError>, found: String },
     #[error("the study could not be run: {0}")]
     Study(#[from] StudyError),
     #[error("{which} ran out: {allowed} {unit} are allowed by `budget`")]
@@ -61,7 +61,8 @@ impl JobError {
     pub fn class(&self) -> ErrorClass {
         match self {
             JobError::Refused(_) | JobError::Alignment(_) => ErrorClass::Input,
-            JobError::Anatomy(error) | JobError::DoubtfulScan { error, .. } => class_of(error),
+            JobError::Anatomy(error) => class_of(error),
+            JobError::DoubtfulScan { error, .. } => class_of(error),
             JobError::Prediction(ModelError::Solver(SolverError::Stopped))
             | JobError::Cancelled => ErrorClass::Cancelled,
             JobError::Prediction(ModelError::Solver(SolverError::OverBudget { .. }))
@@ -92,7 +93,8 @@ impl JobError {
         match self {
             JobError::Refused(problem) => problem.code,
             JobError::Prediction(error) => error.into(),
-            JobError::Anatomy(error) | JobError::DoubtfulScan { error, .. } => error.into(),
+            JobError::Anatomy(error) => error.into(),
+            JobError::DoubtfulScan { error, .. } => (&**error).into(),
             JobError::Budget { .. } => ErrorCode::BudgetExceeded,
             JobError::Cancelled => ErrorCode::Cancelled,
             JobError::Alignment(_) => ErrorCode::AlignmentFailed,

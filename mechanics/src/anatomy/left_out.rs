@@ -12,10 +12,10 @@ const LEAST: f64 = 1.0;
 const SHARE: f64 = 0.01;
 /// Less tissue in no cell than this share is what cells are too coarse for; nodes of cells of 6 mm count a ball to 1 %.
 const MOST_LOST: f64 = 0.025;
-/// Of tissue in one piece, in ml.
-const LEAST_PIECE: f64 = 1.0;
-/// Shorter gaps in the skin are folds, in mm.
-const SMALL_GAP: f64 = 10.0;
+/// Of tissue in one piece, in ml; whole heads have pieces of 1.5 ml.
+const LEAST_PIECE: f64 = 2.0;
+/// Shorter gaps in the skin are folds, as behind ears (15 to 17 mm in the CT of docs/meshing.md), in mm.
+const SMALL_GAP: f64 = 20.0;
 /// So many places are named.
 const TOLD: usize = 3;
 const MM3_IN_ML: f64 = 1000.0;

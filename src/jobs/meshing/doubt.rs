@@ -25,7 +25,7 @@ pub(super) fn with_doubts(error: JobError, prepared: &PreparedMeshing) -> JobErr
     }
     let found = found.join("; ");
     match error {
-        JobError::Anatomy(error) => JobError::DoubtfulScan { error, found },
+        JobError::Anatomy(error) => JobError::DoubtfulScan { error: Box::new(error), found },
         JobError::Refused(mut problem) => {
             problem.detail = format!("{}; the check of the scan found: {found}", problem.detail);
             JobError::Refused(problem)

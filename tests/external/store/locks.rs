@@ -100,6 +100,14 @@ fn waiting(case: &NewCase, hash: &str) -> NewJob {
     }
 }
 
+async fn cohort_of(store: &Store, members: &[MemberRow]) -> String {
+    let id = uuid::Uuid::now_v7().to_string();
+    let (name, members) = ("all".into(), members.to_vec());
+    let new = NewCohort { id: id.clone(), name, consent: None, members };
+    assert!(store.add_cohort(&new).await.unwrap());
+    id
+}
+
 async fn world(store: &Store) -> World {
     let meshes = ["one", "two"].map(|content| mesh(content, "units=mm"));
     for mesh in &meshes {
@@ -130,13 +138,8 @@ async fn world(store: &Store) -> World {
     let dismissed = NewJob { shared_cases, mesh_ids: ids(&meshes), ..new_job("{}", "a study") };
     accepted(store, &dismissed).await;
     store.dismiss(&dismissed.id).await.unwrap();
-    let mut cohort = String::new();
-    for _ in 0..2 {
-        cohort = uuid::Uuid::now_v7().to_string();
-        let (id, members) = (cohort.clone(), members.clone());
-        let new = NewCohort { id, name: "all".into(), consent: None, members };
-        assert!(store.add_cohort(&new).await.unwrap());
-    }
+    cohort_of(store, &members).await;
+    let cohort = cohort_of(store, &members).await;
     let lost = meshed(store, &meshes).await;
     accepted(store, &waiting(&lost, "waits for the lost one")).await;
     let lease = store.claim(LEASE).await.unwrap().unwrap().lease;
