@@ -191,7 +191,7 @@ fn a_block_that_turns_onto_tissue_settles_between_two_states() {
     };
     let turn = Vector::new(0.0, 10f64.to_radians(), 0.0);
     let pivot = Vector::new(10.0, 6.0, 8.0);
-    let movement = RigidMovement::about_pivot(pivot, turn, Vector::new(0.0, 0.0, -1.5));
+    let movement = RigidMovement::about_pivot(turn, pivot, Vector::new(0.0, 0.0, -1.5));
     let segments = vec![PlannedSegment { name: "jaw".to_owned(), movement }];
     let plan = Plan { segments, ..Plan::default() };
     let found = solve(&case, &plan, &at_finite_strain());
