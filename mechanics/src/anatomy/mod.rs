@@ -291,7 +291,7 @@ fn classes(
     let first = |set: &crate::meshing::BoundarySet| {
         order.into_iter().find(|&boundary| set.contains(boundary))
     };
-    let marks: Vec<Option<Boundary>> = tissue.boundaries.iter().map(first).collect();
+    let mut marks: Vec<Option<Boundary>> = tissue.boundaries.iter().map(first).collect();
     let reach = BEHIND * bone.labels.placement().steps.iter().sum::<Vector>().norm();
     let slides = |place: &Vector| teeth.is_some_and(|teeth| teeth.near(place));
     let contact = BoneContact {
@@ -307,6 +307,14 @@ fn classes(
     };
     let boundary = TissueBoundary { mesh: &tissue.volume, marks: &marks };
     let mut classes = classify(boundary, &contact, &class_rules);
+    // Skin beside bone stays free where no bone is behind it.
+    let is_skin = |(mark, set): (&mut Option<Boundary>, &crate::meshing::BoundarySet)| {
+        if set.contains(Boundary::Skin) {
+            *mark = Some(Boundary::Skin);
+        }
+    };
+    marks.iter_mut().zip(&tissue.boundaries).for_each(is_skin);
+    let boundary = TissueBoundary { mesh: &tissue.volume, marks: &marks };
     let bare = join_thin_bone(boundary, domain, (bone, &slides), (&class_rules, &mut classes));
     (classes, bare)
 }
