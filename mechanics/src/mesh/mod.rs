@@ -5,6 +5,7 @@ pub mod bisection;
 mod bounds;
 pub mod check;
 pub mod closest_point;
+pub mod clusters;
 pub mod conformity;
 pub mod connectivity;
 pub mod crossing;

@@ -10,7 +10,7 @@ use super::octree::Leaves;
 use super::watch::Watch;
 use crate::domain::{Boundary, Coverage, Domain};
 use crate::mesh::Vector;
-use crate::mesh::disjoint_sets::DisjointSets;
+use crate::mesh::clusters::{Clusters, clusters};
 
 /// Places of one gap are at most so many finest cells apart along each axis.
 const APART: f64 = 3.0;
@@ -87,8 +87,8 @@ pub(super) fn find(
     let air: Vec<EdgeCrossing> =
         gaps.iter().filter(|met| met.boundary != Boundary::Bone).copied().collect();
     Ok(Thin {
-        gaps: clusters(&air, apart),
-        sheets: clusters(&sheets, apart),
+        gaps: self::gaps(&air, apart),
+        sheets: self::gaps(&sheets, apart),
         tissue: tissue(lattice, leaves),
         filled: volume(&gaps),
         met: volume(&sheets),
@@ -142,24 +142,12 @@ impl Search<'_> {
 }
 
 /// Places that lie in neighbouring cubes together, those with most places first.
-fn clusters(met: &[EdgeCrossing], apart: f64) -> Vec<Gap> {
-    let cube = |place: &Vector| <[i64; 3]>::from((place / apart).map(|x| x.floor() as i64));
-    let mut cubes: Vec<[i64; 3]> = met.iter().map(|met| cube(&met.place)).collect();
-    cubes.sort_unstable();
-    cubes.dedup();
-    let mut joined = DisjointSets::new(cubes.len());
-    for (number, cube) in cubes.iter().enumerate() {
-        for step in 0..27 {
-            let near = [cube[0] + step % 3 - 1, cube[1] + step / 3 % 3 - 1, cube[2] + step / 9 - 1];
-            if let Ok(other) = cubes.binary_search(&near) {
-                joined.join(number as u32, other as u32);
-            }
-        }
-    }
-    let mut of_root: Vec<Option<Gap>> = vec![None; cubes.len()];
-    for EdgeCrossing { place, boundary, .. } in met {
-        let number = cubes.binary_search(&cube(place)).unwrap_or_default();
-        let gap = &mut of_root[joined.root(number as u32) as usize];
+fn gaps(met: &[EdgeCrossing], apart: f64) -> Vec<Gap> {
+    let places: Vec<Vector> = met.iter().map(|met| met.place).collect();
+    let Clusters { of_place, count } = clusters(&places, apart);
+    let mut of_cluster: Vec<Option<Gap>> = vec![None; count];
+    for (EdgeCrossing { place, boundary, .. }, cluster) in met.iter().zip(of_place) {
+        let gap = &mut of_cluster[cluster];
         let gap = gap.get_or_insert(Gap {
             centre: Vector::zeros(),
             low: *place,
@@ -173,7 +161,7 @@ fn clusters(met: &[EdgeCrossing], apart: f64) -> Vec<Gap> {
         gap.low = gap.low.inf(place);
         gap.high = gap.high.sup(place);
     }
-    let mut gaps: Vec<Gap> = of_root.into_iter().flatten().collect();
+    let mut gaps: Vec<Gap> = of_cluster.into_iter().flatten().collect();
     gaps.sort_by_key(|gap| std::cmp::Reverse(gap.edges));
     gaps.truncate(TOLD);
     gaps

@@ -13,7 +13,7 @@ use super::shape::determinant;
 use super::watch::Watch;
 use crate::domain::{Coverage, Domain};
 use crate::mesh::Vector;
-use crate::mesh::disjoint_sets::DisjointSets;
+use crate::mesh::clusters::{Clusters, clusters};
 
 /// Points of a leaf, no two of them at one height along an axis.
 const POINTS: usize = 16;
@@ -102,7 +102,7 @@ impl Cubes {
     }
 
     fn cube(&self, at: &Vector) -> [i64; 3] {
-        cube(at, self.width)
+        (at / self.width).map(|x| x.floor() as i64).into()
     }
 
     /// Adds the points in a tetrahedron.
@@ -128,30 +128,13 @@ impl Cubes {
     }
 }
 
-fn cube(at: &Vector, width: f64) -> [i64; 3] {
-    (at / width).map(|x| x.floor() as i64).into()
-}
-
 /// Points in neighbouring cubes together.
 fn pieces(points: &[Point], width: f64) -> Vec<LostPiece> {
-    let mut cubes: Vec<[i64; 3]> = points.iter().map(|point| cube(&point.at, width)).collect();
-    cubes.sort_unstable();
-    cubes.dedup();
-    let mut joined = DisjointSets::new(cubes.len());
-    for (number, [x, y, z]) in cubes.iter().enumerate() {
-        for step in 0..27 {
-            let near = [x + step % 3 - 1, y + step / 3 % 3 - 1, z + step / 9 - 1];
-            if let Ok(other) = cubes.binary_search(&near) {
-                joined.join(number as u32, other as u32);
-            }
-        }
-    }
-    let mut of_root: Vec<Vec<Point>> = vec![Vec::new(); cubes.len()];
-    for point in points {
-        let number = cubes.binary_search(&cube(&point.at, width)).unwrap_or_default();
-        of_root[joined.root(number as u32) as usize].push(*point);
-    }
-    let mut pieces: Vec<LostPiece> = of_root.iter().filter_map(|points| piece(points)).collect();
+    let places: Vec<Vector> = points.iter().map(|point| point.at).collect();
+    let Clusters { of_place, count } = clusters(&places, width);
+    let mut of_cluster: Vec<Vec<Point>> = vec![Vec::new(); count];
+    points.iter().zip(of_place).for_each(|(point, cluster)| of_cluster[cluster].push(*point));
+    let mut pieces: Vec<LostPiece> = of_cluster.iter().filter_map(|points| piece(points)).collect();
     pieces.sort_by(|one, other| other.volume.total_cmp(&one.volume));
     pieces.truncate(TOLD);
     pieces

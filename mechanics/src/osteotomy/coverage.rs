@@ -8,7 +8,7 @@ use super::cubes::Cubes;
 use super::joining::{longest_edge, role_of};
 use super::voxel_cells::VoxelCells;
 use crate::mesh::Vector;
-use crate::mesh::disjoint_sets::DisjointSets;
+use crate::mesh::clusters::{Clusters, clusters};
 
 /// Surface farther from all nodes of its bone than so many edges of the cell there is not covered.
 const REACH: f64 = 1.5;
@@ -159,28 +159,13 @@ impl Surface<'_> {
 
 /// Of the patches of facets in neighbouring cubes that with the largest area, of equals the first.
 fn largest_patch<'a>(facets: &[&'a Facet], apart: f64) -> Vec<&'a Facet> {
-    let cube = |at: &Vector| <[i64; 3]>::from((at / apart).map(|x| x.floor() as i64));
-    let mut cubes: Vec<[i64; 3]> = facets.iter().map(|facet| cube(&facet.at)).collect();
-    cubes.sort_unstable();
-    cubes.dedup();
-    let mut joined = DisjointSets::new(cubes.len());
-    for (number, cube) in cubes.iter().enumerate() {
-        for step in 0..27 {
-            let near = [cube[0] + step % 3 - 1, cube[1] + step / 3 % 3 - 1, cube[2] + step / 9 - 1];
-            if let Ok(other) = cubes.binary_search(&near) {
-                joined.join(number as u32, other as u32);
-            }
-        }
-    }
-    let mut root = |facet: &Facet| {
-        joined.root(cubes.binary_search(&cube(&facet.at)).unwrap_or_default() as u32) as usize
-    };
-    let roots: Vec<usize> = facets.iter().map(|facet| root(facet)).collect();
-    let mut areas = vec![0.0; cubes.len()];
-    roots.iter().zip(facets).for_each(|(&root, facet)| areas[root] += facet.area);
+    let places: Vec<Vector> = facets.iter().map(|facet| facet.at).collect();
+    let Clusters { of_place, count } = clusters(&places, apart);
+    let mut areas = vec![0.0; count];
+    of_place.iter().zip(facets).for_each(|(&patch, facet)| areas[patch] += facet.area);
     let largest = areas.iter().copied().fold(0.0, f64::max);
     let first = areas.iter().position(|area| *area == largest);
-    let of_patch = roots.iter().zip(facets).filter(|(root, _)| Some(**root) == first);
+    let of_patch = of_place.iter().zip(facets).filter(|(patch, _)| Some(**patch) == first);
     of_patch.map(|(_, facet)| *facet).collect()
 }
 
