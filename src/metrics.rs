@@ -22,6 +22,7 @@ const JOB_MEMORY: &str = "facies_job_peak_bytes";
 const SPANS_LOST: &str = "facies_spans_lost_total";
 const RESIDENT: &str = "process_resident_memory_bytes";
 const LINES_DROPPED: &str = "facies_log_lines_dropped_total";
+const RETENTION_WITHHELD: &str = "facies_retention_withheld";
 
 const SECONDS: [f64; 12] =
     [0.01, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0, 300.0, 1000.0, 3600.0];
@@ -74,6 +75,7 @@ fn describe() {
         LINES_DROPPED,
         "lines of the log that were dropped because standard error was not read in time"
     );
+    describe_gauge!(RETENTION_WITHHELD, "1 while retention erases nothing because of the clock");
 }
 
 /// Everything that was counted, as text for Prometheus; empty before `start`.
@@ -94,6 +96,11 @@ pub fn queue(waiting: i64, running: i64, oldest_ms: i64) {
     gauge!(QUEUE_JOBS, "state" => "running").set(running as f64);
     gauge!(QUEUE_AGE).set(oldest_ms as f64 / 1e3);
     release_memory();
+}
+
+/// Whether retention erases nothing because the clock is in doubt.
+pub fn retention_withheld(is_withheld: bool) {
+    gauge!(RETENTION_WITHHELD).set(f64::from(u8::from(is_withheld)));
 }
 
 /// An attempt ended as successful, failed, stopped, fenced or lost.

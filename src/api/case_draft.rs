@@ -103,16 +103,22 @@ impl Draft {
         parts: &FormParts,
         allow_any_scale: bool,
     ) -> ApiResult<Draft> {
-        let (units, frame) = match &document {
-            CaseBody::Whole(case) => (Some(case.units), Some(case.frame)),
-            CaseBody::ToMesh(_) => (None, None),
+        let (units, frame, image) = match &document {
+            CaseBody::Whole(case) => {
+                let image = case.hounsfield.as_ref().map(|own| own.image.clone());
+                (Some(case.units), Some(case.frame), image)
+            }
+            CaseBody::ToMesh(_) => (None, None, None),
         };
-        let statement = Statement { units, frame, role: None, allow_any_scale };
+        // The frame of a case is that of its meshes, to which an image is turned.
+        let of_image = Statement { units, frame: None, role: None, allow_any_scale };
+        let of_mesh = Statement { frame, ..of_image.clone() };
         let mut ids: BTreeMap<String, String> = BTreeMap::new();
         let mut uploads: Vec<Upload> = Vec::new();
         let mut has_known = false;
         for (name, body) in parts {
-            let taken = take_in(service, permit, body.clone(), &statement, false).await;
+            let statement = if image.as_ref() == Some(name) { &of_image } else { &of_mesh };
+            let taken = take_in(service, permit, body.clone(), statement, false).await;
             let id = match taken.map_err(|error| in_part(error, name))? {
                 UploadedMesh::Known(row) => {
                     has_known = true;

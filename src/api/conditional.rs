@@ -138,10 +138,10 @@ fn single_range(text: &str, total: u64) -> ApiResult<Option<(u64, u64)>> {
     else {
         return Ok(None);
     };
-    let range = match (first.parse::<u64>(), last.parse::<u64>()) {
-        (Ok(first), Ok(last)) if first <= last => (first, last.min(total.saturating_sub(1))),
-        (Ok(first), Err(_)) if last.is_empty() => (first, total.saturating_sub(1)),
-        (Err(_), Ok(count)) if first.is_empty() => {
+    let range = match (position(first), position(last)) {
+        (Some(first), Some(last)) if first <= last => (first, last.min(total.saturating_sub(1))),
+        (Some(first), None) if last.is_empty() => (first, total.saturating_sub(1)),
+        (None, Some(count)) if first.is_empty() => {
             if count == 0 {
                 return Err(outside(total));
             }
@@ -153,6 +153,12 @@ fn single_range(text: &str, total: u64) -> ApiResult<Option<(u64, u64)>> {
         return Err(outside(total));
     }
     Ok(Some(range))
+}
+
+/// A number of any length; one that is too large for a number lies beyond the end of any file.
+fn position(text: &str) -> Option<u64> {
+    let is_number = !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
+    is_number.then(|| text.parse().unwrap_or(u64::MAX))
 }
 
 fn outside(total: u64) -> ApiError {
@@ -208,13 +214,15 @@ mod tests {
         let range = |text: &str| single_range(text, 10);
         assert_eq!(range("bytes=2-4").unwrap(), Some((2, 4)));
         assert_eq!(range("bytes=8-99").unwrap(), Some((8, 9)));
+        assert_eq!(range("bytes=8-99999999999999999999").unwrap(), Some((8, 9)));
+        assert_eq!(range("bytes=-99999999999999999999").unwrap(), Some((0, 9)));
         assert_eq!(range("bytes=7-").unwrap(), Some((7, 9)));
         assert_eq!(range("bytes=-3").unwrap(), Some((7, 9)));
         assert_eq!(range("bytes=-99").unwrap(), Some((0, 9)));
-        for ignored in ["bytes=0-0,1-1", "lines=1-2", "bytes=4-2", "bytes=a-b"] {
+        for ignored in ["bytes=0-0,1-1", "lines=1-2", "bytes=4-2", "bytes=a-b", "bytes=+1-2"] {
             assert_eq!(range(ignored).unwrap(), None, "{ignored}");
         }
-        for outside in ["bytes=10-", "bytes=99-100", "bytes=-0"] {
+        for outside in ["bytes=10-", "bytes=99-100", "bytes=99999999999999999999-", "bytes=-0"] {
             assert!(range(outside).is_err(), "{outside}");
         }
         assert!(single_range("bytes=-1", 0).is_err());

@@ -27,6 +27,9 @@ const READ_HERE: &str = "model/stl, model/obj, application/vnd.ply, application/
      application/x-metaimage, application/dicom, application/zip, application/octet-stream, multipart/form-data";
 const MULTIPART: &str = "multipart/form-data";
 
+/// So often a mesh is tried to be stored while others store and delete the same bytes.
+const ATTEMPTS: usize = 8;
+
 pub fn router() -> Resources {
     let json = Resources::new()
         .changes(Scope::Write, routes!(upload))
@@ -105,13 +108,7 @@ async fn upload(
         return Err(body::unsupported(&kind, READ_HERE));
     };
     let permit = service.parse_permit().await?;
-    let (mut row, is_new) = match take_in(&service, &permit, body, &statement, true).await? {
-        UploadedMesh::Known(row) => (row, false),
-        UploadedMesh::New(upload) => store(&service, *upload).await?,
-    };
-    if !is_new {
-        row = service.store.keep_mesh(&row.id).await?.ok_or_else(deleted_meanwhile)?;
-    }
+    let (row, is_new) = stored(&service, &permit, &body, &statement).await?;
     let location = format!("/v1/meshes/{}", row.id);
     let status = if is_new { StatusCode::CREATED } else { StatusCode::OK };
     let answer = json(status, &document_of(&row)?);
@@ -164,18 +161,39 @@ pub async fn take_in(
     Ok(UploadedMesh::New(Box::new(read.await??)))
 }
 
-async fn store(service: &Service, upload: Upload) -> ApiResult<(MeshRow, bool)> {
+/// The row of an upload, and whether it is new. Where others delete the same bytes meanwhile it is tried again.
+async fn stored(
+    service: &Service,
+    permit: &Permit,
+    body: &SpooledBody,
+    statement: &Statement,
+) -> ApiResult<(MeshRow, bool)> {
+    for _ in 0..ATTEMPTS {
+        let known = match take_in(service, permit, body.clone(), statement, true).await? {
+            UploadedMesh::Known(row) => Some((row, false)),
+            UploadedMesh::New(upload) => store(service, *upload).await?,
+        };
+        let kept = match known {
+            Some((row, true)) => return Ok((row, true)),
+            Some((row, false)) => service.store.keep_mesh(&row.id).await?,
+            None => None,
+        };
+        if let Some(row) = kept {
+            return Ok((row, false));
+        }
+    }
+    Err(ApiError::new(ErrorCode::Conflict, "the mesh was deleted meanwhile, again and again"))
+}
+
+/// `None` where it was deleted meanwhile.
+async fn store(service: &Service, upload: Upload) -> ApiResult<Option<(MeshRow, bool)>> {
     let is_new = service.store.add_mesh(&upload.row).await?;
     let (hash, options) = (&upload.row.sha256, &upload.row.options);
     let row = service.store.mesh_by_content(hash, options).await?;
-    let row = row.ok_or_else(deleted_meanwhile)?;
+    let Some(row) = row else { return Ok(None) };
     service.library.keep(&row.blob, upload.mesh.shape);
     tracing::info!(mesh.id = %row.id, mesh.nodes = upload.document.report.nodes, is_new, "mesh stored");
-    Ok((row, is_new))
-}
-
-fn deleted_meanwhile() -> ApiError {
-    ApiError::new(ErrorCode::Conflict, "the mesh was deleted meanwhile")
+    Ok(Some((row, is_new)))
 }
 
 /// The description of a stored mesh.

@@ -40,6 +40,7 @@ pub fn allowed(origins: &[String]) -> Option<CorsLayer> {
         HeaderName::from_static("facies-job"),
         HeaderName::from_static("facies-largest-rotation-deg"),
         HeaderName::from_static("facies-max-mm"),
+        HeaderName::from_static("facies-second-order-mm"),
         HeaderName::from_static("facies-nonlinearity-estimate-mm"),
         HeaderName::from_static("facies-not-measured"),
         HeaderName::from_static("facies-order"),

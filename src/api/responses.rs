@@ -210,8 +210,8 @@ async fn rest(service: &Service, found: &FoundResponse, headers: &HeaderMap) -> 
 /// The skin after a plan, computed in milliseconds. Segments that the plan does not name stay; growth and activations
 /// of the plan need their columns in the response. A response of order
 /// 1 is exact within linear elasticity; the linearisation error is estimated from samples of the second order along and about
-/// each axis of each segment (of quadratic tetrahedra by a rule of thumb). A response of order 2 adds the second-order term of finite
-/// strain, reports its mean length, and estimates the third order from samples. Out of range the result has the
+/// each axis of each segment (unknown of quadratic tetrahedra and of fibres that only pull). A response of order 2 adds the
+/// second-order term of finite strain, reports its mean length, and estimates the third order from samples. Out of range the result has the
 /// warning `outside-linear-range` or `outside-second-order-range`. With a binary body the numbers are in headers.
 #[utoipa::path(
     post, path = "/v1/cases/{id}/response/apply", operation_id = "apply_response", tag = "responses",
@@ -225,6 +225,7 @@ async fn rest(service: &Service, found: &FoundResponse, headers: &HeaderMap) -> 
                 ("Facies-Max-Mm" = f64, description = "the largest displacement of a skin node"),
                 ("Facies-Largest-Rotation-Deg" = f64, description = "the largest rotation of a segment"),
                 ("Facies-Order" = u8, description = "that of the response: 2 if the displacement includes the second-order term"),
+                ("Facies-Second-Order-Mm" = Option<f64>, description = "of order 2: the mean length of the second-order term, as `second_order_mm`"),
                 ("Facies-Nonlinearity-Estimate-Mm" = f64, description = "the linearisation error: of order 1 the second-order term, of order 2 the third-order term, from samples; absent if tissue grows or muscles pull"),
                 ("Facies-Within-Linear-Range" = bool, description = "as `within_linear_range`"),
                 ("Facies-Warning" = Option<String>, description = "the codes of the warnings: outside-linear-range, outside-second-order-range, nonlinearity-unknown, nothing-moves, plan-units-suspect, sliding-normal-turned, tearing, skin-overlaps, other-response, solved-loosely, and those of the case as the response was built"),
@@ -334,7 +335,9 @@ fn with_summary(response: Response, job: &str, applied: &Applied) -> Response {
     let warnings: Vec<String> =
         applied.warnings.iter().map(|warning| warning.code.clone()).collect();
     let estimate = summary.nonlinearity_estimate_mm.map(|estimate| estimate.to_string());
+    let second_order = summary.second_order_mm.map(|length| length.to_string());
     let words = [
+        ("facies-second-order-mm", second_order.unwrap_or_default()),
         ("facies-nonlinearity-estimate-mm", estimate.unwrap_or_default()),
         ("facies-warning", warnings.join(", ")),
         ("facies-not-measured", applied.not_measured().join(", ")),

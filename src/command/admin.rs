@@ -55,6 +55,14 @@ enum Command {
         #[command(flatten)]
         settings: Settings,
     },
+    /// Tell whether retention trusts the clock; exits with 1 while it erases nothing because the clock is far ahead
+    Clock {
+        /// The clock is right
+        #[arg(long)]
+        trust: bool,
+        #[command(flatten)]
+        settings: Settings,
+    },
     /// Print the audit log and check its integrity; exits with 1 if it was changed
     Audit {
         /// Rows with a larger number
@@ -157,6 +165,7 @@ pub fn run(arguments: &Arguments) -> Result<(), AdminError> {
                 println!("what {tenant} does not change is kept {kept}");
                 Ok(())
             }
+            Command::Clock { trust, settings } => clock(&open(settings).await?, *trust).await,
             Command::Audit { after, settings } => audit(&open(settings).await?, *after).await,
             Command::Fsck { read_all, repair, settings } => {
                 let store = open(settings).await?;
@@ -165,6 +174,18 @@ pub fn run(arguments: &Arguments) -> Result<(), AdminError> {
             }
         }
     })
+}
+
+async fn clock(store: &Store, trust: bool) -> Result<(), AdminError> {
+    if trust {
+        let audited = store.audited_action(COMMAND, "admin clock", "");
+        store.noted(audited, store.trust_clock(), |()| None).await?;
+    }
+    let Some(doubt) = store.clock_doubt().await? else {
+        println!("retention trusts the clock");
+        return Ok(());
+    };
+    Err(AdminError::ClockDoubted(doubt))
 }
 
 async fn key(command: &KeyCommand) -> Result<(), AdminError> {

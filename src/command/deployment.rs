@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::settings::Arguments as Settings;
 use crate::config::{BlobLocation, Config, DatabaseLocation, StorageLocations};
-use crate::store::{Store, StoreError, TransferCounts};
+use crate::store::{ClockDoubt, Store, StoreError, TransferCounts};
 
 #[derive(Debug, thiserror::Error)]
 pub enum AdminError {
@@ -24,6 +24,13 @@ pub enum AdminError {
     Io(#[from] std::io::Error),
     #[error("{0}")]
     Refused(String),
+    #[error(
+        "retention erases nothing: the clock is {} h ahead of when this deployment ran last, and is trusted after {} h more of service; \
+         `facies admin clock --trust` confirms it",
+        .0.ahead_h,
+        .0.trusted_in_h
+    )]
+    ClockDoubted(ClockDoubt),
     #[error("the audit log was changed: row {at} does not follow from those before it")]
     Audit { at: i64 },
     #[error(

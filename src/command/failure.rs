@@ -72,7 +72,11 @@ impl CommandError {
             CommandError::Health(error) if error.is_setting() => CONFIGURATION,
             CommandError::Admin(error) if error.is_setting() => CONFIGURATION,
             CommandError::Admin(error) if error.is_refused() => REFUSED,
-            CommandError::Admin(AdminError::Findings { .. } | AdminError::Audit { .. }) => FAILED,
+            CommandError::Admin(
+                AdminError::Findings { .. }
+                | AdminError::Audit { .. }
+                | AdminError::ClockDoubted(_),
+            ) => FAILED,
             CommandError::Config(_) => CONFIGURATION,
             CommandError::Demo(_)
             | CommandError::Serve(_)

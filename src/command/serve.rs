@@ -257,6 +257,7 @@ async fn start_garbage_collection(store: &Store) -> Result<(), StoreError> {
 
 async fn collect_garbage_at_start(store: &Store) -> Result<(), StoreError> {
     let erased = store.erase_old().await?;
+    tell_doubt(store).await?;
     let swept = store.sweep().await?;
     tracing::info!(erased, blobs = swept.blobs, temporary = swept.temporary, "swept");
     Ok(())
@@ -307,10 +308,27 @@ async fn sweep(store: &Store) {
         Ok(erased) => tracing::info!(erased, "erased what is older than its tenant keeps it"),
         Err(error) => tracing::warn!(%error, "retention was broken off"),
     }
+    if let Err(error) = tell_doubt(store).await {
+        tracing::warn!(%error, "whether the clock is in doubt is not known");
+    }
     match store.sweep_old_blobs().await {
         Ok(blobs) => tracing::debug!(blobs, "swept"),
         Err(error) => tracing::warn!(%error, "the sweep was broken off"),
     }
+}
+
+/// Tells that retention erases nothing because the clock is far ahead.
+async fn tell_doubt(store: &Store) -> Result<(), StoreError> {
+    let doubt = store.clock_doubt().await?;
+    metrics::retention_withheld(doubt.is_some());
+    if let Some(doubt) = doubt {
+        tracing::error!(
+            ahead_h = doubt.ahead_h,
+            trusted_in_h = doubt.trusted_in_h,
+            "retention erases nothing: the clock is far ahead of when this deployment ran last; `facies admin clock --trust` confirms it"
+        );
+    }
+    Ok(())
 }
 
 /// Done when the process is told to stop: SIGTERM or SIGINT.

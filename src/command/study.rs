@@ -63,7 +63,7 @@ pub struct Arguments {
     #[arg(long, help_heading = WHAT, value_name = "N")]
     level: Vec<u32>,
     /// Every combination of values of material constants: [REGION.]young_modulus_kpa=V,V, [REGION.]poisson_ratio=V,V or
-    /// [REGION.]volume_change=V,V; may be given several times
+    /// [REGION.]volume_change=V,V, without a region of all tissue; may be given several times
     #[arg(long, help_heading = WHAT, value_name = "CONSTANT=V,V", value_parser = sweep::sweep)]
     sweep: Vec<Sweep>,
     /// Solves of each row, whose median time is reported

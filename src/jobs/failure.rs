@@ -181,6 +181,9 @@ fn no_equilibrium(error: &ModelError) -> Value {
         ModelError::ContactUnsettled { passes, moved_mm } => {
             json!({ "passes": passes, "moved_mm": moved_mm })
         }
+        ModelError::ContactAlternates { steps, residual, depth_mm, place } => {
+            json!({ "steps": steps, "residual": residual, "depth_mm": depth_mm, "place_mm": place })
+        }
         ModelError::Folded { cell, det_f } => json!({ "element": cell, "det_f": det_f }),
         ModelError::BonesPass { cause, edges, cells, .. } => {
             let mut members = no_equilibrium(cause);

@@ -47,7 +47,9 @@ impl LoadedResponse {
         let is_turned = self.description.is_wall_turned(movements);
         let linear = LinearPart {
             nonlinearity: self.linearity.of(movements),
-            is_unknown: is_turned || inner.iter().any(|amount| *amount != 0.0),
+            is_unknown: is_turned
+                || !self.linearity.is_known()
+                || inner.iter().any(|amount| *amount != 0.0),
         };
         let summary = AppliedSummary::new(&displacement, beyond, &linear);
         let tearing_checked = self.description.edges_between.is_some();
@@ -57,7 +59,8 @@ impl LoadedResponse {
     /// Whether the moved skin passes through itself where it did not at rest. Takes milliseconds for each ten thousand
     /// triangles, so that it is only done where it is asked for.
     pub fn check_skin(&self, applied: Applied) -> Applied {
-        let skin = Skin { surface: self.rest.clone(), regions: BTreeMap::new() };
+        let skin =
+            Skin { surface: self.rest.clone(), regions: BTreeMap::new(), off: BTreeMap::new() };
         let mut moved = self.rest.clone();
         for (point, by) in moved.points.iter_mut().zip(&applied.displacement) {
             *point += by;
@@ -79,7 +82,8 @@ impl LoadedResponse {
     }
 
     fn to_glb(&self, displacement: Vec<Vector>, range_mm: f64) -> Result<Vec<u8>, WriteError> {
-        let rest = Skin { surface: self.rest.clone(), regions: BTreeMap::new() };
+        let rest =
+            Skin { surface: self.rest.clone(), regions: BTreeMap::new(), off: BTreeMap::new() };
         let mut skin = PredictedSkin::of_displacement(&rest, displacement);
         skin.range_mm = range_mm;
         let texts = [
@@ -123,6 +127,7 @@ pub(super) fn parsed(stored: &Stored) -> Result<LoadedResponse, StoreError> {
     {
         return Err(broken("its files do not fit each other"));
     }
+    check_coupling(&description)?;
     let second_order = second_order_of(&description, second_order.as_deref())?;
     Ok(LoadedResponse {
         second_order,
@@ -136,6 +141,15 @@ pub(super) fn parsed(stored: &Stored) -> Result<LoadedResponse, StoreError> {
         rest,
         description,
     })
+}
+
+/// What its segments do together at second order, which estimates of every applied plan take.
+fn check_coupling(description: &ResponseDescription) -> Result<(), StoreError> {
+    let coupled = description.linearity.second_order_coupling.len();
+    match couples(2, description.segments.len(), coupled) {
+        true => Ok(()),
+        false => Err(broken("its coupling of second order does not fit its segments")),
+    }
 }
 
 /// The quadratic form of a response that has one.
@@ -213,6 +227,16 @@ mod tests {
         let description = ResponseDescription::new(&columns, origin);
         let response = columns.to_response();
         Arc::new(LoadedResponse { description, response, second_order: None, linearity, rest })
+    }
+
+    #[test]
+    fn a_coupling_of_other_segments_is_broken() {
+        let mut description = loaded(1).description.clone();
+        // Of six directions of one segment there are 21 pairs.
+        for (coupled, fits) in [(0, true), (21, true), (20, false), (78, false)] {
+            description.linearity.second_order_coupling = vec![Default::default(); coupled];
+            assert_eq!(check_coupling(&description).is_ok(), fits, "{coupled}");
+        }
     }
 
     #[test]

@@ -95,7 +95,7 @@ fn validate_upload(
     let ReadBytes { read, bytes, sha256, told } = received;
     let is_image = matches!(read.mesh, Mesh::Image(_));
     let units = statement.units.filter(|_| !is_image);
-    // The frame stated for a form of several parts is that of the case, to which an image is turned.
+    // The space of an image takes precedence.
     if !is_image {
         check_frame(&read, statement)?;
     }

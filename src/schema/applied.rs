@@ -53,7 +53,8 @@ pub struct AppliedSummary {
     pub second_order_mm: Option<f64>,
     /// The linearisation error, mean over the moving skin (by more than a tenth of the largest displacement): of order 1 the
     /// second-order term, of order 2 the third-order term, both estimated from samples. Absent if the plan grows tissue, activates muscles
-    /// or turns a wall with its segment (`sliding-normal-turned`): then it is not known.
+    /// or turns a wall with its segment (`sliding-normal-turned`), and of fibres that only pull or quadratic tetrahedra: then it is not
+    /// known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub nonlinearity_estimate_mm: Option<f64>,
@@ -67,7 +68,7 @@ pub struct AppliedSummary {
 pub struct LinearPart {
     /// Of its movements.
     pub nonlinearity: Nonlinearity,
-    /// Whether tissue grows, muscles pull or a wall turns with its segment, which have no estimate.
+    /// Whether tissue grows, muscles pull or a wall turns with its segment, or the response has no samples: these have no estimate.
     pub is_unknown: bool,
 }
 
@@ -115,7 +116,8 @@ impl AppliedSummary {
         }
         let Some(estimate) = self.nonlinearity_estimate_mm else {
             let detail =
-                "the linearisation error is unknown where tissue grows, muscles pull, or a wall turns with its segment"
+                "the linearisation error is unknown where tissue grows, muscles pull, a wall turns with its segment, fibres only pull, or \
+                 tetrahedra are quadratic"
                     .to_owned();
             return vec![WarningDocument {
                 code: Self::UNKNOWN.to_owned(),

@@ -160,7 +160,8 @@ fn is_hexadecimal(text: &str, bytes: usize) -> bool {
 }
 
 /// The rule for names of tenants.
-pub const TENANT_NAMES: &str = "a tenant has 1 to 64 of a to z, 0 to 9, - and .";
+pub const TENANT_NAMES: &str =
+    "a tenant has 1 to 64 of a to z, 0 to 9, - and ., and is neither . nor ..";
 
 /// Bounds of the retention of unchanged resources.
 pub const RETENTION_DAYS: std::ops::RangeInclusive<i64> = 1..=36_500;
@@ -168,12 +169,20 @@ pub const RETENTION_DAYS: std::ops::RangeInclusive<i64> = 1..=36_500;
 /// Whether a name is one of [`TENANT_NAMES`].
 pub fn is_tenant(name: &str) -> bool {
     let is_plain = |byte: u8| matches!(byte, b'a'..=b'z' | b'0'..=b'9' | b'-' | b'.');
-    (1..=64).contains(&name.len()) && name.bytes().all(is_plain)
+    let is_folder = matches!(name, "." | "..");
+    (1..=64).contains(&name.len()) && name.bytes().all(is_plain) && !is_folder
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_tenant_has_a_name_that_an_address_keeps() {
+        assert!(["ward-7", "a.b", "..."].into_iter().all(is_tenant));
+        let long = "a".repeat(65);
+        assert!(!["", ".", "..", "Ward", "a/b", &long].into_iter().any(is_tenant));
+    }
 
     #[test]
     fn a_key_is_read_as_it_was_made_and_nothing_else_is_one() {

@@ -27,6 +27,7 @@ impl From<SceneErrorCode> for ErrorCode {
             SceneErrorCode::PlanOutOfRange => ErrorCode::PlanOutOfRange,
             SceneErrorCode::SlidingConflict => ErrorCode::SlidingConflict,
             SceneErrorCode::SlidingNormalZero => ErrorCode::SlidingNormalZero,
+            SceneErrorCode::TooMany => ErrorCode::TooMany,
             SceneErrorCode::TooManyRegions => ErrorCode::TooManyRegions,
             SceneErrorCode::Underconstrained => ErrorCode::Underconstrained,
             SceneErrorCode::UnknownArray => ErrorCode::UnknownArray,
@@ -48,7 +49,9 @@ impl From<&ModelError> for ErrorCode {
             ModelError::StepAboveLimit { .. } => ErrorCode::StepAboveLimit,
             ModelError::NoBone => ErrorCode::NoBone,
             ModelError::Standstill { .. } => ErrorCode::NoEquilibrium,
-            ModelError::ContactUnsettled { .. } => ErrorCode::ContactUnsettled,
+            ModelError::ContactUnsettled { .. } | ModelError::ContactAlternates { .. } => {
+                ErrorCode::ContactUnsettled
+            }
             ModelError::Folded { .. } => ErrorCode::TissueFolded,
             ModelError::BonesPass { cause, .. } => (&**cause).into(),
         }
@@ -206,6 +209,7 @@ mod tests {
             ModelError::NoBone,
             ModelError::Standstill { made: 0.5, steps: 9, least_det_f: 0.1 },
             ModelError::ContactUnsettled { passes: 30, moved_mm: 1.0 },
+            ModelError::ContactAlternates { steps: 9, residual: 0.1, depth_mm: 1.0, place: None },
             ModelError::Folded { cell: 1, det_f: -1.0 },
             ModelError::BonesPass {
                 cause: Box::new(ModelError::NoBone),

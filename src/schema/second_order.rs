@@ -25,7 +25,8 @@ pub struct LinearityDocument {
     /// Whether nodes are constrained that no segment of the response moves.
     pub something_stays: bool,
     /// For each segment the mean length on the skin of the second-order term for 1 mm along x, y, z and for 1 rad about
-    /// x, y, z through its centre; grows with the square. Absent if a rule of thumb is used.
+    /// x, y, z through its centre; grows with the square. Absent if it is unknown: of fibres that only pull and quadratic tetrahedra, and
+    /// in responses of earlier programs.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub second_order_mm: Vec<[f64; 6]>,
     /// What probes of the skin measure of the second-order term of each pair of these directions, of all segments one after the other,

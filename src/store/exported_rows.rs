@@ -1,6 +1,6 @@
 //! Files of rows: one for each table of an export, whose first line names the columns and their types.
 
-use std::collections::BTreeSet;
+use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::{BufRead, BufReader, BufWriter, ErrorKind, Lines, Write};
 use std::path::Path;
@@ -12,7 +12,7 @@ use super::StoreError;
 use super::database::{
     Column, Executor, Row, Statement, Transaction, Value, is_duplicate, is_reference, query_of,
 };
-use super::exported_values::TextForm;
+use super::exported_values::{TextForm, other_integer, wrong_file};
 
 /// The first line of a file of rows: the names of the columns and their types.
 #[derive(Serialize, Deserialize)]
@@ -179,6 +179,11 @@ impl ExportedRows {
             if *is_needed && value.is_null() {
                 return Err(self.fault(&format!("column {name} must not be null")));
             }
+            if let Value::Integer(Some(number)) = value
+                && let Some(wanted) = other_integer(name, *number)
+            {
+                return Err(self.fault(&format!("column {name} holds {wanted}, not {number}")));
+            }
             let (Value::Text(Some(text)), Some(wanted)) = (value, wanted) else { continue };
             if !wanted.is(text) {
                 return Err(self.fault(&format!("column {name} holds {}", wanted.name())));
@@ -187,15 +192,43 @@ impl ExportedRows {
         Ok(())
     }
 
-    /// Reads all rows, whose values have to be what the columns of the table take and what the service can read; each that names
-    /// a blob has to name one of the manifest. Returns how many.
+    /// A row that names a blob has to name one of the manifest, and a file of a job to be that blob.
+    fn check_blob(
+        &self,
+        values: &[Value],
+        blobs: &BTreeMap<String, u64>,
+    ) -> Result<(), StoreError> {
+        let of = |wanted: &str| {
+            let place = self.columns.iter().position(|(name, _)| name == wanted);
+            place.map(|place| &values[place])
+        };
+        let bytes = match of("blob") {
+            None => return Ok(()),
+            Some(Value::Text(Some(blob))) => blobs.get(blob),
+            Some(_) => None,
+        };
+        let bytes = bytes.ok_or_else(|| self.fault("its blob is none of those of the manifest"))?;
+        let file = (of("name"), of("media_type"), of("bytes"));
+        if let (
+            Some(Value::Text(Some(name))),
+            Some(Value::Text(Some(media_type))),
+            Some(Value::Integer(Some(stated))),
+        ) = file
+            && let Some(wrong) = wrong_file(name, media_type, *stated, *bytes)
+        {
+            return Err(self.fault(&wrong));
+        }
+        Ok(())
+    }
+
+    /// Reads all rows, whose values have to be what the columns of the table take and what the service can read. `blobs` are those
+    /// of the manifest, with their sizes. Returns how many.
     pub fn check(
         mut self,
         known: &[Column],
-        blobs: &BTreeSet<String>,
+        blobs: &BTreeMap<String, u64>,
     ) -> Result<usize, StoreError> {
         self.check_columns(known)?;
-        let column = self.columns.iter().position(|(name, _)| name == "blob");
         let is_needed =
             |name: &str| known.iter().any(|column| column.name == name && column.is_needed);
         let wanted =
@@ -203,12 +236,7 @@ impl ExportedRows {
         let wanted: Vec<(bool, Option<TextForm>)> = self.columns.iter().map(wanted).collect();
         while let Some(values) = self.next_row()? {
             self.check_values(&values, &wanted)?;
-            let blob = column.map(|column| &values[column]);
-            let is_known =
-                |blob: &Value| matches!(blob, Value::Text(Some(hash)) if blobs.contains(hash));
-            if blob.is_some_and(|blob| !is_known(blob)) {
-                return Err(self.fault("its blob is none of those of the manifest"));
-            }
+            self.check_blob(&values, blobs)?;
         }
         Ok(self.read)
     }

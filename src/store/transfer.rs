@@ -43,6 +43,17 @@ const TABLES: [&str; 23] = [
     "audit",
     "audit_end",
 ];
+/// Rows that belong together, and so to one tenant: the table that says so, and its columns with what they refer to.
+const OF_ONE_TENANT: [(&str, [(&str, &str); 2]); 8] = [
+    ("case_meshes", [("case_id", "cases"), ("mesh_id", "meshes")]),
+    ("jobs", [("id", "jobs"), ("case_id", "cases")]),
+    ("job_cases", [("job_id", "jobs"), ("case_id", "cases")]),
+    ("job_meshes", [("job_id", "jobs"), ("mesh_id", "meshes")]),
+    ("made_meshes", [("job_id", "jobs"), ("mesh_id", "meshes")]),
+    ("cohort_members", [("cohort_id", "cohorts"), ("case_id", "cases")]),
+    ("cohort_members", [("cohort_id", "cohorts"), ("job_id", "jobs")]),
+    ("cohort_members", [("cohort_id", "cohorts"), ("mesh_id", "meshes")]),
+];
 const REFERENCED: &str = "SELECT blob FROM meshes UNION SELECT blob FROM job_files";
 const MANIFEST: &str = "export.json";
 
@@ -64,9 +75,12 @@ struct Manifest {
 /// The bytes of an exported blob, whose file has their hash for its name.
 fn read_exported(folder: &Path, sha256: &str) -> Result<Vec<u8>, StoreError> {
     let file = folder.join("blobs").join(sha256);
-    let bytes = std::fs::read(&file)
-        .map_err(at(&file, "the manifest of the export names it"))
-        .map_err(absent)?;
+    let failed = at(&file, "the manifest of the export names it");
+    let is_file = std::fs::symlink_metadata(&file).map_err(&failed).map_err(absent)?.is_file();
+    if !is_file {
+        return Err(StoreError::Export(format!("{} is no plain file", file.display())));
+    }
+    let bytes = std::fs::read(&file).map_err(failed).map_err(absent)?;
     let found = sha256_hex(&bytes);
     if found == *sha256 {
         return Ok(bytes);
@@ -131,10 +145,8 @@ impl Store {
         }
         self.refuse_unless_empty().await?;
         // All of it before anything is stored.
-        self.check_rows(folder, &manifest).await?;
-        for sha256 in &manifest.blobs {
-            read_exported(folder, sha256)?;
-        }
+        let blobs = check_blobs(folder, &manifest)?;
+        self.check_rows(folder, &manifest, &blobs).await?;
         let mut stored = Vec::with_capacity(manifest.blobs.len());
         for sha256 in &manifest.blobs {
             let content: Content = (sha256.clone(), read_exported(folder, sha256)?.into());
@@ -157,20 +169,17 @@ impl Store {
         }
     }
 
-    /// Looks at everything that a manifest names except the bytes, before anything is stored.
-    async fn check_rows(&self, folder: &Path, manifest: &Manifest) -> Result<(), StoreError> {
-        let is_hash = |blob: &str| {
-            blob.len() == 64 && blob.bytes().all(|byte| matches!(byte, b'0'..=b'9' | b'a'..=b'f'))
-        };
-        if let Some(strange) = manifest.blobs.iter().find(|blob| !is_hash(blob)) {
-            return Err(StoreError::Export(format!(
-                "{MANIFEST}: {strange:?} is no hash of a blob"
-            )));
-        }
+    /// Looks at all rows that a manifest names, before anything is stored.
+    async fn check_rows(
+        &self,
+        folder: &Path,
+        manifest: &Manifest,
+        blobs: &BTreeMap<String, u64>,
+    ) -> Result<(), StoreError> {
         for table in TABLES {
             let columns = self.database.columns(table).await?;
             let rows = ExportedRows::open(folder, table)?;
-            let rows = rows.map_or(Ok(0), |rows| rows.check(&columns, &manifest.blobs))?;
+            let rows = rows.map_or(Ok(0), |rows| rows.check(&columns, blobs))?;
             if manifest.rows.get(table) != Some(&rows) {
                 let file = folder.join(format!("{table}.ndjson"));
                 return Err(StoreError::Export(format!("{} is cut short", file.display())));
@@ -192,11 +201,47 @@ impl Store {
     }
 }
 
+/// The sizes of the blobs that a manifest names, each of which is read.
+fn check_blobs(folder: &Path, manifest: &Manifest) -> Result<BTreeMap<String, u64>, StoreError> {
+    let is_hash = |blob: &str| {
+        blob.len() == 64 && blob.bytes().all(|byte| matches!(byte, b'0'..=b'9' | b'a'..=b'f'))
+    };
+    if let Some(strange) = manifest.blobs.iter().find(|blob| !is_hash(blob)) {
+        return Err(StoreError::Export(format!("{MANIFEST}: {strange:?} is no hash of a blob")));
+    }
+    let size = |sha256: &String| Ok((sha256.clone(), read_exported(folder, sha256)?.len() as u64));
+    manifest.blobs.iter().map(size).collect()
+}
+
+/// Refuses rows that belong together, of two tenants.
+async fn check_tenants(transaction: &mut Transaction) -> Result<(), StoreError> {
+    for (table, [(one, of), (other, others)]) in OF_ONE_TENANT {
+        let first = query_of(format!(
+            "SELECT a.id, a.tenant, b.id, b.tenant FROM {table} AS tied JOIN {of} AS a ON a.id = tied.{one} \
+             JOIN {others} AS b ON b.id = tied.{other} WHERE a.tenant <> b.tenant ORDER BY a.id, b.id LIMIT 1"
+        ));
+        let found = first.without_timeout().fetch_optional(&mut *transaction).await?;
+        if let Some(row) = found {
+            let text = |place: usize| row.try_get::<String, _>(place);
+            let detail = format!(
+                "{table}.ndjson: {of} {} is of tenant {:?}, and {others} {}, which belongs to it, of {:?}",
+                text(0)?,
+                text(1)?,
+                text(2)?,
+                text(3)?
+            );
+            return Err(StoreError::Export(detail));
+        }
+    }
+    Ok(())
+}
+
 async fn import_tables(transaction: &mut Transaction, folder: &Path) -> Result<usize, StoreError> {
     let mut rows = 0;
     for table in TABLES {
         rows += import_table(transaction, table, folder).await?;
     }
+    check_tenants(transaction).await?;
     Ok(rows)
 }
 

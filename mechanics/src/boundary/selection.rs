@@ -21,6 +21,8 @@ pub enum NodeSelection {
         distance: f64,
     },
     Any(Vec<NodeSelection>),
+    /// By their numbers, which finer meshes keep; no document states them.
+    Nodes(Vec<u32>),
 }
 
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -80,6 +82,7 @@ impl Selector<'_> {
                 }
                 Ok(nodes)
             }
+            NodeSelection::Nodes(nodes) => Ok(nodes.clone()),
         }
     }
 
@@ -99,6 +102,7 @@ impl Selector<'_> {
                 "no node of the boundary is within {distance} mm of the surface {surface:?}"
             ),
             NodeSelection::Any(_) => "no part of the selection has a node".to_owned(),
+            NodeSelection::Nodes(_) => "no node is selected".to_owned(),
         }
     }
 

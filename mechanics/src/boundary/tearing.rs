@@ -178,6 +178,10 @@ fn each_held_edge(mesh: &VolumeMesh, conditions: &Conditions, seen: &mut dyn FnM
             let from = mesh.nodes[a as usize];
             let (along, parts) = (mesh.nodes[b as usize] - from, of_b - of_a);
             let held_by = [a, b].map(|node| conditions.classes[node as usize]);
+            // What one segment carries turns with it, by any angle.
+            if held_by[0] == held_by[1] && matches!(held_by[0], NodeClass::Joined(_)) {
+                continue;
+            }
             seen(HeldEdge { cell: Some(cell), nodes: [a, b], held_by, from, along, parts });
         }
     }

@@ -1,7 +1,7 @@
 //! Inside of a closed surface, such as that of a muscle.
 
 use super::assessment::Assessment;
-use super::shell::Shell;
+use super::shell::{Shell, Side};
 use super::surface_error::{SurfaceDomainError, SurfaceName};
 use crate::mesh::{TriangleSurface, Vector};
 
@@ -28,6 +28,11 @@ impl ClosedSurface {
 
     pub fn contains(&self, point: &Vector) -> bool {
         self.shell.value(point) > 0.0
+    }
+
+    /// Whether a ball is inside or, if false, outside; `None` where it is neither or that is not certain.
+    pub fn contains_ball(&self, centre: &Vector, radius: f64) -> Option<bool> {
+        self.shell.side(centre, radius).map(|side| side == Side::In)
     }
 
     /// Lowest and highest corner of its box, in mm.

@@ -51,12 +51,27 @@ impl Scalar {
         !matches!(self, Scalar::F32 | Scalar::F64)
     }
 
+    /// Whether the type has this value.
+    pub fn holds(self, value: i64) -> bool {
+        match self {
+            Scalar::I8 => i8::try_from(value).is_ok(),
+            Scalar::U8 => u8::try_from(value).is_ok(),
+            Scalar::I16 => i16::try_from(value).is_ok(),
+            Scalar::U16 => u16::try_from(value).is_ok(),
+            Scalar::I32 => i32::try_from(value).is_ok(),
+            Scalar::U32 => u32::try_from(value).is_ok(),
+            Scalar::U64 => value >= 0,
+            Scalar::I64 | Scalar::F32 | Scalar::F64 => true,
+        }
+    }
+
     /// All values as real numbers. A remainder shorter than one value is left out.
     pub fn reals(self, bytes: &[u8], order: ByteOrder) -> Result<Vec<f64>, FormatError> {
         let mut values = room_for(bytes.len() / self.size() as usize)?;
         match self {
             Scalar::F32 => each_value!(f32, bytes, order, |value| values.push(f64::from(value))),
             Scalar::F64 => each_value!(f64, bytes, order, |value| values.push(value)),
+            Scalar::U64 => each_value!(u64, bytes, order, |value| values.push(value as f64)),
             _ => self.each_integer(bytes, order, |value| values.push(value as f64)),
         }
         Ok(values)
@@ -80,6 +95,7 @@ impl Scalar {
         match self {
             Scalar::F32 => each_value!(f32, bytes, order, |value| found = f64::from(value)),
             Scalar::F64 => each_value!(f64, bytes, order, |value| found = value),
+            Scalar::U64 => each_value!(u64, bytes, order, |value| found = value as f64),
             _ => found = self.integer(bytes, order) as f64,
         }
         found

@@ -95,6 +95,15 @@ impl VoxelBuilder {
 
     fn push_bytes(&mut self, bytes: &[u8], storage: &Storage) -> Result<(), FormatError> {
         let Storage { scalar, order, rescale, .. } = *storage;
+        if scalar == Scalar::U64 {
+            for number in scalar.reals(bytes, order)? {
+                match number < i64::MAX as f64 {
+                    true => self.push_integer(number as i64, rescale)?,
+                    false => self.push_single(rescale.of(number) as f32)?,
+                }
+            }
+            return Ok(());
+        }
         if scalar.is_integer() {
             let mut pushed = Ok(());
             scalar.each_integer(bytes, order, |number| {

@@ -10,6 +10,7 @@ mod mixing_rule;
 pub mod mixture;
 pub mod plane_stress;
 pub mod stress_series;
+pub mod tension_field;
 pub mod transversely_isotropic;
 pub use elastic_tensor::ElasticTensor;
 pub use error::MaterialError;

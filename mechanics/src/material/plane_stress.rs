@@ -29,6 +29,7 @@ pub struct PlaneStress {
     lines: Option<FibreModuli>,
     /// At rest, in kPa.
     tension: f64,
+    bears_compression: bool,
 }
 
 /// Constants of a sheet, as stated.
@@ -94,7 +95,16 @@ impl PlaneStress {
         let beta = c11 - c22 - 2.0 * delta_lambda;
         let moduli = FibreModuli { delta_lambda, delta_mu: 0.0, beta };
         let lines = along_lines.map(|_| moduli);
-        Ok(PlaneStress { thickness, young_modulus, lambda, mu, lines, tension: 0.0 })
+        let bears_compression = true;
+        Ok(PlaneStress {
+            thickness,
+            young_modulus,
+            lambda,
+            mu,
+            lines,
+            tension: 0.0,
+            bears_compression,
+        })
     }
 
     /// The sheet with a stress in kPa, in [0, 1000], that is there at rest, the same in every direction of its plane.
@@ -103,6 +113,16 @@ impl PlaneStress {
             true => Ok(PlaneStress { tension, ..self }),
             false => Err(SheetError::Tension(tension)),
         }
+    }
+
+    /// The sheet that wrinkles instead of being pressed (`tension_field`).
+    pub fn without_compression(self) -> Self {
+        PlaneStress { bears_compression: false, ..self }
+    }
+
+    /// Whether it resists being pressed along itself.
+    pub fn bears_compression(&self) -> bool {
+        self.bears_compression
     }
 
     /// At rest, in kPa.

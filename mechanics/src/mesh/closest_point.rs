@@ -13,6 +13,8 @@
 pub use super::surface_topology::Feature;
 use super::surface_topology::SurfaceTopology;
 use super::{TriangleSurface, Vector};
+use std::ops::Deref;
+
 use parry3d_f64::{
     bounding_volume::Aabb,
     math::Vector as ParryVector,
@@ -52,18 +54,23 @@ pub struct ClosestPoint {
     pub feature: Feature,
 }
 
-/// A triangle surface prepared for nearest-point queries.
-pub struct SurfaceSearch {
+/// Triangles prepared for nearest-point queries.
+pub struct TriangleSearch {
     origin: Vector,
     tree: Bvh,
     /// Triangles with an area, relative to `origin`.
     triangles: Vec<Triangle>,
     /// For each of them its number in the surface.
     numbers: Vec<u32>,
+}
+
+/// A triangle surface prepared for nearest-point queries, and for on which side of it a point lies.
+pub struct SurfaceSearch {
+    search: TriangleSearch,
     topology: SurfaceTopology,
 }
 
-impl SurfaceSearch {
+impl TriangleSearch {
     /// Triangles without area are left out; a surface that has no others is refused.
     pub fn new(surface: &TriangleSurface) -> Result<Self, SearchError> {
         check(surface)?;
@@ -84,13 +91,8 @@ impl SurfaceSearch {
             return Err(SearchError::NoArea { triangles });
         }
         let boxes: Vec<Aabb> = triangles.iter().map(Triangle::local_aabb).collect();
-        Ok(SurfaceSearch {
-            origin,
-            tree: Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes),
-            triangles,
-            numbers,
-            topology: SurfaceTopology::new(surface, has_area),
-        })
+        let tree = Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes);
+        Ok(TriangleSearch { origin, tree, triangles, numbers })
     }
 
     /// The nearest point of the surface to a finite `point`. Among equally near triangles it is
@@ -167,22 +169,6 @@ impl SurfaceSearch {
         Some((self.numbers[leaf as usize] as usize, distance))
     }
 
-    /// Distance from `point` to `closest`, the closest point to it: positive outside, in mm.
-    pub fn signed_distance(&self, point: &Vector, closest: &ClosestPoint) -> f64 {
-        let side = (point - closest.point).dot(&self.pseudo_normal(closest));
-        if side < 0.0 { -closest.distance } else { closest.distance }
-    }
-
-    /// The angle-weighted unit normal of the face, edge or vertex that holds a closest point.
-    pub fn pseudo_normal(&self, closest: &ClosestPoint) -> Vector {
-        self.topology.normal(closest.triangle, closest.feature)
-    }
-
-    /// Whether a closest point lies on an edge that belongs to one triangle only, or at its end.
-    pub fn is_on_open_border(&self, closest: &ClosestPoint) -> bool {
-        self.topology.is_open(closest.triangle, closest.feature)
-    }
-
     fn closest_on(&self, leaf: usize, query: ParryVector) -> ClosestPoint {
         let triangle = &self.triangles[leaf];
         let (projection, location) = triangle.project_local_point_and_get_location(query, true);
@@ -216,6 +202,38 @@ impl SurfaceSearch {
             distance: f64::INFINITY,
             feature: Feature::Vertex(0),
         }
+    }
+}
+
+impl SurfaceSearch {
+    /// As that of its triangles alone.
+    pub fn new(surface: &TriangleSurface) -> Result<Self, SearchError> {
+        let search = TriangleSearch::new(surface)?;
+        Ok(SurfaceSearch { search, topology: SurfaceTopology::new(surface, has_area) })
+    }
+
+    /// Distance from `point` to `closest`, the closest point to it: positive outside, in mm.
+    pub fn signed_distance(&self, point: &Vector, closest: &ClosestPoint) -> f64 {
+        let side = (point - closest.point).dot(&self.pseudo_normal(closest));
+        if side < 0.0 { -closest.distance } else { closest.distance }
+    }
+
+    /// The angle-weighted unit normal of the face, edge or vertex that holds a closest point.
+    pub fn pseudo_normal(&self, closest: &ClosestPoint) -> Vector {
+        self.topology.normal(closest.triangle, closest.feature)
+    }
+
+    /// Whether a closest point lies on an edge that belongs to one triangle only, or at its end.
+    pub fn is_on_open_border(&self, closest: &ClosestPoint) -> bool {
+        self.topology.is_open(closest.triangle, closest.feature)
+    }
+}
+
+impl Deref for SurfaceSearch {
+    type Target = TriangleSearch;
+
+    fn deref(&self) -> &TriangleSearch {
+        &self.search
     }
 }
 

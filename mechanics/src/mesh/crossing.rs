@@ -130,30 +130,13 @@ pub fn piercings(surface: &TriangleSurface, &[one, other]: &TrianglePair) -> Vec
 /// Whether two triangles pass through each other by more than a length in mm: an edge of one has ends that lie that far in front
 /// of the other and behind it. Surfaces that lie on each other cross by what rounding leaves.
 pub fn pass(surface: &TriangleSurface, pair: &TrianglePair, by: f64) -> bool {
-    piercings(surface, pair).iter().any(|piercing| met(surface, piercing, by).is_some())
-}
-
-/// Whether such an edge meets the other triangle that far from its border, too.
-pub fn pass_inside(surface: &TriangleSurface, pair: &TrianglePair, by: f64) -> bool {
     piercings(surface, pair).iter().any(|piercing| {
-        met(surface, piercing, by).is_some_and(|(met, normal)| {
-            let corners = surface.corners(piercing.triangle as usize);
-            (0..3).all(|k| {
-                let along = (corners[(k + 1) % 3] - corners[k]).normalize();
-                normal.cross(&along).dot(&(met - corners[k])) > by
-            })
-        })
+        let [corner, _, _] = surface.corners(piercing.triangle as usize);
+        let normal = surface.area_vector(piercing.triangle as usize).normalize();
+        let side = |end: u32| normal.dot(&(surface.points[end as usize] - corner));
+        let [front, behind] = piercing.edge.map(side);
+        front > by && behind < -by
     })
-}
-
-/// Where an edge meets a triangle from whose plane both its ends are farther than a length in mm, and the triangle's normal.
-fn met(surface: &TriangleSurface, piercing: &Piercing, by: f64) -> Option<(Vector, Vector)> {
-    let [corner, _, _] = surface.corners(piercing.triangle as usize);
-    let normal = surface.area_vector(piercing.triangle as usize).normalize();
-    let [first, last] = piercing.edge.map(|end| surface.points[end as usize]);
-    let [front, behind] = [first, last].map(|end| normal.dot(&(end - corner)));
-    let met = first + (last - first) * (front / (front - behind));
-    (front > by && behind < -by).then_some((met, normal))
 }
 
 /// On which side of a triangle's plane the corners of another lie, greater behind it; on it where they are the

@@ -9,6 +9,7 @@ pub mod clusters;
 pub mod conformity;
 pub mod connectivity;
 pub mod crossing;
+pub mod cubes;
 pub mod disjoint_sets;
 pub mod duplicate_cells;
 mod face_shape;
@@ -30,7 +31,7 @@ pub mod volume;
 pub mod warning;
 
 pub use bounds::{EMPTY_BOUNDS, bounds_of};
-pub use closest_point::{ClosestPoint, SearchError, SurfaceSearch};
+pub use closest_point::{ClosestPoint, SearchError, SurfaceSearch, TriangleSearch};
 pub use frame::Frame;
 pub use ignored::{ArrayUse, IgnoredArray, IgnoredArrays, ValuesOf};
 pub use place::place;

@@ -4,8 +4,6 @@
 //! chords of a curved boundary do not: a sheet thinner than a cell is lost where lattice nodes miss it, and where all nodes
 //! in it were moved to its boundary.
 
-use std::collections::HashMap;
-
 use super::draft::Draft;
 use super::error::MeshingError;
 use super::octree::{Leaf, Leaves};
@@ -14,6 +12,7 @@ use super::watch::Watch;
 use crate::domain::{Coverage, Domain};
 use crate::mesh::Vector;
 use crate::mesh::clusters::{Clusters, clusters};
+use crate::mesh::cubes::Cubes;
 
 /// Points of a leaf, no two of them at one height along an axis.
 const POINTS: usize = 16;
@@ -50,9 +49,10 @@ pub(super) fn find(
 ) -> Result<Vec<LostPiece>, MeshingError> {
     let unit = leaves.tree.grid.unit;
     let points = points(leaves);
-    let cubes = Cubes::new(4.0 * unit, &points);
+    let numbered = (0_u32..).zip(&points).map(|(number, point)| (number, point.at));
+    let cubes = Cubes::new(4.0 * unit, numbered);
     let held = watch.gather(&draft.tetrahedra, |tets, list| {
-        tets.iter().for_each(|tet| cubes.within(&draft.corners(tet), &points, list));
+        tets.iter().for_each(|tet| add_inside(&draft.corners(tet), &cubes, &points, list));
     })?;
     let mut is_held = vec![false; points.len()];
     held.into_iter().for_each(|point| is_held[point as usize] = true);
@@ -86,46 +86,18 @@ fn points(leaves: &Leaves) -> Vec<Point> {
     mixed.flat_map(of_leaf).collect()
 }
 
-/// Points by the cube that they are in.
-struct Cubes {
-    width: f64,
-    points: HashMap<[i64; 3], Vec<u32>>,
-}
-
-impl Cubes {
-    fn new(width: f64, points: &[Point]) -> Cubes {
-        let mut cubes = Cubes { width, points: HashMap::new() };
-        for (number, point) in points.iter().enumerate() {
-            cubes.points.entry(cubes.cube(&point.at)).or_default().push(number as u32);
-        }
-        cubes
-    }
-
-    fn cube(&self, at: &Vector) -> [i64; 3] {
-        (at / self.width).map(|x| x.floor() as i64).into()
-    }
-
-    /// Adds the points in a tetrahedron.
-    fn within(&self, corners: &[Vector; 4], points: &[Point], list: &mut Vec<u32>) {
-        let low = corners.iter().fold(corners[0], |low, corner| low.inf(corner));
-        let high = corners.iter().fold(corners[0], |high, corner| high.sup(corner));
-        let (first, last) = (self.cube(&low), self.cube(&high));
-        let holds = |at: &Vector| {
-            (0..4).all(|corner| {
-                let mut part = *corners;
-                part[corner] = *at;
-                determinant(&part) >= 0.0
-            })
-        };
-        for x in first[0]..=last[0] {
-            for y in first[1]..=last[1] {
-                for z in first[2]..=last[2] {
-                    let near = self.points.get(&[x, y, z]).into_iter().flatten();
-                    list.extend(near.filter(|&&point| holds(&points[point as usize].at)));
-                }
-            }
-        }
-    }
+/// Adds the points in a tetrahedron.
+fn add_inside(corners: &[Vector; 4], cubes: &Cubes, points: &[Point], list: &mut Vec<u32>) {
+    let low = corners.iter().fold(corners[0], |low, corner| low.inf(corner));
+    let high = corners.iter().fold(corners[0], |high, corner| high.sup(corner));
+    let is_inside = |point: &u32| {
+        (0..4).all(|corner| {
+            let mut part = *corners;
+            part[corner] = points[*point as usize].at;
+            determinant(&part) >= 0.0
+        })
+    };
+    list.extend(cubes.in_box(&low, &high).filter(is_inside));
 }
 
 /// Points in neighbouring cubes together.

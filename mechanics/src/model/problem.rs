@@ -50,6 +50,13 @@ pub enum ModelError {
          by {moved_mm:.2} mm where closest points are looked for again"
     )]
     ContactUnsettled { passes: usize, moved_mm: f64 },
+    /// Of tissue at finite strain whose forces balance; with a place at rest in mm.
+    #[error(
+        "contact does not settle: forces balance to a residual of {residual:.1e}, but after {steps} steps of Newton's method what presses \
+         still changes with every step{}; points looked for again lie up to {depth_mm:.3} mm in what they face",
+        as_at(place)
+    )]
+    ContactAlternates { steps: usize, residual: f64, depth_mm: f64, place: Option<[f64; 3]> },
     /// Before anything is solved.
     #[error(
         "cell {cell} is inverted by the movements prescribed at its nodes, det F {det_f:.3}: these movements fold the tissue between bones"
@@ -69,11 +76,17 @@ impl ModelError {
             ModelError::StepAboveLimit { .. } => "step-above-limit",
             ModelError::NoBone => "no-bone",
             ModelError::Standstill { .. } => "no-equilibrium",
-            ModelError::ContactUnsettled { .. } => "contact-unsettled",
+            ModelError::ContactUnsettled { .. } | ModelError::ContactAlternates { .. } => {
+                "contact-unsettled"
+            }
             ModelError::Folded { .. } => "tissue-folded",
             ModelError::BonesPass { cause, .. } => cause.code(),
         }
     }
+}
+
+fn as_at(place: &Option<[f64; 3]>) -> String {
+    place.map_or_else(String::new, |[x, y, z]| format!(", as at ({x:.1}, {y:.1}, {z:.1}) mm"))
 }
 
 /// A cell whose Jacobian is not positive at a quadrature point.

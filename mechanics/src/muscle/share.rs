@@ -6,6 +6,9 @@ use crate::domain::{ClosedSurface, SurfaceDomainError, SurfaceName};
 use crate::image::SamplingRule;
 use crate::mesh::{TriangleSurface, Vector, VolumeMesh};
 
+/// No more sample points are looked at one by one also where the surface is far from the cell.
+const FEW: usize = 8;
+
 /// The share of each cell, 0 to 1, inside the closed surface of muscle `number` (from 0), both in mm, by `samples` points in a
 /// cell. The error of a share falls with the number of points; Kim et al. 2012 tell inside from outside by the normal at the
 /// nearest place, which fails at edges and on open meshes, where a winding number does not.
@@ -13,6 +16,17 @@ pub fn shares_inside(
     mesh: &VolumeMesh,
     surface: &TriangleSurface,
     number: usize,
+    samples: usize,
+) -> Result<Vec<f64>, SurfaceDomainError> {
+    let all: Vec<u32> = (0..mesh.cells.len() as u32).collect();
+    shares_of(mesh, &all, (surface, number), samples)
+}
+
+/// The same of some cells.
+pub fn shares_of(
+    mesh: &VolumeMesh,
+    cells: &[u32],
+    (surface, number): (&TriangleSurface, usize),
     samples: usize,
 ) -> Result<Vec<f64>, SurfaceDomainError> {
     let inside = ClosedSurface::new(surface, SurfaceName::Muscle(number))?;
@@ -27,11 +41,23 @@ pub fn shares_inside(
         if (0..3).any(far) {
             return 0.0;
         }
+        if samples > FEW
+            && let Some(is_inside) = contains_all(&inside, &corners)
+        {
+            return f64::from(is_inside);
+        }
         let mut count = 0_usize;
         rule.for_each(mesh.cells.shape(cell), &corners, |point| {
             count += usize::from(inside.contains(&point));
         });
         count as f64 / rule.count as f64
     };
-    Ok((0..mesh.cells.len()).into_par_iter().map(of_cell).collect())
+    Ok(cells.par_iter().map(|&cell| of_cell(cell as usize)).collect())
+}
+
+/// Whether a cell is inside or, if false, outside; `None` where the surface meets the ball about it.
+fn contains_all(inside: &ClosedSurface, corners: &[Vector]) -> Option<bool> {
+    let middle = corners.iter().sum::<Vector>() / corners.len() as f64;
+    let radius = corners.iter().map(|x| (x - middle).norm()).fold(0.0, f64::max);
+    inside.contains_ball(&middle, radius * (1.0 + 1e-9))
 }

@@ -4,11 +4,11 @@ use rayon::prelude::*;
 
 use super::bone_labels::{BoneLabels, Owner};
 use super::classes::{NodeClasses, Role, TissueBoundary};
-use super::cubes::Cubes;
 use super::joining::{longest_edge, role_of};
 use super::voxel_cells::VoxelCells;
 use crate::mesh::Vector;
 use crate::mesh::clusters::{Clusters, clusters};
+use crate::mesh::cubes::Cubes;
 
 /// Surface farther from all nodes of its bone than so many edges of the cell there is not covered.
 const REACH: f64 = 1.5;

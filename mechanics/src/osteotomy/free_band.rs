@@ -2,8 +2,8 @@
 
 use std::collections::BTreeSet;
 
-use super::cubes::Cubes;
 use crate::mesh::VolumeMesh;
+use crate::mesh::cubes::Cubes;
 
 /// Held nodes, by number ascending, with one of another movement at most `band_mm` away or in one of their cells.
 /// `None` for nodes that are not held.

@@ -13,7 +13,6 @@ pub mod clearance;
 pub mod clip;
 pub mod contact;
 pub mod coverage;
-mod cubes;
 pub mod cut;
 pub mod cut_face;
 mod flood;

@@ -2,9 +2,9 @@
 
 use super::bone_image::BoneImage;
 use super::bone_labels::{BoneLabels, Owner};
-use super::cubes::Cubes;
 use super::grid::Grid;
 use crate::mesh::Vector;
+use crate::mesh::cubes::Cubes;
 
 /// Enamel in Hounsfield units. Dense bone of a jaw reaches 1700 on the CT of `examples/head_ct`.
 pub const ENAMEL_HU: f64 = 1800.0;

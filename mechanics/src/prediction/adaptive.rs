@@ -8,9 +8,10 @@
 //! the mesh leaves out of it (`discretisation_error::indicators`) are halved three times. Tissue is not made anew: the finer
 //! scene asks the question of the first one (`refined_scene`), and its answer is given at the nodes of the case.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 use super::answer::Answer;
+use super::at_points::points_refined;
 use super::muscle_field::MuscleField;
 use super::nonlinearity;
 use super::numerical_error::{self, NotEstimated, NumericalError};
@@ -68,34 +69,6 @@ fn muscles_stay(scene: &Scene) -> Option<Warning> {
         listed(&counting)
     );
     (!counting.is_empty()).then(|| Warning::new("muscles-not-refined", detail))
-}
-
-/// The warning where conditions or forces act at points, which a refined mesh feels less and less, or without end.
-fn points_stay(scene: &Scene) -> Result<Option<Warning>, NotRefined> {
-    let mut held: BTreeSet<u32> = BTreeSet::new();
-    for stated in &scene.stated {
-        let without = stated.nodes_without_extent(&scene.mesh, &scene.boundary);
-        // Some at the rim of a surface are usual.
-        if 2 * without.len() > stated.nodes.len() {
-            held.extend(without);
-        }
-    }
-    let forces = scene.nodes_with_forces()?;
-    let Some(&first) = held.iter().chain(&forces).next() else { return Ok(None) };
-    let at = scene.mesh.nodes[first as usize];
-    let detail = format!(
-        "{} nodes are held that fill no face of the boundary and no cell together, and forces act at {} nodes, the first at ({:.1}, {:.1}, \
-         {:.1}) mm: a refined mesh keeps them as points, which hold less and yield more the finer it is; neither the answer nor its estimate \
-         has a limit there. State a surface, cells or a traction, or do not refine",
-        held.len(),
-        forces.len(),
-        at.x,
-        at.y,
-        at.z
-    );
-    let warning = Warning::new("points-refined", detail);
-    let warning = warning.with("held_nodes", held.len() as f64);
-    Ok(Some(warning.with("forces", forces.len() as f64)))
 }
 
 /// A mesh that was solved on.
@@ -331,7 +304,7 @@ pub fn predict_adaptively(
     left_out.extend(linearisation_error_warning(scene, &prediction, wanted));
     if finest.is_some() {
         left_out.extend(muscles_stay(scene));
-        left_out.extend(points_stay(scene)?);
+        left_out.extend(points_refined(scene).map_err(NotRefined::from)?);
     }
     let is_incomplete = stop == Stop::Met && !left_out.is_empty();
     let stop = if is_incomplete { Stop::Incomplete } else { stop };

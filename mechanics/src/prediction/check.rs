@@ -149,7 +149,7 @@ impl<'a> Check<'a> {
         }
         let surface = self.case.volume.surface_of(&faces);
         let skin_nodes = surface.node_ids.clone().unwrap_or_default();
-        let mut regions = BTreeMap::new();
+        let (mut regions, mut off) = (BTreeMap::new(), BTreeMap::new());
         for (name, selection) in &self.case.skin_regions {
             let pointer = format!("/case/skin_regions/{name}");
             let nodes = self.select(selection, &pointer);
@@ -160,9 +160,12 @@ impl<'a> Check<'a> {
                 let detail = "no node of the selection is on the skin".to_owned();
                 self.problems.add(pointer, SceneErrorCode::EmptySelection, detail);
             }
+            if points.len() < nodes.len() {
+                off.insert(name.clone(), nodes.len() - points.len());
+            }
             regions.insert(name.clone(), points);
         }
-        Skin { surface, regions }
+        Skin { surface, regions, off }
     }
 
     /// The boundary faces all of whose nodes are listed.

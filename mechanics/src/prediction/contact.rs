@@ -3,9 +3,9 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::case::ContactKind;
+use super::contact_overlap::{Overlap, deepest_overlap};
 use super::numerical_error::{ErrorOrReason, at_last_tangent, estimate_in_contact};
 use super::scene::Scene;
-use super::skin_overlap::{Deepest, deepest_overlap};
 use crate::boundary::NodeClass;
 use crate::boundary::contact::{BoneInside, Embedded, FacingSurfaces, bones_inside};
 use crate::mesh::{Vector, Warning};
@@ -29,7 +29,7 @@ pub struct Touch {
     pub pressure: Vec<f64>,
     pub pairs: Vec<ContactPair>,
     /// Where the boundary lies in itself, as at the corners of a mouth, whose edges no node is held against.
-    pub overlap: Option<Deepest>,
+    pub overlap: Option<Overlap>,
     /// The surfaces of bone that lie in tissue nevertheless, as those narrower than its cells may.
     pub bones_inside: Vec<BoneInside>,
     /// At the end of each load step; empty where none were asked for.
@@ -141,6 +141,7 @@ pub(super) fn expected_touch_at_finite_strain(
         // What does not touch otherwise may rest.
         Err(
             ModelError::ContactUnsettled { .. }
+            | ModelError::ContactAlternates { .. }
             | ModelError::Standstill { .. }
             | ModelError::Solver(SolverError::NotConverged { .. }),
         ) => Ok(None),
@@ -186,9 +187,12 @@ fn pressed(
     let Some(Pressing { equilibrium, contact, numerical_error }) = found.or_else(without) else {
         return Ok(None);
     };
-    let at_rest = deepest_overlap(surfaces.rest()).map_or(0.0, |at| at.depth);
+    let cells = &scene.mesh.cells;
+    let at_rest = deepest_overlap(cells, surfaces.rest_positions(), surfaces.rest());
     let moved = surfaces.after(&equilibrium.displacement);
-    let overlap = deepest_overlap(&moved).filter(|deepest| deepest.depth > at_rest + DEEP_MM);
+    let positions = surfaces.positions(&equilibrium.displacement);
+    let overlap = deepest_overlap(cells, &positions, &moved)
+        .filter(|own| own.depth > at_rest.map_or(0.0, |at_rest| at_rest.depth) + DEEP_MM);
     // What of bone lies between the nodes of tissue may enter: edges, narrow parts, roundings that cells span as chords.
     let boundaries = [surfaces.rest(), &moved];
     let bones_inside = bones_inside(boundaries, &scene.bones, DEEP_MM, Embedded::IfMoved);
@@ -204,7 +208,7 @@ fn pressed(
     // Stress of linear elasticity is force on the area at rest.
     let areas = match scene.settings.method.properties().is_small_strain {
         true => surfaces.areas(&contact.forces, surfaces.rest_positions()),
-        false => surfaces.areas(&contact.forces, &surfaces.positions(&equilibrium.displacement)),
+        false => surfaces.areas(&contact.forces, &positions),
     };
     let touch = Touch::new(scene, &areas, contact);
     let touch = Touch { overlap, bones_inside, at_load_steps, ..touch };
@@ -264,7 +268,7 @@ impl Touch {
             );
             warnings.push(Warning::new("contact-chatter", detail).with("points", *kept as f64));
         }
-        if let Some(Deepest { depth, at, .. }) = &self.overlap {
+        if let Some(Overlap { depth, at }) = &self.overlap {
             let detail = format!(
                 "contact leaves parts of the boundary in each other, {depth:.2} mm deep: it holds nodes of tissue against triangles, not edges against edges, and what lies between the nodes is free: an edge, a narrow part, or a rounding that cells of tissue span as chords"
             );

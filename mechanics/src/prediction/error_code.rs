@@ -18,6 +18,7 @@ pub enum SceneErrorCode {
     PlanOutOfRange,
     SlidingConflict,
     SlidingNormalZero,
+    TooMany,
     TooManyRegions,
     Underconstrained,
     UnknownArray,
@@ -30,7 +31,7 @@ pub enum SceneErrorCode {
 }
 
 impl SceneErrorCode {
-    pub const ALL: [SceneErrorCode; 24] = [
+    pub const ALL: [SceneErrorCode; 25] = [
         SceneErrorCode::DuplicateSegment,
         SceneErrorCode::EmptySelection,
         SceneErrorCode::FibreDirectionZero,
@@ -46,6 +47,7 @@ impl SceneErrorCode {
         SceneErrorCode::PlanOutOfRange,
         SceneErrorCode::SlidingConflict,
         SceneErrorCode::SlidingNormalZero,
+        SceneErrorCode::TooMany,
         SceneErrorCode::TooManyRegions,
         SceneErrorCode::Underconstrained,
         SceneErrorCode::UnknownArray,
@@ -74,6 +76,7 @@ impl SceneErrorCode {
             SceneErrorCode::PlanOutOfRange => "plan-out-of-range",
             SceneErrorCode::SlidingConflict => "sliding-conflict",
             SceneErrorCode::SlidingNormalZero => "sliding-normal-zero",
+            SceneErrorCode::TooMany => "too-many",
             SceneErrorCode::TooManyRegions => "too-many-regions",
             SceneErrorCode::Underconstrained => "underconstrained",
             SceneErrorCode::UnknownArray => "unknown-array",

@@ -146,6 +146,10 @@ impl Check<'_> {
             Some("this method has no skin of its own: leave the membrane out")
         } else if method == MethodKind::FemNonlinear && is_quadratic {
             Some("quadratic elements have no membrane at finite strain: choose another element")
+        } else if method != MethodKind::FemNonlinear && !stated.sheet.bears_compression() {
+            Some(
+                "a membrane that bears no compression is not linear: request `fem_nonlinear`, or a membrane that bears it",
+            )
         } else {
             None
         };

@@ -3,11 +3,13 @@
 mod adaptive;
 mod adequate;
 mod answer;
+mod at_points;
 mod bone_in_tissue;
 mod build;
 pub mod case;
 mod check;
 mod contact;
+mod contact_overlap;
 mod cut;
 mod element_choice;
 mod error_code;
@@ -25,7 +27,9 @@ mod method;
 mod muscle;
 mod muscle_field;
 mod muscle_lines;
+mod muscle_pieces;
 mod muscle_tissue;
+mod muscle_work;
 mod no_rest;
 mod nonlinearity;
 mod numerical_error;
@@ -53,6 +57,7 @@ mod wrinkles;
 
 use std::collections::BTreeMap;
 
+pub use at_points::points_refined;
 pub use case::{
     Activation, BodyFibres, Bone, Case, CaseSegment, ContactKind, FibreDirection, Growth,
     Hounsfield, Load, Mixing, Muscle, MuscleCourse, MuscleMixing, Plan, Prescribed, RegionNames,
@@ -66,7 +71,8 @@ pub use imaged_tissue::{ImagedTissue, TissueShare};
 pub use method::{Laws, Method, MethodKind, MethodProperties, Unknowns};
 pub use muscle::PULL;
 pub use muscle_field::{MuscleBody, MuscleField, MuscleTissue};
-pub use nonlinearity::{Estimated, Nonlinearity, NonlinearityUnknown};
+pub use muscle_work::MOST_MUSCLE_WORK;
+pub use nonlinearity::{Estimated, Nonlinearity, NonlinearityUnknown, without_second_order};
 pub use numerical_error::{NUMERICAL_ERROR_LARGE, NotEstimated, NumericalError};
 pub use numerics_revision::NUMERICS_REVISION;
 pub use problem::{SceneError, SceneErrors};

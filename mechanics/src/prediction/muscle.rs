@@ -17,12 +17,13 @@ use super::hounsfield::TissueOfCells;
 use super::method::Method;
 use super::muscle_field::{MuscleBody, MuscleField, MuscleTissue, elsewhere};
 use super::muscle_lines::{Lines, PullShare};
+use super::muscle_work::NearMuscles;
 use super::scene::Scene;
 use crate::mesh::ignored::{listed, missing_region};
 use crate::mesh::{ArrayUse, TriangleSurface, Vector, VolumeMesh, Warning, bounds_of, place};
 use crate::model::fem::inner_stress::{CellStress, InnerStress};
 use crate::muscle::lines::nearest;
-use crate::muscle::share::shares_inside;
+use crate::muscle::share::shares_of;
 use crate::muscle::strap::{Strap, strap_of};
 
 /// Stresses in kPa with which a muscle may pull.
@@ -66,15 +67,22 @@ impl<'a> Check<'a> {
         if self.problems.count() > 0 {
             return (Vec::new(), None);
         }
-        let muscles = self.muscles(regions, region_of_cell);
+        let Some(near) = self.near_muscles() else { return (Vec::new(), None) };
+        let muscles = self.muscles(regions, region_of_cell, &near);
         let made = self.muscle_tissue(&muscles, (tissue, fibres), (method, plan));
         (muscles, made)
     }
 
-    fn muscles(&mut self, regions: &[String], region_of_cell: &[u16]) -> Vec<MuscleField> {
+    fn muscles(
+        &mut self,
+        regions: &[String],
+        region_of_cell: &[u16],
+        near: &NearMuscles,
+    ) -> Vec<MuscleField> {
         let mut names = BTreeSet::new();
         let mut fields = Vec::new();
         for (index, muscle) in self.case.muscles.iter().enumerate() {
+            let near = &near.cells(index)[..];
             let pointer = format!("/case/muscles/{index}");
             if !names.insert(&muscle.name) {
                 let detail = format!("muscle {:?} is defined twice", muscle.name);
@@ -92,10 +100,10 @@ impl<'a> Check<'a> {
                     (self.directed(whole, along, &pointer), None)
                 }
                 MuscleCourse::Lines { lines, within } => {
-                    (self.around(lines, *within, (&muscle.name, &pointer)), None)
+                    (self.around(lines, *within, near, (&muscle.name, &pointer)), None)
                 }
                 MuscleCourse::Body { surface, fibres } => {
-                    self.inside((surface, fibres), (index, &muscle.name), &pointer)
+                    self.inside((surface, fibres), near, (index, &muscle.name), &pointer)
                 }
             };
             let field = MuscleField::new(muscle, cells, body);
@@ -191,19 +199,25 @@ impl<'a> Check<'a> {
         &mut self,
         lines: &[Vec<Vector>],
         within: f64,
+        near: &[u32],
         (name, pointer): (&str, &str),
     ) -> Vec<CellStress> {
         let course = Lines::new(lines, within);
-        let cells = course.as_ref().map_or_else(Vec::new, |own| own.cells(&self.case.volume));
+        let cells = course.as_ref().map_or_else(Vec::new, |own| own.cells(&self.case.volume, near));
         match course.filter(|_| !cells.is_empty()) {
             Some(course) => {
-                let pull = PullShare::new(&course, &self.case.volume, &cells);
+                let pull = PullShare::new(&course, &self.case.volume, (near, &cells));
                 self.warnings.extend(pull.warnings(name));
             }
             None => {
-                let detail = format!(
-                    "no cell has a point of its tissue near the lines of muscle {name:?}: are they in mm, in the frame of the case?"
-                );
+                let detail = match Lines::new(lines, within) {
+                    None => format!(
+                        "the lines of muscle {name:?} have no length: all points of each are at one place"
+                    ),
+                    Some(_) => format!(
+                        "no cell has a point of its tissue near the lines of muscle {name:?}: are they in mm, in the frame of the case?"
+                    ),
+                };
                 let at = format!("{pointer}/lines_mm");
                 self.problems.add(at, SceneErrorCode::EmptySelection, detail);
             }
@@ -214,11 +228,12 @@ impl<'a> Check<'a> {
     fn inside(
         &mut self,
         (surface, fibres): (&TriangleSurface, &'a BodyFibres),
+        near: &[u32],
         (number, name): (usize, &str),
         pointer: &str,
     ) -> (Vec<CellStress>, Option<MuscleBody>) {
         let samples = self.case.muscle_mixing.samples;
-        let shares = match shares_inside(&self.case.volume, surface, number, samples) {
+        let shares = match shares_of(&self.case.volume, near, (surface, number), samples) {
             Ok(shares) => shares,
             Err(error) => {
                 let at = format!("{pointer}/surface");
@@ -226,8 +241,8 @@ impl<'a> Check<'a> {
                 return (Vec::new(), None);
             }
         };
-        let filled: Vec<(usize, f64)> =
-            shares.into_iter().enumerate().filter(|(_, share)| *share > 0.0).collect();
+        let of_cells = near.iter().map(|&cell| cell as usize).zip(shares);
+        let filled: Vec<(usize, f64)> = of_cells.filter(|(_, share)| *share > 0.0).collect();
         if filled.is_empty() {
             let detail = format!(
                 "no cell has a sample point inside muscle {name:?}, which {}; the mesh {}: are both in the same frame and unit, and is it thicker than the way between sample \

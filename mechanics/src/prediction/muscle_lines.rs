@@ -3,10 +3,10 @@
 use std::collections::BTreeMap;
 
 use nalgebra::Matrix3;
-use rayon::prelude::*;
 
 use super::fibres::unit;
 use super::muscle_field::{elsewhere, muscle_volume};
+use super::muscle_pieces::{Ball, Piece, Search};
 use crate::mesh::refinement::refine;
 use crate::mesh::{Vector, VolumeMesh, Warning, bounds_of};
 use crate::model::fem::inner_stress::CellStress;
@@ -19,11 +19,14 @@ const PULL_OFF: f64 = 0.1;
 /// A muscle of more cells is resolved by its own, so that halving their edges once is as good as twice.
 const MANY_CELLS: usize = 200;
 
+/// The quadrature points of more cells hold the pull to some per cent wherever they lie.
+const ENOUGH_CELLS: usize = 5000;
+
 /// As many points of lines are looked for in the tissue.
 const POINTS: f64 = 200.0;
 
 /// How much of the pull of lines the cells of a mesh carry: int w dV by their quadrature points over what it is in the same tissue
-/// with every edge halved twice, or once where the muscle has many cells.
+/// with every edge halved twice, once where the muscle has many cells, and none where these are enough.
 pub(super) struct PullShare {
     cells: usize,
     /// None where no quadrature point of the finer cells is in reach.
@@ -33,9 +36,22 @@ pub(super) struct PullShare {
 }
 
 impl PullShare {
-    pub(super) fn new(lines: &Lines, mesh: &VolumeMesh, cells: &[CellStress]) -> Self {
-        let halved = refine(&lines.tissue_near(mesh));
-        let pull_in = |mesh: &VolumeMesh| pull_of(mesh, &lines.cells(mesh));
+    /// Of a muscle that has `cells` of those that are `near` it.
+    pub(super) fn new(
+        lines: &Lines,
+        mesh: &VolumeMesh,
+        (near, cells): (&[u32], &[CellStress]),
+    ) -> Self {
+        let near = lines.tissue_near(mesh, near);
+        if cells.len() > ENOUGH_CELLS {
+            let inside = lines.share_inside(&near);
+            return PullShare { cells: cells.len(), share: Some(1.0), inside };
+        }
+        let halved = refine(&near);
+        let pull_in = |mesh: &VolumeMesh| {
+            let all: Vec<u32> = (0..mesh.cells.len() as u32).collect();
+            pull_of(mesh, &lines.cells(mesh, &all))
+        };
         let exact = match cells.len() > MANY_CELLS {
             true => pull_in(&halved),
             false => pull_in(&refine(&halved)),
@@ -83,20 +99,6 @@ fn pull_of(mesh: &VolumeMesh, cells: &[CellStress]) -> f64 {
 /// Squared distances that differ by less than this share of the squared reach are equal.
 const EQUAL: f64 = 1e-9;
 
-/// A straight piece of a line: its start, the way to its end, and the box around all that is within its reach.
-struct Piece {
-    from: Vector,
-    along: Vector,
-    reach: [Vector; 2],
-}
-
-impl Piece {
-    fn new(from: Vector, to: Vector, within: f64) -> Self {
-        let margin = Vector::repeat(within);
-        Piece { from, along: to - from, reach: [from.inf(&to) - margin, from.sup(&to) + margin] }
-    }
-}
-
 fn overlap([low, high]: &[Vector; 2], [other_low, other_high]: &[Vector; 2]) -> bool {
     (0..3).all(|axis| high[axis] >= other_low[axis] && low[axis] <= other_high[axis])
 }
@@ -121,51 +123,62 @@ impl Lines {
         Some(Lines { pieces, within, reach })
     }
 
-    /// w f (x) f of all cells where it is not zero.
-    pub(super) fn cells(&self, mesh: &VolumeMesh) -> Vec<CellStress> {
-        let of_cell = |cell: usize| {
-            let stress = self.mean(mesh, cell)?;
+    /// w f (x) f of all cells near them where it is not zero.
+    pub(super) fn cells(&self, mesh: &VolumeMesh, near: &[u32]) -> Vec<CellStress> {
+        let made = |cell: usize, near: &[&Piece]| {
+            let stress = self.mean(mesh, cell, near)?;
             Some(CellStress { cell: cell as u32, stress })
         };
-        (0..mesh.cells.len()).into_par_iter().filter_map(of_cell).collect()
+        let search = Search { within: self.within, made };
+        let mut cells = search.run(mesh, near, &self.pieces);
+        cells.sort_unstable_by_key(|own| own.cell);
+        cells
     }
 
     /// Of their length the share that is nearer to the middle of a cell than its farthest corner.
     fn share_inside(&self, mesh: &VolumeMesh) -> f64 {
-        let balls: Vec<(Vector, f64)> = (0..mesh.cells.len())
-            .map(|cell| {
-                let middle = mesh.centroid(cell);
-                let squared = mesh.corners(cell).map(|x| (x - middle).norm_squared());
-                (middle, squared.fold(0.0, f64::max))
-            })
-            .collect();
         let length: f64 = self.pieces.iter().map(|piece| piece.along.norm()).sum();
-        let mut inside = 0.0;
-        for piece in &self.pieces {
-            let own = piece.along.norm();
-            let points = (POINTS * own / length).ceil();
-            let at = |k: usize| piece.from + piece.along * ((k as f64 + 0.5) / points);
-            let is_in = |x: &Vector| balls.iter().any(|(m, r)| (x - m).norm_squared() <= *r);
-            let there = (0..points as usize).filter(|&k| is_in(&at(k))).count();
-            inside += own / length * there as f64 / points;
+        let counts = self.pieces.iter().map(|piece| (POINTS * piece.along.norm() / length).ceil());
+        let counts: Vec<f64> = counts.collect();
+        let mut points: Vec<(Vector, usize, bool)> = Vec::new();
+        for (number, (piece, count)) in self.pieces.iter().zip(&counts).enumerate() {
+            let at = |k: usize| piece.from + piece.along * ((k as f64 + 0.5) / count);
+            points.extend((0..*count as usize).map(|k| (at(k), number, false)));
         }
-        inside
+        points.sort_by(|a, b| a.0.x.total_cmp(&b.0.x));
+        for cell in 0..mesh.cells.len() {
+            let ball = Ball::of(mesh, cell);
+            let Ball { middle, squared_radius } = ball;
+            let first = points.partition_point(|(x, ..)| x.x < middle.x - ball.radius());
+            let from = points[first..].iter_mut();
+            for (x, _, is_inside) in from.take_while(|(x, ..)| x.x <= middle.x + ball.radius()) {
+                *is_inside |= (*x - middle).norm_squared() <= squared_radius;
+            }
+        }
+        let mut there = vec![0.0; self.pieces.len()];
+        points.iter().for_each(|(_, number, is_inside)| there[*number] += f64::from(*is_inside));
+        let shares = self.pieces.iter().zip(counts.iter().zip(&there));
+        shares.map(|(piece, (count, there))| piece.along.norm() / length * there / count).sum()
     }
 
     /// Whether a cell may have tissue within reach.
-    fn may_reach(&self, corners: &[Vector]) -> bool {
+    fn may_reach<'a>(
+        &self,
+        corners: &[Vector],
+        mut pieces: impl Iterator<Item = &'a Piece>,
+    ) -> bool {
         let Some(around) = bounds_of(corners) else { return false };
-        overlap(&around, &self.reach)
-            && self.pieces.iter().any(|piece| overlap(&around, &piece.reach))
+        overlap(&around, &self.reach) && pieces.any(|piece| overlap(&around, &piece.reach))
     }
 
-    /// The cells that may have tissue within reach.
-    fn tissue_near(&self, mesh: &VolumeMesh) -> VolumeMesh {
+    /// The cells that may have tissue within reach, of those near.
+    fn tissue_near(&self, mesh: &VolumeMesh, cells: &[u32]) -> VolumeMesh {
         let mut near = VolumeMesh::default();
         let mut number_of = BTreeMap::new();
-        for (cell, (shape, nodes)) in mesh.cells.iter().enumerate() {
+        for cell in cells.iter().map(|&cell| cell as usize) {
+            let (shape, nodes) = (mesh.cells.shape(cell), mesh.cells.nodes(cell));
             let corners: Vec<Vector> = mesh.corners(cell).collect();
-            if !self.may_reach(&corners) {
+            if !self.may_reach(&corners, self.pieces.iter()) {
                 continue;
             }
             let numbered = nodes.iter().map(|&node| {
@@ -180,30 +193,28 @@ impl Lines {
         near
     }
 
-    /// The mean over a cell; none where no point of it is within reach.
-    fn mean(&self, mesh: &VolumeMesh, cell: usize) -> Option<Matrix3<f64>> {
+    /// The mean over a cell by the pieces near it; none where no point of it is within reach.
+    fn mean(&self, mesh: &VolumeMesh, cell: usize, near: &[&Piece]) -> Option<Matrix3<f64>> {
         let corners: Vec<Vector> = mesh.corners(cell).collect();
-        if !self.may_reach(&corners) {
+        if !self.may_reach(&corners, near.iter().copied()) {
             return None;
         }
         let (mut sum, mut volume) = (Matrix3::zeros(), 0.0);
         for point in &reference_cell(mesh.cells.shape(cell)).points {
             let physical = point.at(&corners)?;
             let place: Vector = corners.iter().zip(&point.values).map(|(x, n)| x * *n).sum();
-            sum += self.at(&place) * physical.volume;
+            sum += self.at(&place, near) * physical.volume;
             volume += physical.volume;
         }
         (sum != Matrix3::zeros()).then(|| sum / volume)
     }
 
     /// w f (x) f at a place; where pieces are equally near, the mean of theirs, so that rounding does not choose.
-    fn at(&self, place: &Vector) -> Matrix3<f64> {
+    fn at(&self, place: &Vector, near: &[&Piece]) -> Matrix3<f64> {
         let reach = self.within * self.within;
         let (mut nearest, mut sum, mut count) = (reach, Matrix3::zeros(), 0.0);
-        for piece in &self.pieces {
-            let share = (place - piece.from).dot(&piece.along) / piece.along.norm_squared();
-            let foot = piece.from + piece.along * share.clamp(0.0, 1.0);
-            let squared = (place - foot).norm_squared();
+        for piece in near {
+            let squared = piece.squared_distance(place);
             let Some(f) = unit(&piece.along).filter(|_| squared < nearest + EQUAL * reach) else {
                 continue;
             };

@@ -15,7 +15,9 @@ pub(super) fn no_rest(
 ) -> ModelError {
     let finds_none = matches!(
         error,
-        ModelError::Standstill { .. } | ModelError::Solver(SolverError::NotConverged { .. })
+        ModelError::Standstill { .. }
+            | ModelError::ContactAlternates { .. }
+            | ModelError::Solver(SolverError::NotConverged { .. })
     );
     let turned = || turned_edges(mesh, conditions);
     let Some(turned) = finds_none.then(turned).flatten() else { return error };

@@ -60,6 +60,14 @@ pub enum NonlinearityUnknown {
 /// Linearisation error, or the reason why it is not known.
 pub type Estimated = Result<Nonlinearity, NonlinearityUnknown>;
 
+/// Why linear elements of a scene have no second order, whatever moves it.
+pub fn without_second_order(scene: &Scene) -> Option<NonlinearityUnknown> {
+    if scene.has_pulling_fibres() {
+        return Some(NonlinearityUnknown::PullingFibres);
+    }
+    (!scene.is_first_order()).then_some(NonlinearityUnknown::Quadratic)
+}
+
 /// Why a method has no estimate.
 pub(super) fn reason_for_none(scene: &Scene) -> Option<NonlinearityUnknown> {
     if !scene.settings.estimate {
@@ -68,11 +76,10 @@ pub(super) fn reason_for_none(scene: &Scene) -> Option<NonlinearityUnknown> {
     match scene.settings.method {
         Method::FemLinear
         | Method::MassTensorTransverse(MassTensorSettings { iterations: Iterations::Fast }) => {
-            if scene.has_pulling_fibres() {
-                return Some(NonlinearityUnknown::PullingFibres);
-            }
-            let turned = rotation_beyond_second_order(scene);
-            turned.map(|segment| NonlinearityUnknown::TurnedWall { segment })
+            without_second_order(scene).or_else(|| {
+                let turned = rotation_beyond_second_order(scene);
+                turned.map(|segment| NonlinearityUnknown::TurnedWall { segment })
+            })
         }
         Method::FemNonlinear | Method::MassTensorNonlinear => {
             Some(NonlinearityUnknown::FiniteStrain)

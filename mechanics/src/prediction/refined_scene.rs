@@ -227,7 +227,7 @@ impl FinerScene<'_> {
     }
 
     fn skin(&self) -> Skin {
-        let Skin { surface, regions } = &self.scene.skin;
+        let Skin { surface, regions, off } = &self.scene.skin;
         let nodes = self.scene.skin.nodes();
         let corners = |points: &[u32; 3]| points.map(|point| nodes[point as usize]);
         let triangles: Vec<[u32; 3]> = surface.triangles.iter().map(corners).collect();
@@ -243,7 +243,7 @@ impl FinerScene<'_> {
         };
         let regions =
             regions.iter().map(|(name, points)| (name.clone(), carried(points))).collect();
-        Skin { surface, regions }
+        Skin { surface, regions, off: off.clone() }
     }
 
     fn membrane(&self, membrane: &Membrane) -> Membrane {

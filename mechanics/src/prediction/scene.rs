@@ -154,9 +154,9 @@ impl Scene {
         LoadCase { held, forces: self.forces.clone(), grown }
     }
 
-    /// Whether nothing is held away from its place and nothing acts.
+    /// Whether nothing is held away from its place and nothing acts, but what is so small that its square is 0.
     pub(super) fn is_at_rest(&self) -> bool {
-        let moves = |vector: &Vector| *vector != Vector::zeros();
+        let moves = |vector: &Vector| vector.norm_squared() > 0.0;
         let constraints = &self.conditions.constraints;
         !constraints.iter().any(|constraint| moves(constraint.values()))
             && !self.forces.iter().any(moves)
@@ -349,10 +349,11 @@ impl Scene {
                     format!("{} plain", shape.name())
                 }
             })
-            .chain(self.membrane.as_ref().map(|_| match self.tetrahedron() {
-                Tetrahedron::Quadratic => "tri6 membrane".to_owned(),
-                Tetrahedron::Plain | Tetrahedron::Stabilised => "tri3 membrane".to_owned(),
-            }))
+            .chain(
+                self.membrane
+                    .as_ref()
+                    .map(|own| own.name(self.tetrahedron() == Tetrahedron::Quadratic).to_owned()),
+            )
             .collect()
     }
 

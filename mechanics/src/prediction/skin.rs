@@ -21,6 +21,8 @@ pub struct Skin {
     pub surface: TriangleSurface,
     /// Named parts as ascending points of `surface`.
     pub regions: BTreeMap<String, Vec<u32>>,
+    /// How many nodes of the selection of such a part are not on the skin, where there are any.
+    pub off: BTreeMap<String, usize>,
 }
 
 impl Skin {

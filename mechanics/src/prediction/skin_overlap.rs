@@ -12,9 +12,7 @@
 use std::collections::BTreeSet;
 
 use super::skin::Skin;
-use crate::mesh::crossing::{
-    Piercing, TrianglePair, cross, pass, pass_inside, piercings, self_crossings,
-};
+use crate::mesh::crossing::{Piercing, TrianglePair, cross, pass, piercings, self_crossings};
 use crate::mesh::disjoint_sets::DisjointSets;
 use crate::mesh::{SurfaceSearch, TriangleSurface, Vector, Warning};
 
@@ -44,12 +42,6 @@ pub struct Deepest {
     pub at: Vector,
     /// Of all that lies behind what is not its own, on both sides, in mm²: a third of each triangle for each of its corners there.
     pub area: f64,
-}
-
-/// The deepest point of a surface that passes through itself. Its points have to be finite.
-pub(super) fn deepest_overlap(surface: &TriangleSurface) -> Option<Deepest> {
-    let passes = |pair: &TrianglePair| pass_inside(surface, pair, TOLD_MM);
-    deepest(surface, &self_crossings(surface, passes).pairs)
 }
 
 /// How much deeper moved skin passes through itself than at rest, and where; none where no depth is known.

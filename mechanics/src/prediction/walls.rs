@@ -339,7 +339,9 @@ fn selects(selection: &NodeSelection, name: &str) -> bool {
             plain(set) == plain(name)
         }
         NodeSelection::Any(parts) => parts.iter().any(|part| selects(part, name)),
-        NodeSelection::Label { .. } | NodeSelection::NearSurface { .. } => false,
+        NodeSelection::Label { .. }
+        | NodeSelection::NearSurface { .. }
+        | NodeSelection::Nodes(_) => false,
     }
 }
 

@@ -45,8 +45,8 @@ pub(super) fn wrinkles(scene: &Scene, displacement: &[Vector]) -> Option<Warning
     let detail = format!(
         "{pressed:.0} mm² of the skin, which is a membrane without bending stiffness, are pressed along themselves, by up to {force:.2} mN/mm \
          near ({:.1}, {:.1}, {:.1}) mm: on this tissue it wrinkles in waves of up to {wave:.1} mm, as finely as cells allow, so that finer \
-         meshes find other wrinkles and the error of the mesh is not known there; a pretension of the membrane or a thicker layer of cells \
-         instead of it resists that",
+         meshes find other wrinkles and the error of the mesh is not known there; a pretension of the membrane, or a thicker layer of cells \
+         instead of it, resists that, and with `fem_nonlinear` a membrane of `compression` `none` has a limit",
         at.x, at.y, at.z
     );
     let warning = Warning::new(MEMBRANE_WRINKLES, detail).with("area_mm2", pressed);

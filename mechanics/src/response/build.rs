@@ -22,7 +22,7 @@ use crate::model::fem::force_series::ForceSeries;
 use crate::model::problem::{Equilibrium, LoadCase, ModelError};
 use crate::plan::RigidMovement;
 
-use crate::prediction::{ElementChoice, Scene};
+use crate::prediction::{Scene, without_second_order};
 use crate::progress::{Phase, Progress};
 use crate::solver::{SolveReport, SolverError};
 
@@ -104,8 +104,7 @@ pub fn chosen(scene: &Scene, names: &[String]) -> Result<Vec<usize>, ResponseErr
 
 /// Refuses an order that the elements of a scene, or its tissue, do not have.
 pub fn check_order(scene: &Scene, order: ResponseOrder) -> Result<(), ResponseError> {
-    let has_none = scene.element == ElementChoice::Quadratic || scene.has_pulling_fibres();
-    match order == ResponseOrder::Second && has_none {
+    match order == ResponseOrder::Second && without_second_order(scene).is_some() {
         true => Err(ResponseError::NoSecondOrder),
         false => Ok(()),
     }
@@ -287,7 +286,7 @@ fn solve(
     let of_segments = &columns[..cases.of_segments];
     let solutions = Solutions { series, system: &system, columns: of_segments, skin };
     let (mut sampled, mut coupling, mut second_order) = (Vec::new(), Vec::new(), None);
-    if !scene.has_pulling_fibres() {
+    if without_second_order(scene).is_none() {
         sampled = solutions.second_of_each(progress)?;
         let probes = Probes::solve(&solutions, progress)?;
         coupling = probes.second(&solutions)?;

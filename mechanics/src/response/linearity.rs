@@ -3,7 +3,8 @@
 //! Where elements have a second order, it is sampled: q_j, the mean length of the second-order term on the skin that moves
 //! (`moving_points`) for a unit of translation along and of rotation about each axis of each segment, and e = sum_j alpha_j^2 q_j
 //! for the numbers alpha of a plan, times what probes of the skin say of all directions together against the same sum of each
-//! alone (`coupling`). Exact along a sampled direction. Otherwise, of quadratic tetrahedra, a rule of thumb stands for it:
+//! alone (`coupling`). Exact along a sampled direction. Where there is no second order (`prediction::without_second_order`), and in
+//! responses of earlier programs, it is not known. Before anything is solved a rule of thumb stands for it:
 //!
 //! e = 0.15 d^2 / h + 2.7 h (1 - cos theta)
 //!
@@ -47,7 +48,7 @@ pub struct Linearity {
     pub something_stays: bool,
     /// For each segment the lowest and the highest corner of the box around its nodes, in mm.
     pub boxes: Vec<[Vector; 2]>,
-    /// Of each segment; empty where the rule of thumb has to do.
+    /// Of each segment; empty where none is known.
     pub sampled: Vec<SampledSecond>,
     /// Of every pair of sampled directions; empty where lengths are added without it.
     pub coupling: Vec<Probed>,
@@ -80,6 +81,11 @@ impl Nonlinearity {
 }
 
 impl Linearity {
+    /// Whether what linearity leaves out is known; the rule of thumb knows nothing of tissue and elements.
+    pub fn is_known(&self) -> bool {
+        !self.sampled.is_empty()
+    }
+
     /// The estimate for one movement of each segment.
     pub fn of(&self, movements: &[RigidMovement]) -> Nonlinearity {
         let mut farthest: f64 = 0.0;

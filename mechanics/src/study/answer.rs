@@ -9,7 +9,7 @@ use super::Stopwatch;
 use super::deadline::Deadline;
 use super::estimated::Estimates;
 use super::variant::{Strain, Variant};
-use crate::mesh::{CellShape, Vector, bounds_of};
+use crate::mesh::{CellShape, Vector, Warning, bounds_of};
 use crate::model::fem::strain::{determinants, inverted_cells};
 use crate::model::problem::{Equilibrium, ModelError};
 use crate::prediction::{
@@ -48,6 +48,15 @@ pub(super) struct Answer {
     pub chosen: Option<String>,
     /// Codes.
     pub warnings: Vec<String>,
+}
+
+impl Answer {
+    /// With what is told of points that the mesh of a level keeps.
+    pub(super) fn told(mut self, level: u32, points: &Option<Warning>) -> Answer {
+        let code = points.iter().filter(|_| level > 0).map(|warning| warning.code.to_owned());
+        self.warnings.extend(code);
+        Answer { warnings: distinct(self.warnings), ..self }
+    }
 }
 
 /// Cost of the solution.

@@ -6,7 +6,7 @@ use super::answer::Refusal;
 use super::variant::{Materials, StudyScene, Truth};
 use crate::mesh::VolumeMesh;
 use crate::mesh::refinement::refine;
-use crate::prediction::Case;
+use crate::prediction::{Case, Plan};
 
 /// Finer meshes are refused: their matrices would not fit the memory of one machine.
 pub const MOST_CELLS: f64 = 8e6;
@@ -38,6 +38,11 @@ impl<'a> Levels<'a> {
                 materials.tissues.get(&window.name).copied().unwrap_or(window.material);
         }
         Ok(case)
+    }
+
+    /// A plan as it is of these materials, on the mesh of any level.
+    pub(super) fn plan(&self, plan: &Plan, materials: &Materials) -> Plan {
+        materials.plan(plan).at_nodes_of(&self.scene.case)
     }
 
     fn mesh(&mut self, level: u32) -> Result<Arc<VolumeMesh>, Refusal> {

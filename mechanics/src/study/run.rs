@@ -11,7 +11,7 @@ use super::scan::ScannedSkin;
 use super::truth::{TruthRequest, is_in_contact, itself};
 use super::variant::{Materials, Study, StudyScene, Truth, Variant};
 use crate::mesh::Warning;
-use crate::prediction::{Plan, Scene, Settings, Skin};
+use crate::prediction::{Plan, Scene, Settings, Skin, points_refined};
 use crate::progress::Progress;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -97,15 +97,15 @@ impl<'a> SceneWork<'a> {
     fn run(&self) -> Result<(SceneReport, Vec<Row>, Vec<Skipped>), StudyError> {
         // 1. The skin that errors are measured on.
         let mut levels = Levels::of(self.scene);
-        let skins: Vec<Result<Skin, Refusal>> =
-            self.scene.plans.iter().map(|(_, plan)| self.skin(&mut levels, plan)).collect();
+        let of_plans = self.scene.plans.iter().map(|plan| self.at_rest(&mut levels, plan));
+        let (skins, points): (Vec<Result<Skin, Refusal>>, Vec<Option<Warning>>) = of_plans.unzip();
 
         // 2. What the methods answer, for each plan and material.
         let mut attempts = Vec::new();
         let (mut late, mut skipped) = (OverdueVariants::new(), Vec::new());
-        for (plan, skin) in self.scene.plans.iter().zip(&skins) {
+        for (plan, known) in self.scene.plans.iter().zip(skins.iter().zip(&points)) {
             for materials in &self.scene.materials {
-                let found = self.attempts(&mut levels, &mut late, (plan, materials), skin)?;
+                let found = self.attempts(&mut levels, &mut late, (plan, materials), known)?;
                 skipped.extend(found.1);
                 attempts.push(found.0);
             }
@@ -158,7 +158,7 @@ impl<'a> SceneWork<'a> {
             truth_error_mm: truths.error_mm,
             unmoved_mm: of_scan.unmoved,
             noise_mm: of_scan.noise,
-            warnings: of_scan.warnings,
+            warnings: of_scan.warnings.into_iter().chain(points.into_iter().flatten()).collect(),
             truth_s,
         };
         Ok((about, rows, summed(skipped)))
@@ -190,12 +190,30 @@ impl<'a> SceneWork<'a> {
         all
     }
 
-    fn skin(&self, levels: &mut Levels, plan: &Plan) -> Result<Skin, Refusal> {
+    /// The skin of a plan at level 0, and the warning where finer meshes keep points of it.
+    fn at_rest(
+        &self,
+        levels: &mut Levels,
+        (name, plan): &(String, Plan),
+    ) -> (Result<Skin, Refusal>, Option<Warning>) {
+        let scene = match self.at_level_0(levels, plan) {
+            Ok(scene) => scene,
+            Err(refusal) => return (Err(refusal), None),
+        };
+        let is_refined = matches!(self.scene.truth, Truth::Refined { times: 1.., .. })
+            || self.study.levels.iter().any(|level| *level > 0);
+        // A cell without volume is refused where it is solved.
+        let points = is_refined.then(|| points_refined(&scene).ok().flatten()).flatten();
+        let of_plan =
+            |told: Warning| Warning { detail: format!("plan {name:?}: {}", told.detail), ..told };
+        (Ok(scene.skin), points.map(of_plan))
+    }
+
+    fn at_level_0(&self, levels: &mut Levels, plan: &Plan) -> Result<Scene, Refusal> {
         let materials = self.scene.materials.first();
         let materials = materials.ok_or_else(|| Refusal::new("missing-material", "no material"))?;
         let case = levels.case(0, materials)?;
-        let scene = Scene::new(&case, plan, &Settings::default());
-        scene.map(|scene| scene.skin).map_err(|errors| Refusal::from(&errors))
+        Scene::new(&case, plan, &Settings::default()).map_err(|errors| Refusal::from(&errors))
     }
 
     fn attempts(
@@ -203,7 +221,7 @@ impl<'a> SceneWork<'a> {
         levels: &mut Levels,
         late: &mut OverdueVariants<'a>,
         ((name, plan), materials): (&(String, Plan), &Materials),
-        skin: &Result<Skin, Refusal>,
+        (skin, points): (&Result<Skin, Refusal>, &Option<Warning>),
     ) -> Result<(Vec<Attempt<'a>>, Vec<Skipped>), StudyError> {
         let (mut attempts, mut skipped) = (Vec::new(), Vec::new());
         let mut unserved: Vec<Skipped> = Vec::new();
@@ -223,7 +241,7 @@ impl<'a> SceneWork<'a> {
                     continue;
                 }
                 let answer = self.attempt(levels, (level, materials), plan, (variant, skin));
-                attempts.push(match answer {
+                attempts.push(match answer.map(|answer| answer.told(level, points)) {
                     Ok(answer) => Attempt { level, variant, answer: Ok(answer) },
                     Err(NoAnswer::Refused(why)) => Attempt { level, variant, answer: Err(why) },
                     Err(NoAnswer::Unserved(reason)) => {
@@ -267,7 +285,7 @@ impl<'a> SceneWork<'a> {
         }
         let skin = skin.as_ref().map_err(Refusal::clone)?;
         let case = levels.case(level, materials)?;
-        self.bench.answer(&case, &materials.plan(plan), variant, skin.nodes())
+        self.bench.answer(&case, &levels.plan(plan, materials), variant, skin.nodes())
     }
 
     /// The row of an answer, or why it has none.

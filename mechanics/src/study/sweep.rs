@@ -76,8 +76,12 @@ impl SweepError {
     }
 }
 
+/// What stands for every region of the tissue, and every tissue that an image shows.
+const EVERY: &str = "*";
+
 /// Every combination of the values, over the materials of a case and of the tissues that its image shows. The last constant of the last region varies
-/// fastest; names tell what varies: `muscle E 300 kPa nu 0.44, soft nu 0.46`.
+/// fastest; names tell what varies: `muscle E 300 kPa nu 0.44, soft nu 0.46`. `*` is every region and tissue, but for constants that
+/// the sweep varies by name.
 pub fn combinations(
     base: &BTreeMap<String, LinearElastic>,
     tissues: &[TissueWindow],
@@ -90,27 +94,43 @@ pub fn combinations(
     }
     let mut all = vec![Materials { by_region: base.clone(), ..Materials::default() }];
     for (region, values) in sweep {
-        let tissue = tissues.iter().find(|tissue| tissue.name == *region);
-        if tissue.is_some() && base.contains_key(region) {
+        let is_tissue = tissues.iter().any(|tissue| tissue.name == *region);
+        if is_tissue && base.contains_key(region) {
             return Err(SweepError::TwoThings { region: region.clone() });
         }
-        let start = tissue.map(|tissue| &tissue.material).or_else(|| base.get(region));
-        let start = start.or_else(|| base.get("*"));
-        let start = start.ok_or_else(|| SweepError::UnknownRegion { region: region.clone() })?;
-        refuse(region, (start, tissue.is_some()), values)?;
-        let choices = choices(region, start, values)?;
-        let with = |before: &Materials| -> Vec<Materials> {
-            choices.iter().map(|own| own.over(before, (region, tissue.is_some()))).collect()
-        };
-        all = all.iter().flat_map(with).collect();
+        let starts = starts(region, base, tissues);
+        if starts.is_empty() {
+            return Err(SweepError::UnknownRegion { region: region.clone() });
+        }
+        starts.iter().try_for_each(|(name, start)| refuse_material(name, start, values))?;
+        refuse_growth(region, is_tissue, values)?;
+        let choices = choices(region, values);
+        let pairs = all.iter().flat_map(|before| choices.iter().map(move |own| (before, own)));
+        let with = |(before, own): (&Materials, &Choice)| own.over(before, tissues, sweep);
+        all = pairs.map(with).collect::<Result<_, _>>()?;
     }
     Ok(all)
+}
+
+/// The materials, by their names, that a region of a sweep varies.
+fn starts<'a>(
+    region: &'a str,
+    base: &'a BTreeMap<String, LinearElastic>,
+    tissues: &'a [TissueWindow],
+) -> Vec<(&'a str, &'a LinearElastic)> {
+    let of_tissues = tissues.iter().map(|tissue| (tissue.name.as_str(), &tissue.material));
+    if region == EVERY {
+        return base.iter().map(|(name, own)| (name.as_str(), own)).chain(of_tissues).collect();
+    }
+    let of_tissue = of_tissues.filter(|(name, _)| *name == region).map(|(_, own)| own).next();
+    let start = of_tissue.or_else(|| base.get(region)).or_else(|| base.get(EVERY));
+    start.map(|start| (region, start)).into_iter().collect()
 }
 
 /// Whether the tissue of a case has a region of that name, or its image shows such a tissue; `*` is all of it.
 pub fn has_region(case: &Case, region: &str) -> bool {
     let mut tissues = case.hounsfield.iter().flat_map(|image| &image.tissues);
-    region == "*"
+    region == EVERY
         || tissues.any(|tissue| tissue.name == region)
         || match &case.regions {
             None => region == "tissue",
@@ -120,12 +140,7 @@ pub fn has_region(case: &Case, region: &str) -> bool {
         }
 }
 
-/// What of a region cannot be swept.
-fn refuse(
-    region: &str,
-    (start, is_tissue): (&LinearElastic, bool),
-    values: &Values,
-) -> Result<(), SweepError> {
+fn refuse_material(region: &str, start: &LinearElastic, values: &Values) -> Result<(), SweepError> {
     let region = || region.to_owned();
     if values.vary_material() && (start.has_fibre() || start.has_pulling_fibres()) {
         return Err(SweepError::Fibres { region: region() });
@@ -133,6 +148,11 @@ fn refuse(
     if values.vary_material() && start.stated_law().is_some() {
         return Err(SweepError::Law { region: region() });
     }
+    Ok(())
+}
+
+fn refuse_growth(region: &str, is_tissue: bool, values: &Values) -> Result<(), SweepError> {
+    let region = || region.to_owned();
     if is_tissue && !values.volume_change.is_empty() {
         return Err(SweepError::TissueGrows { region: region() });
     }
@@ -142,38 +162,28 @@ fn refuse(
     }
 }
 
-/// What a region may become; nameless where nothing varies.
+/// What a region may become; nameless where nothing varies, and none where a value stays.
 struct Choice {
     name: String,
-    /// None where its constants stay.
-    material: Option<LinearElastic>,
+    region: String,
+    young_modulus: Option<f64>,
+    poisson_ratio: Option<f64>,
     volume_change: Option<f64>,
 }
 
-fn choices(
-    region: &str,
-    start: &LinearElastic,
-    values: &Values,
-) -> Result<Vec<Choice>, SweepError> {
+fn choices(region: &str, values: &Values) -> Vec<Choice> {
     let varied = |values: &[f64]| match values {
         [] => vec![None],
         values => values.iter().copied().map(Some).collect::<Vec<_>>(),
     };
-    let called = if region == "*" { "all" } else { region };
+    let called = if region == EVERY { "all" } else { region };
     let mut choices = Vec::new();
-    for e in varied(&values.young_modulus) {
-        for nu in varied(&values.poisson_ratio) {
-            let of = |source| SweepError::Material { region: region.to_owned(), source };
-            let varied_material = || {
-                let (e, nu) =
-                    (e.unwrap_or(start.young_modulus()), nu.unwrap_or(start.poisson_ratio()));
-                LinearElastic::new(e, nu, start.density()).map_err(of)
-            };
-            let material = values.vary_material().then(varied_material).transpose()?;
+    for young_modulus in varied(&values.young_modulus) {
+        for poisson_ratio in varied(&values.poisson_ratio) {
             for volume_change in varied(&values.volume_change) {
                 let words = [
-                    e.map(|e| format!(" E {e} kPa")),
-                    nu.map(|nu| format!(" nu {nu}")),
+                    young_modulus.map(|e| format!(" E {e} kPa")),
+                    poisson_ratio.map(|nu| format!(" nu {nu}")),
                     volume_change.map(|change| format!(" volume {:+} %", 100.0 * change)),
                 ];
                 let words: Vec<String> = words.into_iter().flatten().collect();
@@ -181,27 +191,62 @@ fn choices(
                     true => String::new(),
                     false => called.to_owned() + &words.concat(),
                 };
-                choices.push(Choice { name, material, volume_change });
+                let region = region.to_owned();
+                choices.push(Choice { name, region, young_modulus, poisson_ratio, volume_change });
             }
         }
     }
-    Ok(choices)
+    choices
 }
 
 impl Choice {
     /// Materials with this choice over what they are before.
-    fn over(&self, before: &Materials, (region, is_tissue): (&str, bool)) -> Materials {
+    fn over(
+        &self,
+        before: &Materials,
+        tissues: &[TissueWindow],
+        sweep: &BTreeMap<String, Values>,
+    ) -> Result<Materials, SweepError> {
+        let is_meant = |name: &str| self.region == EVERY || self.region == name;
         let mut with = before.clone();
-        if let Some(material) = self.material {
-            let of = if is_tissue { &mut with.tissues } else { &mut with.by_region };
-            of.insert(region.to_owned(), material);
+        for tissue in tissues.iter().filter(|tissue| is_meant(&tissue.name)) {
+            let own = with.tissues.entry(tissue.name.clone()).or_insert(tissue.material);
+            *own = self.of(&tissue.name, own, sweep)?;
+        }
+        let is_tissue = tissues.iter().any(|tissue| tissue.name == self.region);
+        let varies = self.young_modulus.is_some() || self.poisson_ratio.is_some();
+        if let (true, Some(rest)) = (varies && !is_tissue, before.by_region.get(EVERY)) {
+            with.by_region.entry(self.region.clone()).or_insert(*rest);
+        }
+        for (name, own) in with.by_region.iter_mut().filter(|(name, _)| is_meant(name)) {
+            *own = self.of(name, own, sweep)?;
         }
         if let Some(volume_change) = self.volume_change {
-            with.growth.push(Growth { region: region.to_owned(), volume_change });
+            with.growth.push(Growth { region: self.region.clone(), volume_change });
         }
         let names = [&before.name, &self.name].into_iter().filter(|name| !name.is_empty());
         with.name = names.map(String::as_str).collect::<Vec<_>>().join(", ");
-        with
+        Ok(with)
+    }
+
+    /// The material of a region with this choice; of `*` without what the sweep varies by the name of the region.
+    fn of(
+        &self,
+        name: &str,
+        before: &LinearElastic,
+        sweep: &BTreeMap<String, Values>,
+    ) -> Result<LinearElastic, SweepError> {
+        let named = sweep.get(name).filter(|_| self.region != name);
+        let is_own = |of: fn(&Values) -> &Vec<f64>| named.is_some_and(|own| !of(own).is_empty());
+        let e = self.young_modulus.filter(|_| !is_own(|own| &own.young_modulus));
+        let nu = self.poisson_ratio.filter(|_| !is_own(|own| &own.poisson_ratio));
+        if e.is_none() && nu.is_none() {
+            return Ok(*before);
+        }
+        let e = e.unwrap_or(before.young_modulus());
+        let nu = nu.unwrap_or(before.poisson_ratio());
+        LinearElastic::new(e, nu, before.density())
+            .map_err(|source| SweepError::Material { region: name.to_owned(), source })
     }
 }
 

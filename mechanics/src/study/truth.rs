@@ -248,7 +248,8 @@ impl TruthRequest<'_> {
             }
         };
         let finer = FinerCase { case, settings, progress: self.progress };
-        let plans = self.scene.plans_of(materials);
+        let at_level = |(name, plan): &(String, Plan)| (name.clone(), levels.plan(plan, materials));
+        let plans: Vec<(String, Plan)> = self.scene.plans.iter().map(at_level).collect();
         let columns = match strain {
             Strain::Small if !contact.is_unilateral() => finer.columns(&plans)?,
             Strain::Small | Strain::Finite => None,

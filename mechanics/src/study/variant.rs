@@ -57,7 +57,7 @@ pub struct Materials {
     pub fibres: BTreeMap<String, FibreDirection>,
     /// Of tissues that an image shows, over those of the case, by their names.
     pub tissues: BTreeMap<String, LinearElastic>,
-    /// Changes of volume by region, over those of a plan.
+    /// Changes of volume by region, over those of a plan; `*` over all of them.
     pub growth: Vec<Growth>,
 }
 
@@ -71,7 +71,9 @@ impl StudyScene {
 impl Materials {
     /// A plan with the changes of volume of these.
     pub(super) fn plan(&self, plan: &Plan) -> Plan {
-        let is_own = |own: &Growth| self.growth.iter().any(|other| other.region == own.region);
+        let is_of =
+            |other: &Growth, own: &Growth| other.region == "*" || other.region == own.region;
+        let is_own = |own: &Growth| self.growth.iter().any(|other| is_of(other, own));
         let mut plan = plan.clone();
         plan.growth.retain(|own| !is_own(own));
         plan.growth.extend(self.growth.iter().cloned());

@@ -2,7 +2,7 @@
 //!
 //! With weights w_i and W = Σ w_i:  mean = Σ w_i x_i / W,  rms² = Σ w_i x_i² / W,  sd² = rms² - mean²
 //! (not the estimate of a larger population). Percentile p is the smallest value whose cumulative
-//! weight reaches p W; nothing is interpolated, but over subjects. The median is percentile 50.
+//! weight reaches p W; nothing is interpolated, but over subjects and landmarks. The median is percentile 50.
 
 /// A cumulative weight this share below its target has reached it: sums of many weights are rounded.
 const ROUNDING: f64 = 1e-12;
@@ -45,7 +45,7 @@ impl Statistics {
         Self::weighted(values, &vec![1.0; values.len()])
     }
 
-    /// Of values of a few subjects that all count the same. Percentiles are interpolated between neighbours, so that the median
+    /// Of values of a few subjects or landmarks that all count the same. Percentiles are interpolated between neighbours, so that the median
     /// of an even number is half-way between both middle values (Hyndman, Fan 1996, definition 7).
     pub fn of_subjects(values: &[f64]) -> Result<Self, StatisticsError> {
         let plain = Self::plain(values)?;

@@ -3,6 +3,8 @@
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use mechanics::conformation::angle_between;
+use mechanics::domain::{ClosedSurface, SurfaceName};
+use mechanics::image::SamplingRule;
 use mechanics::material::mixture::MixingRule;
 use mechanics::material::{Fibre, FibreLaw, LinearElastic};
 use mechanics::mesh::sample::block;
@@ -75,6 +77,26 @@ fn shares_of_a_ball_sum_to_its_volume() {
     let error =
         shares_inside(&mesh, &cap, 2, 64).err().map_or_else(String::new, |error| error.to_string());
     assert!(error.starts_with("muscle 3: "), "{error}");
+}
+
+#[test]
+fn shares_are_counted_by_sample_points_also_where_cells_are_told_as_a_whole() {
+    let mesh = block(Vector::repeat(30.0), [10; 3], CellShape::Hex8);
+    let surface = ball(10.0, Vector::new(15.4, 14.3, 15.9));
+    let inside = ClosedSurface::new(&surface, SurfaceName::Muscle(0)).unwrap();
+    let rule = SamplingRule::new(64);
+    let counted = |cell: usize| {
+        let corners: Vec<Vector> = mesh.corners(cell).collect();
+        let mut count = 0;
+        rule.for_each(CellShape::Hex8, &corners, |point| {
+            count += usize::from(inside.contains(&point));
+        });
+        count as f64 / 64.0
+    };
+    let counted: Vec<f64> = (0..mesh.cells.len()).map(counted).collect();
+    assert_eq!(shares_inside(&mesh, &surface, 0, 64).unwrap(), counted);
+    let whole = inside.contains_ball(&Vector::new(15.4, 14.3, 15.9), 5.0);
+    assert_eq!((whole, inside.contains_ball(&Vector::repeat(1.0), 1.0)), (Some(true), Some(false)));
 }
 
 /// Volumes by corners, for cells of flat faces.

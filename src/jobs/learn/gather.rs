@@ -145,7 +145,7 @@ fn gathered(
     let correspondence = first.as_ref().map(|own| CorrespondenceDocument::new(&own.scene));
     let nothing = (TriangleSurface::default(), BTreeMap::new(), Frame::Unspecified);
     let (face, regions, frame) = first.map_or(nothing, |own| {
-        let Skin { surface, regions } = own.scene.skin;
+        let Skin { surface, regions, .. } = own.scene.skin;
         (surface, regions, own.case.frame)
     });
     let (mut cases, mut skins, mut mechanics) = (Vec::new(), Vec::new(), Vec::new());

@@ -154,7 +154,10 @@ impl OptimiseInput {
         let mut faults = Faults::default();
         for (index, document) in self.spec.targets.iter().enumerate() {
             let goals = match place_of(document, &rest.scene.landmarks) {
-                None => node_goals(document, &part_of(index), skin),
+                None => {
+                    warnings.extend(off_skin(index, skin));
+                    node_goals(document, &part_of(index), skin)
+                }
                 Some(NamedPoint { at: landmark, name }) => {
                     let search = match &search {
                         Some(search) => search,
@@ -176,6 +179,7 @@ impl OptimiseInput {
                 }
             };
             let (at, _) = document.wanted(&Pointer::root().key("spec").key("targets").index(index));
+            check_one_place(document, &goals, &at, &mut faults);
             check_reach(&goals, &at, limits, &mut faults);
             targets.push(Target { goals, sigma: document.sigma_mm });
         }
@@ -211,6 +215,28 @@ fn node_goals(document: &TargetDocument, part: &str, skin: &Skin) -> Vec<Goal> {
         displacement: document.displacement(&skin.surface.points[point as usize]),
     };
     points.iter().map(goal).collect()
+}
+
+/// The warning of a target some of whose nodes are not on the skin.
+fn off_skin(target: usize, skin: &Skin) -> Option<Warning> {
+    let off = *skin.off.get(&part_of(target))?;
+    let of = off + skin.regions.get(&part_of(target)).map_or(0, Vec::len);
+    let detail = format!(
+        "{off} of {of} nodes of target {target} are not on the skin, and count for nothing"
+    );
+    Some(Warning::new("target-off-skin", detail).with("off", off as f64).with("of", of as f64))
+}
+
+/// Refuses several nodes that are to go to one point, or to one line.
+fn check_one_place(document: &TargetDocument, goals: &[Goal], at: &Pointer, faults: &mut Faults) {
+    let stated = document.position_mm.map_or(0, |own| own.0.into_iter().flatten().count());
+    if goals.len() > 1 && stated > 1 {
+        let detail = format!(
+            "{} nodes cannot all go to one place: state `displacement_mm`, one component of `position_mm`, or one node",
+            goals.len()
+        );
+        faults.add(at, ErrorCode::OutOfRange, detail);
+    }
 }
 
 /// Refuses positions beyond all movements within the limits.

@@ -23,13 +23,14 @@ const THIRD: f64 = 3.0;
 
 impl Prepared {
     /// Whether movements of segments alone deform the tissue, so that they tell the choice of `auto`: they say nothing of
-    /// loads, prescribed displacements, tissue that grows and muscles that pull.
+    /// loads, prescribed displacements, tissue that grows, muscles that pull and fibres that only pull.
     pub(super) fn is_foreseen(&self) -> bool {
         let Scene { distributed, forces, conditions, .. } = &self.scene;
         let is_prescribed = |class: &NodeClass| *class == NodeClass::Prescribed;
         distributed.inner.is_empty()
             && forces.iter().all(|force| *force == Vector::zeros())
             && !conditions.classes.iter().any(is_prescribed)
+            && !self.scene.has_pulling_fibres()
     }
 
     /// The models of `auto` with the expected cost of each; none for other methods, where more than movements deforms the

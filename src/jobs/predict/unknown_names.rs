@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-use crate::schema::case::conversion::region_names;
+use crate::schema::case::region::region_names;
 use crate::schema::plan::document::PlanDocument;
 use crate::schema::wire::canonical;
 use crate::schema::{CaseDocument, ErrorCode, Faults, Pointer};

@@ -10,6 +10,7 @@ use crate::jobs::failure::JobError;
 use crate::jobs::output::JobContext;
 use crate::jobs::result::record::{self, Record, RecordedFile, refused};
 use crate::schema::predict::document::OutputName;
+use crate::schema::predict::output::media_type_of;
 use crate::schema::predict::result::FileDocument;
 use crate::schema::wire::canonical;
 
@@ -229,6 +230,8 @@ impl<'a> ResultFolder<'a> {
 
     /// A file that no spec names.
     pub fn add_file(&mut self, file: &str, media_type: &str, bytes: &[u8]) -> Result<(), JobError> {
+        // An import refuses any other.
+        debug_assert_eq!(media_type_of(file), Some(media_type));
         keep(&self.inputs, &self.folder.join(file))?;
         let sha256 = put_as(self.folder, file, bytes, true)?;
         self.files.push(FileDocument {

@@ -5,7 +5,7 @@ use mechanics::mesh::Warning;
 
 /// Codes that precede all others, in this order: those of doubtful input or measurements, those of a result that
 /// has larger errors than reported elsewhere, and those of an impossible one.
-const GRAVE: [&str; 64] = [
+const GRAVE: [&str; 65] = [
     "nothing-moves",
     "nothing-performed",
     "units-suspect",
@@ -13,6 +13,7 @@ const GRAVE: [&str; 64] = [
     "constant-suspect",
     "moduli-far-apart",
     "frame-suspect",
+    "image-place-doubtful",
     "landmarks-swapped",
     "landmark-doubtful",
     "mirrored?",

@@ -380,7 +380,8 @@ impl Documents<'_> {
                         ErrorCode::OutOfRange
                     }
                 };
-                let place = error.region().map_or_else(|| at.clone(), |region| at.key(region));
+                let stated = |own| swept.get_key_value(own).map_or("*", |(own, _)| own);
+                let place = error.region().map_or_else(|| at.clone(), |own| at.key(stated(own)));
                 faults.add(&place, code, error.to_string());
             }
         }

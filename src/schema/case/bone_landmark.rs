@@ -9,6 +9,7 @@ use crate::schema::Triple;
 use crate::schema::code::ErrorCode;
 use crate::schema::wire::fault::{Faults, Pointer};
 use crate::schema::wire::limits::Limits;
+use crate::schema::wire::names::check_keys;
 
 /// Beyond the origin of any scanner in use.
 const FARTHEST_MM: f64 = 1e8;
@@ -32,10 +33,9 @@ pub fn check_bone_landmarks(
     limits: &Limits,
     faults: &mut Faults,
 ) {
-    faults.check_length(at, landmarks.len(), limits.map_entries as usize);
+    check_keys(landmarks, at, limits, faults);
     for (name, landmark) in landmarks {
         let at = at.key(name);
-        faults.check_name(&at, name, limits.name_characters as usize);
         for (axis, &coordinate) in landmark.position_mm.0.iter().enumerate() {
             let place = at.key("position_mm").index(axis);
             faults.check_range(&place, coordinate, -FARTHEST_MM..=FARTHEST_MM, "mm");

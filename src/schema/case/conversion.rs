@@ -1,6 +1,6 @@
 //! Conversion of a case document and its meshes to the numerics: one unit, one frame, checked values.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use super::document::{CaseDocument, FrameName, LengthUnit, NormalDocument};
@@ -9,16 +9,16 @@ use super::material::MaterialDocuments;
 use super::merged::{Merged, PlacedMaterials, merge_materials};
 use super::meshes::CaseMeshes;
 use super::muscle::{MuscleContext, doubts, to_muscles};
+use super::region::{check_regions, check_tissues, region_names};
 use crate::schema::code::ErrorCode;
 use crate::schema::repair::{RepairedMesh, check_cells};
 use crate::schema::wire::fault::{Faults, Pointer};
 use crate::schema::wire::limits::Limits;
-use crate::schema::wire::names::{check_distinct, check_tags};
+use crate::schema::wire::names::{check_distinct, check_keys, check_tags};
 use mechanics::boundary::{NodeClass, NodeSelection};
-use mechanics::mesh::ignored::listed;
 use mechanics::mesh::{Frame, TriangleSurface, Vector, VolumeMesh, Warning};
 use mechanics::prediction::{
-    Bone, Case, CaseSegment, Hounsfield, MuscleMixing, RegionNames, Sliding, SlidingNormal,
+    Bone, Case, CaseSegment, Hounsfield, MuscleMixing, Sliding, SlidingNormal,
 };
 use mechanics::repair::RepairReport;
 
@@ -64,13 +64,16 @@ impl CaseDocument {
         let Merged { materials, fibres, mut warnings } =
             merge_materials(&own, &spec, limits, faults);
         warnings.extend(frame_warning);
+        warnings.extend(self.unmarked_image(meshes));
         warnings.extend(self.hounsfield.iter().flat_map(HounsfieldDocument::doubts));
         warnings.extend(doubts(&self.muscles));
         warnings.extend(unusual_size(&volume, self.units));
         warnings.extend(mended.as_ref().and_then(RepairedMesh::warning));
-        let regions = self.to_regions(&at.key("regions"), faults);
+        let regions = self.regions.as_ref();
+        let regions = regions.map(|own| own.to_names(&at.key("regions"), &volume, faults));
         if let Some(known) = region_names(&regions, &volume) {
             warnings.extend(spec.unused_default(&own, &known));
+            check_tissues(&spec, self.hounsfield.as_ref(), &known, faults);
             check_regions(&[own, spec], &known, faults);
         }
         let (skin, skin_regions) = self.to_skin(&at, limits, faults);
@@ -146,6 +149,20 @@ impl CaseDocument {
         })
     }
 
+    /// An image without a frame beside meshes with one.
+    fn unmarked_image(&self, meshes: &CaseMeshes) -> Option<Warning> {
+        let (image, frame) = (meshes.image.as_ref()?, self.frame_of_meshes(meshes));
+        let is_unmarked = image.frame.unwrap_or_default() == Frame::Unspecified;
+        let detail = || {
+            format!(
+                "the image does not state which axes of the patient its own are, and is used as if they were {frame}: if not, \
+                 it is turned or mirrored; upload it with its `frame`"
+            )
+        };
+        (is_unmarked && frame != Frame::Unspecified)
+            .then(|| Warning::new("image-place-doubtful", detail()))
+    }
+
     /// The image in the frame of the case, and its windows.
     fn to_hounsfield(
         &self,
@@ -209,9 +226,8 @@ impl CaseDocument {
         limits: &Limits,
         faults: &mut Faults,
     ) -> BTreeMap<String, Vector> {
-        faults.check_length(at, self.landmarks.len(), limits.map_entries as usize);
+        check_keys(&self.landmarks, at, limits, faults);
         for (name, position) in &self.landmarks {
-            faults.check_name(&at.key(name), name, limits.name_characters as usize);
             for (axis, &coordinate) in position.0.iter().enumerate() {
                 let place = at.key(name).index(axis);
                 let range = -FARTHEST_LANDMARK_MM..=FARTHEST_LANDMARK_MM;
@@ -220,29 +236,6 @@ impl CaseDocument {
         }
         let landmarks = self.landmarks.iter();
         landmarks.map(|(name, &position)| (name.clone(), Vector::from(position))).collect()
-    }
-
-    fn to_regions(&self, at: &Pointer, faults: &mut Faults) -> Option<RegionNames> {
-        let regions = self.regions.as_ref()?;
-        let mut names = BTreeMap::new();
-        for (value, name) in &regions.names {
-            let place = at.key("names").key(value);
-            faults.check_name(&place, name, 128);
-            match value.parse::<i64>() {
-                Ok(label) => {
-                    if names.insert(label, name.trim().to_owned()).is_some() {
-                        let detail = format!("the value {label} is named more than once");
-                        faults.add(&place, ErrorCode::DuplicateName, detail);
-                    }
-                }
-                Err(_) => {
-                    let detail = format!("`{value}` is not a value of an integer array");
-                    faults.add(&place, ErrorCode::WrongType, detail);
-                }
-            }
-        }
-        let array = regions.array.clone();
-        Some(RegionNames { array, names })
     }
 
     fn to_skin(
@@ -254,11 +247,10 @@ impl CaseDocument {
         let skin = self.skin.as_ref();
         let skin = skin.and_then(|skin| skin.to_selection(&at.key("skin"), limits, faults));
         let at = at.key("skin_regions");
-        faults.check_length(&at, self.skin_regions.len(), limits.map_entries as usize);
+        check_keys(&self.skin_regions, &at, limits, faults);
         let mut parts = BTreeMap::new();
         for (name, part) in &self.skin_regions {
             let place = at.key(name);
-            faults.check_name(&place, name, limits.name_characters as usize);
             if let Some(selection) = part.to_selection(&place, limits, faults) {
                 parts.insert(name.clone(), selection);
             }
@@ -325,32 +317,6 @@ impl CaseDocument {
 pub fn centre(volume: &VolumeMesh) -> Vector {
     let [low, high] = volume.bounds();
     (low + high) * 0.5
-}
-
-/// The regions of a mesh by name. None if their array is missing: that is refused, with the existing arrays, when the scene
-/// is built.
-pub fn region_names(
-    regions: &Option<RegionNames>,
-    volume: &VolumeMesh,
-) -> Option<BTreeSet<String>> {
-    let Some(regions) = regions else { return Some(BTreeSet::from(["tissue".to_owned()])) };
-    let labels = volume.cell_labels.get(&regions.array)?;
-    let values: BTreeSet<i64> = labels.iter().copied().collect();
-    let name = |value: &i64| regions.names.get(value).cloned();
-    Some(values.iter().map(|value| name(value).unwrap_or_else(|| value.to_string())).collect())
-}
-
-/// Refuses materials for regions that the mesh does not have.
-fn check_regions(materials: &[PlacedMaterials], known: &BTreeSet<String>, faults: &mut Faults) {
-    for placed in materials {
-        for region in placed.materials.into_iter().flat_map(BTreeMap::keys) {
-            if region != "*" && !known.contains(region) {
-                let names = listed(known);
-                let detail = format!("the mesh has no region `{region}`; it has {names}");
-                faults.add(&placed.at.key(region), ErrorCode::UnknownRegion, detail);
-            }
-        }
-    }
 }
 
 fn unusual_size(volume: &VolumeMesh, units: LengthUnit) -> Option<Warning> {

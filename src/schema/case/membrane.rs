@@ -35,6 +35,20 @@ pub struct MembraneDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub fibre: Option<LinesDocument>,
+    /// Whether the skin resists being pressed along itself. Default `carried`; `none`, for `fem_nonlinear`, wrinkles instead.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub compression: Option<Compression>,
+}
+
+/// What a sheet does when it is pressed along itself.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Compression {
+    /// It resists as it resists stretching; without bending stiffness it has no limit on finer meshes where it wrinkles.
+    Carried,
+    /// It wrinkles, as finely as needed, and carries tension only: a tension field.
+    None,
 }
 
 /// Lines of the skin.
@@ -85,6 +99,10 @@ impl MembraneDocument {
             along_lines: self.fibre.as_ref().map(|lines| lines.young_modulus_kpa),
         });
         let sheet = sheet.and_then(|own| own.with_tension(self.pretension_kpa.unwrap_or(0.0)));
+        let sheet = sheet.map(|own| match self.compression {
+            Some(Compression::None) => own.without_compression(),
+            Some(Compression::Carried) | None => own,
+        });
         match (sheet, lines) {
             (Ok(_), Some(None)) => None,
             (Ok(sheet), lines) => Some(SkinMembrane { sheet, lines: lines.flatten() }),

@@ -22,7 +22,7 @@ pub struct PlacedMaterials<'a> {
 }
 
 impl PlacedMaterials<'_> {
-    fn names(&self, region: &str) -> bool {
+    pub(super) fn names(&self, region: &str) -> bool {
         self.materials.is_some_and(|given| given.contains_key(region))
     }
 

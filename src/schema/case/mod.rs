@@ -21,4 +21,5 @@ mod normal;
 pub mod preset;
 pub mod preset_name;
 mod preset_source;
+pub mod region;
 pub mod selection;

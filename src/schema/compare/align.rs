@@ -11,6 +11,7 @@ use super::reference::MeshReference;
 use crate::schema::code::ErrorCode;
 use crate::schema::wire::fault::{Faults, Pointer};
 use crate::schema::wire::limits::Limits;
+use crate::schema::wire::names::check_keys;
 use crate::schema::wire::text_or_object::TextOrObject;
 use crate::schema::{Matrix4x4, Triple};
 use mechanics::plan::RigidMovement;
@@ -201,8 +202,5 @@ pub(super) fn check_landmarks(
     limits: &Limits,
     faults: &mut Faults,
 ) {
-    faults.check_length(at, landmarks.len(), limits.map_entries as usize);
-    for name in landmarks.keys() {
-        faults.check_name(&at.key(name), name, limits.name_characters as usize);
-    }
+    check_keys(landmarks, at, limits, faults);
 }

@@ -16,7 +16,7 @@ use crate::schema::code::ErrorCode;
 use crate::schema::wire::canonical;
 use crate::schema::wire::fault::{Faults, Pointer};
 use crate::schema::wire::limits::Limits;
-use crate::schema::wire::names::check_tags;
+use crate::schema::wire::names::{check_keys, check_tags};
 
 /// `compare`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
@@ -130,9 +130,8 @@ impl CompareToDocument {
     pub fn check(&self, at: &Pointer, limits: &Limits, faults: &mut Faults) {
         self.align.check(&at.key("align"), limits, faults);
         let place = at.key("regions");
-        faults.check_length(&place, self.regions.len(), limits.map_entries as usize);
+        check_keys(&self.regions, &place, limits, faults);
         for (name, region) in &self.regions {
-            faults.check_name(&place.key(name), name, limits.name_characters as usize);
             region.check(&place.key(name), faults);
         }
         let density = 1e-4..=limits.samples_per_mm2;

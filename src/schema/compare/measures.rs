@@ -54,7 +54,7 @@ pub struct HistogramsDocument {
 pub(super) fn landmark_statistics(comparison: &Comparison) -> Option<StatDocument> {
     let errors = comparison.landmark_errors.values();
     let distances: Vec<f64> = errors.map(|error| error.distance).collect();
-    Statistics::plain(&distances).ok().as_ref().map(StatDocument::from)
+    Statistics::of_subjects(&distances).ok().as_ref().map(StatDocument::from)
 }
 
 impl From<&WarpedStatistics> for WarpedDocument {

@@ -74,7 +74,7 @@ pub struct ComparisonDocument {
     /// By the names of `landmarks`.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub landmark_errors: BTreeMap<String, LandmarkErrorDocument>,
-    /// Of these distances; absent without landmarks.
+    /// Of these distances, percentiles interpolated between neighbours; absent without landmarks.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub landmark_statistics: Option<StatDocument>,

@@ -11,7 +11,7 @@ use crate::schema::code::ErrorCode;
 use crate::schema::repair::RepairDocument;
 use crate::schema::wire::fault::{Faults, Pointer};
 use crate::schema::wire::limits::Limits;
-use crate::schema::wire::names::check_tags;
+use crate::schema::wire::names::{check_keys, check_tags};
 use mechanics::conformation::Start;
 
 /// `conform`.
@@ -117,11 +117,7 @@ impl ConformDocument {
     pub fn check(&self, limits: &Limits, faults: &mut Faults) {
         let at = Pointer::root().key("spec");
         check_tags(&self.tags, &at.key("tags"), limits, faults);
-        let place = at.key("landmarks");
-        faults.check_length(&place, self.landmarks.len(), limits.map_entries as usize);
-        for name in self.landmarks.keys() {
-            faults.check_name(&place.key(name), name, limits.name_characters as usize);
-        }
+        check_keys(&self.landmarks, &at.key("landmarks"), limits, faults);
         self.template.check(&at.key("template"), limits, faults);
         self.repair.check(&at.key("repair"), faults);
         let has_surface = self.patient.skin.is_some() || self.patient.bone.is_some();

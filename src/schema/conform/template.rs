@@ -15,6 +15,7 @@ use crate::schema::case::muscle_mixing::MuscleMixingDocument;
 use crate::schema::case::selection::SelectionDocument;
 use crate::schema::wire::fault::{Faults, Pointer};
 use crate::schema::wire::limits::Limits;
+use crate::schema::wire::names::check_keys;
 
 /// A volume mesh, its node sets, and members of a case that are mapped to the patient.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
@@ -72,14 +73,9 @@ pub struct TemplateSlidingDocument {
 
 impl TemplateDocument {
     pub(super) fn check(&self, at: &Pointer, limits: &Limits, faults: &mut Faults) {
-        let longest = limits.name_characters as usize;
         for (member, names) in [("segments", &self.segments), ("skin_regions", &self.skin_regions)]
         {
-            let place = at.key(member);
-            faults.check_length(&place, names.len(), limits.map_entries as usize);
-            for name in names.keys() {
-                faults.check_name(&place.key(name), name, longest);
-            }
+            check_keys(names, &at.key(member), limits, faults);
         }
         let entries = limits.list_entries as usize;
         faults.check_length(&at.key("held"), self.held.len(), entries);

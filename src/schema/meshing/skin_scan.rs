@@ -10,6 +10,7 @@ use crate::schema::compare::document::PlaceDocument;
 use crate::schema::plan::movement::{MovementContext, MovementDocument};
 use crate::schema::wire::fault::{Faults, Pointer};
 use crate::schema::wire::limits::Limits;
+use crate::schema::wire::names::check_keys;
 use crate::schema::{Matrix4x4, Triple};
 use mechanics::anatomy::Closing;
 use mechanics::anatomy::skin_scan::FittedScan;
@@ -76,10 +77,7 @@ pub struct FittedScanDocument {
 impl SkinScanDocument {
     pub(super) fn check(&self, at: &Pointer, limits: &Limits, faults: &mut Faults) {
         let landmarks = at.key("landmarks");
-        faults.check_length(&landmarks, self.landmarks.len(), limits.map_entries as usize);
-        for name in self.landmarks.keys() {
-            faults.check_name(&landmarks.key(name), name, limits.name_characters as usize);
-        }
+        check_keys(&self.landmarks, &landmarks, limits, faults);
         let count = self.landmarks.len();
         if (1..3).contains(&count) {
             let detail =

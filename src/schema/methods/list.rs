@@ -105,10 +105,8 @@ pub fn available_methods() -> MethodList {
             methods: linear(),
             columns_per_segment: COLUMNS_PER_SEGMENT as u32,
             nonlinearity_estimate: "of order 1: the second-order term, sampled for each segment along and about each \
-                axis and added up, times what probes of the skin measure of all together over the same of each alone; of \
-                quadratic tetrahedra by a rule of thumb, 0.15 d^2 / h + 2.7 h (1 - cos theta), d \
-                the largest movement in mm of a segment relative to another or to fixed nodes, h the median distance \
-                in mm from the skin to the nearest held node, theta the largest rotation. Of order 2: the third-order \
+                axis and added up, times what probes of the skin measure of all together over the same of each alone; \
+                unknown of quadratic tetrahedra and of fibres that only pull. Of order 2: the third-order \
                 term, sampled likewise"
                 .to_owned(),
             linear_range_mm: LINEAR_RANGE_MM,

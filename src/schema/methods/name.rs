@@ -17,7 +17,7 @@ pub const WHY_LINEAR: &str = "auto: fem_linear, without estimates to choose betw
 pub const WHY_ESTIMATED: &str = "auto: the cheapest of fem_linear, its second order and fem_nonlinear, corrected for the mesh or \
     not, whose estimated error of the skin is accepted";
 /// What a check adds to it where it does not foresee the choice.
-pub const WHY_NOT_FORESEEN: &str = "; which one is not foreseen here: movements of segments say nothing of loads, prescribed displacements, growth and muscles, and the prediction \
+pub const WHY_NOT_FORESEEN: &str = "; which one is not foreseen here: movements of segments say nothing of loads, prescribed displacements, growth, muscles and fibres that only pull, and the prediction \
     itself solves, estimates and chooses";
 /// The choice of `auto` for a mesh that is refined.
 pub const WHY_REFINED: &str = "auto: fem_linear, on meshes that are refined until the estimated error of the skin is accepted";

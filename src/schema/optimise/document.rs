@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use utoipa::ToSchema;
 
-use super::target::TargetDocument;
+use super::target::{TargetDocument, check_twice};
 use super::tissue::{TissueBoundsDocument, check_tissue};
 use crate::schema::Triple;
 use crate::schema::case::document::CaseDocument;
@@ -136,6 +136,7 @@ impl OptimiseDocument {
         for (index, target) in self.targets.iter().enumerate() {
             target.check(&at.index(index), case, limits, faults);
         }
+        check_twice(&self.targets, &at, faults);
         let at = root.key("bounds");
         faults.check_length(&at, self.bounds.len(), limits.list_entries as usize);
         for (name, bounds) in &self.bounds {

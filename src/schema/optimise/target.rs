@@ -1,5 +1,7 @@
 //! Targets of the skin: wanted positions, or a scan.
 
+use std::collections::BTreeMap;
+
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
@@ -21,7 +23,7 @@ const SIGMA_MM: (f64, f64) = (1e-3, 1e3);
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TargetDocument {
-    /// Applies to every selected node of the skin.
+    /// Applies to every selected node of the skin; several have one component of `position_mm` at most.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub nodes: Option<SelectionDocument>,
@@ -41,7 +43,7 @@ pub struct TargetDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub displacement_mm: Option<PartialTriple>,
-    /// The standard deviation of each component at each node; in [1e-3, 1e3].
+    /// The standard deviation of each component at each node, all independent; in [1e-3, 1e3].
     #[serde(default = "usual_sigma")]
     #[schema(default = 1.0, minimum = 1e-3, maximum = 1e3)]
     pub sigma_mm: f64,
@@ -109,6 +111,19 @@ impl TargetDocument {
                 std::array::from_fn(|axis| position[axis].map(|wanted| wanted - rest[axis]))
             }
             None => self.displacement_mm.unwrap_or_default().0,
+        }
+    }
+}
+
+/// Targets that are alike in all of their members would count twice.
+pub(super) fn check_twice(targets: &[TargetDocument], at: &Pointer, faults: &mut Faults) {
+    let mut first = BTreeMap::new();
+    for (index, target) in targets.iter().enumerate() {
+        let text = serde_json::to_string(target).unwrap_or_default();
+        let before = *first.entry(text).or_insert(index);
+        if before != index {
+            let detail = format!("it is target {before} once more, which would count twice");
+            faults.add(&at.index(index), ErrorCode::DuplicateName, detail);
         }
     }
 }

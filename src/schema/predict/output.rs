@@ -111,21 +111,24 @@ impl OutputName {
     }
 
     pub fn media_type(self) -> &'static str {
-        match self {
-            OutputName::SkinVtp | OutputName::VolumeVtu | OutputName::BonesVtp => {
-                "application/vnd.vtk.xml"
-            }
-            OutputName::SkinStl => "model/stl",
-            OutputName::SkinPly => "application/vnd.ply",
-            OutputName::SkinGlb => "model/gltf-binary",
-            OutputName::SkinCsv => "text/csv; charset=utf-8",
-            OutputName::ClassesSvg
-            | OutputName::DisplacementSvg
-            | OutputName::GapsSvg
-            | OutputName::MusclesSvg => "image/svg+xml",
-            OutputName::ReportHtml => "text/html; charset=utf-8",
-            OutputName::ReportPdf => "application/pdf",
-            OutputName::ResultJson => "application/json",
-        }
+        media_type_of(self.file_name()).unwrap_or("application/octet-stream")
     }
+}
+
+/// The media type of a file of a result, by the ending of its name; `None` for one that no result has.
+pub fn media_type_of(file: &str) -> Option<&'static str> {
+    Some(match file.rsplit_once('.')?.1 {
+        "vtp" | "vtu" => "application/vnd.vtk.xml",
+        "stl" => "model/stl",
+        "ply" => "application/vnd.ply",
+        "glb" => "model/gltf-binary",
+        "csv" => "text/csv; charset=utf-8",
+        "svg" => "image/svg+xml",
+        "html" => "text/html; charset=utf-8",
+        "pdf" => "application/pdf",
+        "json" => "application/json",
+        "xml" => "application/xml",
+        "f32" | "i16" => "application/octet-stream",
+        _ => return None,
+    })
 }

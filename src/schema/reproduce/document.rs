@@ -13,7 +13,7 @@ use crate::schema::code::ErrorCode;
 use crate::schema::compare::document::{MeshReference, PlaceDocument, StartName};
 use crate::schema::wire::fault::{Faults, Pointer};
 use crate::schema::wire::limits::Limits;
-use crate::schema::wire::names::check_tags;
+use crate::schema::wire::names::{check_keys, check_tags};
 
 /// `reproduce`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
@@ -178,10 +178,7 @@ impl Started<'_> {
     fn check(&self, at: &Pointer, limits: &Limits, faults: &mut Faults) {
         let place = at.key("landmarks");
         let count = self.landmarks.len();
-        faults.check_length(&place, count, limits.map_entries as usize);
-        for name in self.landmarks.keys() {
-            faults.check_name(&place.key(name), name, limits.name_characters as usize);
-        }
+        check_keys(self.landmarks, &place, limits, faults);
         let wanted = self.start == StartName::Landmarks;
         if wanted && count < 3 {
             let detail = format!("a start by landmarks needs at least 3 of them, here are {count}");

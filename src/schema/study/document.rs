@@ -63,10 +63,11 @@ pub struct StudyDocument {
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     #[schema(value_type = Vec<BTreeMap<String, MaterialDocument>>)]
     pub materials: Vec<MaterialDocuments>,
-    /// All combinations of these values, by region or by tissue of the case's `hounsfield`; `*` for regions without an entry.
+    /// All combinations of these values, by region or by tissue of the case's `hounsfield`. `*` is every region and tissue,
+    /// whether or not materials name it, but for constants that the sweep has by its name.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub sweep: BTreeMap<String, SweepDocument>,
-    /// Level n halves every edge n times; from 0 to 4.
+    /// Level n halves every edge n times; from 0 to 4. Forces at nodes stay at those of level 0.
     #[serde(default = "default_levels")]
     #[schema(default = json!([0]), min_items = 1)]
     pub levels: Vec<u32>,

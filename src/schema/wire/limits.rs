@@ -4,6 +4,8 @@ use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 use mechanics::format::ReadLimits;
+use mechanics::image::MOST_SAMPLES;
+use mechanics::prediction::MOST_MUSCLE_WORK;
 
 /// Bounds of requests. Defaults are those of the API's first version.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
@@ -54,6 +56,11 @@ pub struct Limits {
     pub samples_per_mm2: f64,
     /// Scenes times plans times materials times levels times variants of a study.
     pub study_rows: u32,
+    /// Comparisons that find the cells of the muscles of a case: cells near a muscle times its sample points, the pieces of its lines and
+    /// 100 more; of a surface 2 million, and 100 a triangle.
+    pub muscle_work: u64,
+    /// `samples` of `muscle_mixing`.
+    pub muscle_samples: u32,
     /// Requests of one client per minute; 0 for no limit.
     pub requests_per_minute: u32,
     /// Streams of events that one client may have open.
@@ -95,6 +102,8 @@ impl Default for Limits {
             slot_memory_mb: 1_000_000.0,
             samples_per_mm2: 100.0,
             study_rows: 2000,
+            muscle_work: MOST_MUSCLE_WORK,
+            muscle_samples: MOST_SAMPLES as u32,
             requests_per_minute: 60_000,
             event_streams: 8,
             keys: 100,

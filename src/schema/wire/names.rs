@@ -1,6 +1,6 @@
 //! Lists of unique names: tags, and entries identified by their names.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::fault::{Faults, Pointer};
 use super::limits::Limits;
@@ -11,6 +11,24 @@ pub fn check_tags(tags: &[String], at: &Pointer, limits: &Limits, faults: &mut F
     faults.check_length(at, tags.len(), limits.tags as usize);
     for (index, tag) in tags.iter().enumerate() {
         faults.check_name(&at.index(index), tag, limits.name_characters as usize);
+    }
+}
+
+/// Names that are the keys of a map, unique without the spaces around them.
+pub fn check_keys<T>(
+    named: &BTreeMap<String, T>,
+    at: &Pointer,
+    limits: &Limits,
+    faults: &mut Faults,
+) {
+    faults.check_length(at, named.len(), limits.map_entries as usize);
+    let mut seen = BTreeMap::new();
+    for name in named.keys() {
+        faults.check_name(&at.key(name), name, limits.name_characters as usize);
+        if let Some(before) = seen.insert(name.trim(), name) {
+            let detail = format!("{name:?} and {before:?} differ by spaces around them alone");
+            faults.add(&at.key(name), ErrorCode::DuplicateName, detail);
+        }
     }
 }
 

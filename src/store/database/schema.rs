@@ -11,7 +11,7 @@ use crate::store::error::StoreError;
 
 /// The files of `migrations/`, in order. Their macro in sqlx would compile every engine a second time, for the
 /// compiler itself.
-const FILES: [(&str, &str); 16] = [
+const FILES: [(&str, &str); 17] = [
     ("first", include_str!("../../../migrations/0001_first.sql")),
     ("studies", include_str!("../../../migrations/0002_studies.sql")),
     ("blobs", include_str!("../../../migrations/0003_blobs.sql")),
@@ -28,6 +28,7 @@ const FILES: [(&str, &str); 16] = [
     ("meshed cases", include_str!("../../../migrations/0014_meshed_cases.sql")),
     ("cohorts", include_str!("../../../migrations/0015_cohorts.sql")),
     ("identity", include_str!("../../../migrations/0016_identity.sql")),
+    ("seen clock", include_str!("../../../migrations/0017_seen_clock.sql")),
 ];
 
 /// The steps as they are written, for SQLite.

@@ -12,6 +12,7 @@ trials! {
     on_both {
         tenants_take_turns_and_studies_come_last
         what_is_older_than_its_tenant_keeps_it_is_erased
+        nothing_is_erased_by_a_clock_that_is_suddenly_a_year_ahead
         what_is_asked_for_again_or_tagged_is_kept_from_then_on
         a_job_that_was_lost_is_accepted_again_when_somebody_says_so
         equal_things_of_two_tenants_are_two_things
@@ -74,6 +75,32 @@ async fn what_is_older_than_its_tenant_keeps_it_is_erased(on: Deployment) {
     assert_eq!(there(&tenants[1], &jobs[1]).await, [false, true, false]);
     assert!(tenants[1].erased(&jobs[1][0]).await.unwrap().is_some());
     assert!(tenants[0].erased(&jobs[1][0]).await.unwrap().is_none());
+}
+
+/// The times of rows and of the clock as it was seen go back instead.
+async fn nothing_is_erased_by_a_clock_that_is_suddenly_a_year_ahead(on: Deployment) {
+    const YEAR: &str = "366 * CAST(86400000 AS BIGINT)";
+    let store = on.open().await.of_tenant("a");
+    store.retain(Some(365)).await.unwrap();
+    let stored = mesh("a year old", "units=mm");
+    assert!(store.add_mesh(&stored).await.unwrap());
+    assert_eq!((store.erase_old().await.unwrap(), store.clock_doubt().await.unwrap()), (0, None));
+    on.execute(&format!("UPDATE meshes SET created = created - {YEAR}")).await;
+    on.execute(&format!(
+        "UPDATE seen_clock SET trusted = trusted - {YEAR}, latest = latest - {YEAR}"
+    ))
+    .await;
+    for _ in 0..2 {
+        assert_eq!(store.erase_old().await.unwrap(), 0);
+        let doubt = store.clock_doubt().await.unwrap().unwrap();
+        assert_eq!((doubt.ahead_h, doubt.trusted_in_h), (366 * 24, 7 * 24));
+    }
+    // Without what was seen, as after an import, the rows tell it.
+    on.execute("DELETE FROM seen_clock").await;
+    assert_eq!(store.erase_old().await.unwrap(), 0);
+    assert!(store.mesh(&stored.id).await.unwrap().is_some());
+    store.trust_clock().await.unwrap();
+    assert_eq!((store.erase_old().await.unwrap(), store.clock_doubt().await.unwrap()), (1, None));
 }
 
 async fn what_is_asked_for_again_or_tagged_is_kept_from_then_on(on: Deployment) {

@@ -23,6 +23,7 @@ trials! {
         an_import_is_all_or_nothing
         a_row_of_an_export_that_does_not_fit_is_refused_before_anything_is_stored
         what_the_service_could_not_read_is_refused_with_its_row_and_column
+        rows_of_two_tenants_that_belong_together_and_blobs_that_are_links_are_refused
         an_export_with_other_columns_than_the_tables_is_refused
     }
     on_shared {
@@ -127,8 +128,14 @@ async fn an_export_has_every_table(on: Deployment) {
     let folder = on.folder().join("export");
     store.export(&folder).await.unwrap();
     for table in tables {
-        let of_the_deployment =
-            ["blobs", "unfinished_blobs", "discarded_blobs", "identity", "_sqlx_migrations"];
+        let of_the_deployment = [
+            "blobs",
+            "unfinished_blobs",
+            "discarded_blobs",
+            "identity",
+            "seen_clock",
+            "_sqlx_migrations",
+        ];
         let left_out = of_the_deployment.contains(&table.as_str()) || table.starts_with("sqlite_");
         let exported = folder.join(format!("{table}.ndjson")).exists();
         assert_eq!(exported, !left_out, "{table}");
@@ -252,7 +259,23 @@ async fn what_the_service_could_not_read_is_refused_with_its_row_and_column(on: 
         ("cases", "document", json!(""), "column document holds an object of JSON"),
         ("cases", "report", json!("abc"), "column report holds an object of JSON or null"),
         ("plans", "document", json!("5"), "column document holds an object of JSON"),
-        ("meshes", "report", json!(""), "column report holds an object of JSON"),
+        ("meshes", "report", json!("{}"), "column report holds the report of a mesh"),
+        (
+            "job_files",
+            "name",
+            json!("../x.vtp"),
+            "column name holds the name of a file of a result",
+        ),
+        ("job_files", "media_type", json!("text/html"), "column media_type holds application/json"),
+        ("job_files", "bytes", json!(7), "column bytes holds 7, and the blob has 8 bytes"),
+        ("job_files", "bytes", json!(-1), "column bytes holds integers from 0, not -1"),
+        ("jobs", "attempt", json!(-1), "column attempt holds integers from 0, not -1"),
+        (
+            "jobs",
+            "created",
+            json!(9_000_000_000_000_000_000_i64),
+            "column created holds times in ms",
+        ),
         ("keys", "scopes", json!("root"), "column scopes holds scopes"),
         ("meshes", "id", json!(null), "column id must not be null"),
         ("audit", "outcome", json!(null), "column outcome must not be null"),
@@ -277,6 +300,26 @@ async fn what_the_service_could_not_read_is_refused_with_its_row_and_column(on: 
     changed[1][report] = json!("null");
     write(&folder, "cases", &changed);
     store.import(&folder).await.unwrap();
+}
+
+async fn rows_of_two_tenants_that_belong_together_and_blobs_that_are_links_are_refused(
+    on: Deployment,
+) {
+    let (folder, store) = exported(&on).await;
+    let mut changed = lines(&folder, "meshes");
+    let tenant = place_of(&changed[0], "tenant");
+    changed[1][tenant] = json!("other");
+    let error = refusal(&store, &folder, "meshes", &changed).await;
+    assert!(
+        error.contains("is of tenant \"default\"") && error.contains("of \"other\""),
+        "{error}"
+    );
+    let blob = std::fs::read_dir(folder.join("blobs")).unwrap().next().unwrap().unwrap().path();
+    let moved = folder.join("moved");
+    std::fs::rename(&blob, &moved).unwrap();
+    std::os::unix::fs::symlink(&moved, &blob).unwrap();
+    let error = store.import(&folder).await.unwrap_err().to_string();
+    assert!(error.contains(&format!("{} is no plain file", blob.display())), "{error}");
 }
 
 async fn an_export_with_other_columns_than_the_tables_is_refused(on: Deployment) {

@@ -127,6 +127,24 @@ fn bone_takes_the_scan_to_the_prediction_and_says_how_well_it_fits() {
 }
 
 #[test]
+fn percentiles_of_a_few_landmarks_are_interpolated() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut sources = sources();
+    sources.0.insert("bone".to_owned(), surface(&bone()));
+    let mark = |off: f64| json!({"prediction_mm": [off, 5, 5], "actual_mm": [off, 5, 5.0 + off]});
+    let spec = json!({
+        "prediction": {"mesh": "bone"}, "actual": {"mesh": "bone"}, "align": {"method": "none"},
+        "landmarks": {"a": mark(0.0), "b": mark(1.0), "c": mark(2.0), "d": mark(10.0)},
+    });
+    let found = comparison(&sources, &spec, folder.path()).landmark_statistics.unwrap();
+    let told = format!("{found:?}");
+    // As numpy's percentiles.
+    for (one, other) in [(found.p25, 0.75), (found.median, 1.5), (found.p75, 4.0)] {
+        assert!((one - other).abs() < 1e-12, "{told}");
+    }
+}
+
+#[test]
 fn a_scan_is_measured_where_the_plan_moves_the_skin_and_at_landmarks() {
     let folder = tempfile::tempdir().unwrap();
     let mut sources = sources();

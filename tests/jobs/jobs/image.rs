@@ -171,6 +171,21 @@ fn an_image_in_the_other_frame_shows_the_same_tissue() {
 }
 
 #[test]
+fn an_image_without_a_frame_is_doubtful_beside_meshes_with_one() {
+    let codes = |case: &Value| {
+        let mut unmarked = meshes();
+        unmarked.0.get_mut("ct").unwrap().frame = None;
+        let found = check(&input(case, &json!({})), &unmarked, &Limits::default()).unwrap();
+        found.document.warnings.into_iter().map(|warning| warning.code).collect::<Vec<_>>()
+    };
+    let doubtful = "image-place-doubtful";
+    assert_eq!(codes(&case()).iter().filter(|code| *code == doubtful).count(), 1);
+    let mut unstated = case();
+    unstated["frame"] = json!("unspecified");
+    assert!(!codes(&unstated).iter().any(|code| code == doubtful));
+}
+
+#[test]
 fn the_result_tells_how_much_of_each_tissue_there_is() {
     let out = tempfile::tempdir().unwrap();
     let done = run(&meshes(), &case(), out.path());

@@ -132,3 +132,41 @@ fn a_job_that_is_cancelled_stops_in_every_phase_and_writes_nothing() {
         assert!(!out.exists(), "{phase:?}");
     }
 }
+
+/// The faults of inverse planning for other targets.
+fn refused(targets: &str) -> String {
+    let mut input = input();
+    input.spec.targets = serde_json::from_str(targets).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    format!("{:?}", run_input(input, &folder.path().join("out")).unwrap_err())
+}
+
+#[test]
+fn several_nodes_at_one_place_and_targets_given_twice_are_refused() {
+    let set = r#"[{"nodes":{"node_set":"z_max"},"position_mm":[27,20,30]}]"#;
+    let told = refused(set);
+    assert!(told.contains("/spec/targets/0/position_mm") && told.contains("25 nodes"), "{told}");
+    let tip = r#"{"landmark":"tip","displacement_mm":[1,null,null],"sigma_mm":0.3}"#;
+    let told = refused(&format!("[{tip},{tip}]"));
+    assert!(told.contains("/spec/targets/1") && told.contains("target 0"), "{told}");
+    // A plane for all of them is a place that they may go to.
+    let mut input = input();
+    let plane = r#"[{"nodes":{"node_set":"z_max"},"position_mm":[null,null,30.5]}]"#;
+    input.spec.targets = serde_json::from_str(plane).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let done = run_input(input, &folder.path().join("out")).unwrap();
+    assert_eq!(done.result.optimisation.unwrap().targets[0].points, 25);
+}
+
+#[test]
+fn nodes_of_a_target_that_are_not_on_the_skin_are_counted() {
+    let mut input = input();
+    input.case.skin = serde_json::from_str(r#"{"node_set":"z_max"}"#).unwrap();
+    let side = r#"[{"nodes":{"node_set":"y_max"},"displacement_mm":[0.5,null,null]}]"#;
+    input.spec.targets = serde_json::from_str(side).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let done = run_input(input, &folder.path().join("out")).unwrap().result;
+    let told = done.warnings.iter().find(|warning| warning.code == "target-off-skin").unwrap();
+    // Of 5 x 4 nodes those of the upper edge are skin.
+    assert!(told.detail.contains("15 of 20 nodes of target 0"), "{told:?}");
+}

@@ -7,5 +7,6 @@ mod methods;
 mod muscles;
 mod plan;
 mod presets;
+mod regions;
 mod syntax;
 mod wrong_types;

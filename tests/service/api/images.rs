@@ -154,6 +154,28 @@ async fn a_case_comes_with_its_image_and_takes_it_along_when_it_is_erased() {
 }
 
 #[tokio::test]
+async fn an_image_that_comes_with_a_case_does_not_take_its_frame_for_its_own() {
+    let server = Server::start();
+    let told = async |case: Value, image: Option<Part>| {
+        let form = SMALL.form(&case);
+        let form = match image {
+            Some(image) => form.part("ct", image),
+            None => form,
+        };
+        let kept = ask(server.post("/v1/cases").multipart(form)).await.expect(StatusCode::CREATED);
+        let warnings = kept["check"]["warnings"].as_array().unwrap().clone();
+        warnings.iter().filter(|told| told["code"] == "image-place-doubtful").count()
+    };
+    let mut marked = case();
+    marked["frame"] = json!("LPS");
+    assert_eq!(told(marked.clone(), Some(Part::bytes(around_the_block(0)))).await, 1);
+    let request = server.post("/v1/meshes?frame=LPS").header("content-type", "application/x-nrrd");
+    let image = ask(request.body(around_the_block(0))).await.expect(StatusCode::CREATED);
+    marked["hounsfield"]["image"] = image["id"].clone();
+    assert_eq!(told(marked, None).await, 0);
+}
+
+#[tokio::test]
 async fn an_image_is_no_mesh_of_a_case_nor_of_a_comparison() {
     let server = Server::start();
     let image = server.upload(around_the_block(0)).await.expect(StatusCode::CREATED);

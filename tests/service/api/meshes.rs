@@ -22,6 +22,25 @@ endsolid Jane Roe
 ";
 
 #[tokio::test]
+async fn an_upload_whose_bytes_others_delete_meanwhile_is_stored() {
+    let server = Server::start();
+    let bytes = SMALL.vtu();
+    let upload = async || {
+        let request = server.post("/v1/meshes?units=mm").body(bytes.clone());
+        ask(request.header("content-type", "application/vnd.vtk.xml")).await
+    };
+    for round in 0..20 {
+        let uploads = [upload(), upload(), upload()].into_iter().map(async |upload| {
+            let stored = upload.await;
+            assert!(stored.status.is_success(), "{round}: {}", stored.status);
+            let mesh: serde_json::Value = serde_json::from_slice(&stored.bytes).unwrap();
+            ask(server.delete(&format!("/v1/meshes/{}", mesh["id"].as_str().unwrap()))).await
+        });
+        futures::future::join_all(uploads).await;
+    }
+}
+
+#[tokio::test]
 async fn an_upload_is_reported_and_the_same_bytes_are_the_same_mesh() {
     let server = Server::start();
     let bytes = SMALL.vtu();

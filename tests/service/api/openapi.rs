@@ -77,6 +77,8 @@ async fn limits_and_methods_are_reported() {
     let server = Server::start();
     let limits = ask(server.get("/v1/limits")).await.expect(StatusCode::OK);
     assert_eq!((&limits["upload_bytes"], &limits["wait_s"]), (&(256 << 20).into(), &30.into()));
+    let muscles = (&limits["muscle_work"], &limits["muscle_samples"]);
+    assert_eq!(muscles, (&1_000_000_000.into(), &512.into()));
     let methods = ask(server.get("/v1/methods")).await.expect(StatusCode::OK);
     assert_eq!(methods["methods"][0]["name"], "fem_linear");
     let response = &methods["response"];

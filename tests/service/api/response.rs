@@ -675,6 +675,8 @@ async fn a_response_of_order_two_adds_its_quadratic_form_and_hands_it_over() {
         (answer.header("facies-order"), &applied["within_linear_range"]),
         ("2", &json!(true))
     );
+    let octets = apply(&server, &case, &shift, OCTETS).await;
+    assert_eq!(octets.header("facies-second-order-mm").parse(), Ok(second_order));
 
     // Far beyond: the series is not to be trusted, and says so with its numbers.
     let far = json!({"segments": [{"name": "right", "translation_mm": [0, 0, 24.0]}]});
@@ -698,6 +700,34 @@ async fn a_response_of_order_two_says_where_its_law_takes_volume_at_points() {
         for told in [job["results"].clone(), applied.expect(StatusCode::OK)] {
             assert_eq!(warnings_of(&told).any(|told| told["code"] == "locking"), warns, "{told}");
         }
+    }
+}
+
+#[tokio::test]
+async fn a_response_of_fibres_that_only_pull_says_as_a_prediction_that_its_error_is_unknown() {
+    let server = Server::start();
+    let plan = json!({"segments": [{"name": "bone", "translation_mm": [-2, 0.5, 0]}]});
+    let plain = json!({"young_modulus_kpa": 20, "poisson_ratio": 0.4});
+    let mut pulling = plain.clone();
+    pulling["fibre"] = json!({"k1_kpa": 40, "k2": 1, "direction": [1, 0.3, 0]});
+    for (material, is_known) in [(plain, true), (pulling, false)] {
+        let mut block = SMALL.case();
+        block["materials"] = json!({"*": material});
+        let case = kept(&server, &SMALL, &block).await;
+        built(&server, json!({"kind": "response", "case": case})).await;
+        let applied = apply(&server, &case, &plan, "application/json").await;
+        let told = applied.expect(StatusCode::OK);
+        assert_eq!(told.get("nonlinearity_estimate_mm").is_some(), is_known, "{told}");
+        assert_eq!(told["within_linear_range"], is_known, "{told}");
+        let is_told = warnings_of(&told).any(|told| told["code"] == "nonlinearity-unknown");
+        assert_eq!(is_told, !is_known, "{told}");
+        let spec = json!({"kind": "predict", "method": "fem_linear", "case": case, "plan": plan});
+        let predicted = built(&server, spec).await;
+        assert_eq!(predicted["results"]["nonlinearity_mm"].is_null(), !is_known);
+        // Nor is it foreseen which model `auto` takes.
+        let body = json!({"plan": plan, "method": "auto"});
+        let checked = ask(server.post(&format!("/v1/cases/{case}/check")).json(&body)).await;
+        assert_eq!(checked.expect(StatusCode::OK).get("auto").is_some(), is_known);
     }
 }
 

@@ -1,7 +1,7 @@
 //! The boundary of a mesh at rest and after a displacement, with normals of those triangles around a point that have about one
 //! direction.
 
-use crate::mesh::{SurfaceSearch, TriangleSurface, Vector};
+use crate::mesh::{TriangleSearch, TriangleSurface, Vector};
 
 /// The cosine of normals that oppose each other is below this.
 pub(super) const OPPOSED: f64 = -0.3;
@@ -24,7 +24,7 @@ pub(super) struct MovedBoundary {
     pub flats: Vec<Vector>,
     /// Unit normals of points.
     pub normals: Vec<Vector>,
-    pub search: SurfaceSearch,
+    pub search: TriangleSearch,
 }
 
 impl Boundary {
@@ -39,7 +39,7 @@ impl Boundary {
     /// None where no triangle has an area.
     pub fn moved(&self, displacement: &[Vector]) -> Option<MovedBoundary> {
         let surface = self.rest.displaced(displacement);
-        let search = SurfaceSearch::new(&surface).ok()?;
+        let search = TriangleSearch::new(&surface).ok()?;
         let unit = |triangle: usize| surface.area_vector(triangle).try_normalize(f64::MIN_POSITIVE);
         let flats = (0..surface.triangles.len()).map(|triangle| unit(triangle).unwrap_or_default());
         Some(MovedBoundary {

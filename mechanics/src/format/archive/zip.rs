@@ -4,6 +4,7 @@
 //! zip64 are refused, as are links, places that overlap, and names that lead out of the archive.
 
 use std::borrow::Cow;
+use std::collections::HashMap;
 use std::io::Read;
 
 use flate2::Crc;
@@ -42,7 +43,9 @@ enum Method {
 pub(super) struct Entry {
     /// From 1, in the order of the archive.
     pub number: usize,
+    /// Without empty parts and `.`.
     name: Vec<u8>,
+    is_folder: bool,
     method: Method,
     crc: u32,
     /// Bytes in the archive and out of it.
@@ -114,13 +117,25 @@ impl<'a> Archive<'a> {
             if entry.bytes / MOST_BYTES_OF_ONE > entry.stored {
                 return Err(entry.bad("it promises more than its compressed bytes can hold"));
             }
-            if !entry.name.ends_with(b"/") {
+            if !entry.is_folder {
                 entries.push(entry);
             }
         }
         let archive = Archive { bytes: &bytes[..end.directory as usize], entries };
+        archive.check_names()?;
         archive.check_places()?;
         Ok(archive)
+    }
+
+    /// Refuses files of the same name: programs differ in which of them they unpack.
+    fn check_names(&self) -> Result<(), FormatError> {
+        let mut numbers = HashMap::new();
+        for entry in &self.entries {
+            if let Some(other) = numbers.insert(entry.name.as_slice(), entry.number) {
+                return Err(entry.bad(&format!("file {other} has the same name")));
+            }
+        }
+        Ok(())
     }
 
     pub fn bad(&self, detail: String) -> FormatError {
@@ -263,7 +278,11 @@ impl Entry {
             }
         };
         let (stored, bytes, at) = (stored.into(), bytes.into(), at.into());
-        Ok(Entry { number, name, method, crc, stored, bytes, at })
+        let is_folder = name.ends_with(b"/");
+        let parts = name.split(|&byte| byte == b'/');
+        let parts: Vec<&[u8]> = parts.filter(|part| !matches!(*part, b"" | b".")).collect();
+        let name = parts.join(&b'/');
+        Ok(Entry { number, name, is_folder, method, crc, stored, bytes, at })
     }
 }
 

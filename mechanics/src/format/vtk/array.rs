@@ -83,7 +83,8 @@ impl<'d, 'a> Decoder<'d, 'a> {
         }
         match (&array.content, count) {
             (Content::Ascii(text), _) => {
-                let convert = |word: &str| word.parse().ok().map(&convert);
+                let own = |word: &str| word.parse().ok().filter(|value| scalar.holds(*value));
+                let convert = |word: &str| own(word).map(&convert);
                 self.words(array, text, count.unwrap_or(u64::MAX), convert)
             }
             (_, Some(count)) => {
@@ -150,7 +151,9 @@ impl<'d, 'a> Decoder<'d, 'a> {
             }
             let value = parse(word).ok_or_else(|| {
                 let shown: String = word.chars().take(40).collect();
-                self.bad(array, format!("not a number: {shown:?}"))
+                let is_number = word.parse::<f64>().is_ok();
+                let what = if is_number { "not a value of its type" } else { "not a number" };
+                self.bad(array, format!("{what}: {shown:?}"))
             })?;
             values.push(value);
         }

@@ -214,7 +214,11 @@ impl LegacyReader<'_, '_> {
         self.cursor.expect_words(count)?;
         let mut values = room_for(count as usize)?;
         for _ in 0..count {
-            values.push(convert(self.cursor.integer("an integer")?));
+            let value = self.cursor.integer("an integer")?;
+            if !scalar.holds(value) {
+                return Err(self.cursor.bad_line(format!("not a value of its type: {value}")));
+            }
+            values.push(convert(value));
         }
         Ok(values)
     }

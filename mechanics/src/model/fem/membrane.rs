@@ -12,15 +12,12 @@
 //! stiffness of a stretched skin. Its energy t s |grad u|^2 / 2 is that of the second Piola-Kirchhoff stress s P whatever the
 //! displacement, so that it adds nothing of a higher order. What balances it at rest is left out.
 //!
-//! At finite strain the same stiffness acts on Green's strain in the plane, F = sum x_a g_a^T, E = (F^T F - P) / 2, S = C:E: the energy of
-//! the sheet is t int E:S / 2 + s |F - P|^2 / 2 dA, its forces are t int (F S + s (F - P)) g_a dA, and their derivatives
-//! t int F C(g_a, g_b) F^T + (g_a.S.g_b + s g_a.g_b) I dA. Turning it strains nothing; pressed in its plane it may wrinkle, and a sheet alone
-//! has no energy against that.
+//! At finite strain: `stretched_membrane`.
 //!
 //! Source: Zienkiewicz, Taylor, The Finite Element Method, 5th ed., vol. 1, chapter 4; skin as a membrane:
 //! Zachow et al. 2006, section 4.2 (docs/methods.md#membrane). The sheet weighs nothing.
 
-use nalgebra::Matrix3;
+use nalgebra::{Matrix3, Matrix3x2};
 
 use super::edge_nodes::EdgeNodes;
 use crate::material::{ElasticTensor, PlaneStress};
@@ -46,24 +43,35 @@ pub struct PressedTriangle {
     pub area: f64,
     pub edge: f64,
     pub centre: Vector,
-    /// Against the least principal stress, in mN/mm; negative where it is stretched in all directions.
+    /// Against the least principal stress, in mN/mm; 0 where it is pressed in no direction.
     pub force: f64,
 }
 
 /// What a triangle needs for its matrix.
 #[derive(Clone)]
 pub(super) struct Triangle {
-    normal: Vector,
+    pub normal: Vector,
     /// Thickness times area, in mm³.
-    volume: f64,
+    pub volume: f64,
     /// Of the barycentric coordinates, in 1/mm.
     pub gradients: [Vector; 3],
-    tensor: ElasticTensor,
+    pub tensor: ElasticTensor,
     /// At rest, in kPa.
-    tension: f64,
+    pub tension: f64,
+    /// Two directions in the plane where it bears no compression.
+    pub axes: Option<Matrix3x2<f64>>,
 }
 
 impl Membrane {
+    /// Of its elements, whose triangles may have a node in the middle of each side.
+    pub fn name(&self, is_quadratic: bool) -> &'static str {
+        match (is_quadratic, self.sheet.bears_compression()) {
+            (true, _) => "tri6 membrane",
+            (false, true) => "tri3 membrane",
+            (false, false) => "tri3 membrane, tension only",
+        }
+    }
+
     /// Adds the sheet to the matrix of a mesh whose triangles have three nodes.
     pub(super) fn add_linear(
         &self,
@@ -144,8 +152,10 @@ impl Membrane {
         self.in_space(mesh).map(|(triangle, nodes)| {
             let at_rest = nodes.map(|node| mesh.nodes[node as usize]);
             let corners = nodes.map(|node| mesh.nodes[node as usize] + displacement[node as usize]);
+            let stretched = triangle.at(&corners);
             // The normal has the eigenvalue 0.
-            let least = triangle.at(&corners).stress.symmetric_eigenvalues().min();
+            let in_plane = stretched.plane * stretched.stress * stretched.plane;
+            let least = in_plane.symmetric_eigenvalues().min();
             let area = triangle.volume / self.sheet.thickness();
             let [a, b, c] = at_rest;
             PressedTriangle {
@@ -153,7 +163,7 @@ impl Membrane {
                 area,
                 edge: ((b - a).norm() + (c - b).norm() + (a - c).norm()) / 3.0,
                 centre: (a + b + c) / 3.0,
-                force: self.sheet.thickness() * (-least - triangle.tension),
+                force: -self.sheet.thickness() * least,
             }
         })
     }
@@ -173,66 +183,25 @@ impl Membrane {
             let normal = area_vector / area;
             let across = |side: Vector| normal.cross(&side) / (2.0 * area);
             let lines = self.lines.get(number).copied().unwrap_or_default();
+            let along = match lines == Vector::zeros() {
+                true => (b - a).normalize(),
+                false => lines,
+            };
+            let axes = Matrix3x2::from_columns(&[along, normal.cross(&along)]);
             let triangle = Triangle {
                 normal,
                 volume: self.sheet.thickness() * area,
                 gradients: [across(c - b), across(a - c), across(b - a)],
                 tensor: self.sheet.tensor(&lines),
                 tension: self.sheet.tension(),
+                axes: (!self.sheet.bears_compression()).then_some(axes),
             };
             Some((triangle, nodes))
         })
     }
 }
 
-/// A triangle whose corners are moved however far.
-pub(super) struct Stretched<'a> {
-    triangle: &'a Triangle,
-    /// F, whose null vector is the normal at rest.
-    gradient: Matrix3<f64>,
-    /// F less what it is at rest.
-    slope: Matrix3<f64>,
-    /// E.
-    strain: Matrix3<f64>,
-    /// S in kPa.
-    stress: Matrix3<f64>,
-}
-
-impl Stretched<'_> {
-    /// In mN mm.
-    pub fn energy(&self) -> f64 {
-        let taut = self.triangle.tension * self.slope.norm_squared();
-        0.5 * self.triangle.volume * (self.strain.dot(&self.stress) + taut)
-    }
-
-    /// In mN, at a node of this gradient.
-    pub fn force(&self, g: &Vector) -> Vector {
-        let stress = self.gradient * self.stress + self.slope * self.triangle.tension;
-        stress * g * self.triangle.volume
-    }
-
-    /// The derivative of the force at a node by the position of another one, in kPa mm.
-    pub fn pair(&self, gj: &Vector, gk: &Vector) -> Matrix3<f64> {
-        let Triangle { volume, tensor, tension, .. } = self.triangle;
-        let mut block: Block = [[0.0; 3]; 3];
-        tensor.add_pair(&mut block, [gj, gk], *volume);
-        let own = Matrix3::from_fn(|i, j| block[i][j]);
-        let taut = volume * (gj.dot(&(self.stress * gk)) + tension * gj.dot(gk));
-        self.gradient * own * self.gradient.transpose() + Matrix3::from_diagonal_element(taut)
-    }
-}
-
 impl Triangle {
-    /// With its corners at these positions.
-    pub fn at(&self, corners: &[Vector; 3]) -> Stretched<'_> {
-        let plane = Matrix3::identity() - self.normal * self.normal.transpose();
-        let moved = corners.iter().zip(&self.gradients);
-        let gradient: Matrix3<f64> = moved.map(|(x, g)| x * g.transpose()).sum();
-        let strain = (gradient.transpose() * gradient - plane) * 0.5;
-        let stress = self.tensor.stress(&strain);
-        Stretched { triangle: self, gradient, slope: gradient - plane, strain, stress }
-    }
-
     /// Its stiffness times its volume, in mN mm.
     pub fn modulus(&self) -> f64 {
         self.volume * (self.tensor.lambda + 2.0 * self.tensor.mu + self.tension)

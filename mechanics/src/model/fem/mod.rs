@@ -19,3 +19,4 @@ pub mod mass_tensor_nonlinear;
 pub mod membrane;
 pub mod quadratic;
 pub mod strain;
+mod stretched_membrane;

@@ -89,6 +89,15 @@ fn every_type_is_read_in_both_byte_orders_raw_and_compressed() {
 }
 
 #[test]
+fn the_largest_unsigned_voxel_keeps_its_value() {
+    let mut values = [7_u64; 24];
+    values[3] = u64::MAX;
+    let bytes = values.map(u64::to_le_bytes).concat();
+    let image = image(read_default(&file(&NRRD.replace("short", "uint64"), &bytes)));
+    assert_eq!(image.range(), (7.0, f64::from(u64::MAX as f32)));
+}
+
+#[test]
 fn what_is_written_is_read_again_and_names_nobody() {
     let singles: Vec<u8> =
         VOXELS.iter().flat_map(|&v| (f32::from(v) / 3.0).to_le_bytes()).collect();

@@ -120,6 +120,25 @@ fn flat_cells_beside_solid_ones_are_left_out_with_their_values() {
 }
 
 #[test]
+fn text_beyond_the_type_of_its_array_is_refused_with_the_array() {
+    let with = |kind: &str, value: &str| {
+        let more = format!(
+            "<CellData><DataArray type=\"{kind}\" Name=\"band\" format=\"ascii\">{value}</DataArray></CellData>"
+        );
+        ascii_vtu(&TETRAHEDRON, &[(10, &[0, 1, 2, 3])], &more)
+    };
+    for (kind, value) in [("Int32", "99999999999"), ("UInt8", "-1"), ("Int64", "1.5")] {
+        let error = error_of(with(kind, value).as_bytes());
+        let wanted = format!("array \"band\" of CellData: not a value of its type: {value:?}");
+        assert!(error.contains(&wanted), "{error}");
+    }
+    assert_eq!(
+        volume(read_default(with("Int64", "99999999999").as_bytes())).cell_labels["band"],
+        [99_999_999_999]
+    );
+}
+
+#[test]
 fn vectors_of_cells_are_kept_with_their_cells_and_are_zero_where_they_were_not_finite() {
     let more = "<CellData><DataArray type=\"Float32\" Name=\"fibre\" NumberOfComponents=\"3\" format=\"ascii\">\
         7 7 7 0 1 -2 nan 0 0</DataArray></CellData>";

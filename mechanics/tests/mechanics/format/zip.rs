@@ -61,6 +61,15 @@ fn names_that_lead_out_of_the_archive_are_refused_and_not_repeated() {
 }
 
 #[test]
+fn two_files_of_one_name_are_refused() {
+    for name in ["a", "./a", ".//a"] {
+        let error = error_of(&with(name, b"x"));
+        assert!(error.contains("file 3: file 1 has the same name"), "{name}: {error}");
+    }
+    read_default(&with("folder/a", b"x"));
+}
+
+#[test]
 fn links_encryption_and_other_methods_are_refused() {
     let archive = with("c", b"x");
     let at = directory_entry(&archive, 2);

@@ -183,6 +183,20 @@ fn neighbours_that_part_by_more_than_their_distance_are_called_torn() {
 }
 
 #[test]
+fn what_one_bone_carries_is_not_torn_however_far_it_turns() {
+    let mut case = jaw_and_skull(CellShape::Hex8);
+    let angles = Vector::x() * f64::to_radians(89.0);
+    let turned = RigidMovement::about_pivot(angles, Vector::new(0.0, 10.0, 5.0), Vector::zeros());
+    let is_torn = |case: &Case| {
+        let scene = Scene::new(case, &moved("jaw", turned), &Settings::default()).unwrap();
+        scene.warnings.iter().any(|warning| warning.code == "tearing")
+    };
+    assert!(!is_torn(&case));
+    case.fixed = vec![set("z_min")];
+    assert!(is_torn(&case));
+}
+
+#[test]
 fn edges_that_bones_turn_round_are_told_with_their_place_and_with_what_passes_through_what() {
     let mut case = jaw_and_skull(CellShape::Hex8);
     case.fixed = vec![set("z_min")];

@@ -6,7 +6,10 @@ use std::num::NonZeroU32;
 use mechanics::mesh::sample::block;
 use mechanics::mesh::{CellShape, Vector};
 use mechanics::plan::{PlannedSegment, RigidMovement};
-use mechanics::prediction::{Advance, Case, CaseSegment, Method, Plan, Settings};
+use mechanics::prediction::{
+    Advance, Case, CaseSegment, Load, Method, ModelError, Plan, Scene, Settings, predict,
+};
+use mechanics::progress::Unobserved;
 
 use super::contact::{
     PRESSING, at, bar, blocks, force, jaws, pushed, raised, together, unilateral,
@@ -199,4 +202,35 @@ fn a_block_that_turns_onto_tissue_settles_between_two_states() {
     assert!(touch.contact.last_moved_mm < 0.05, "{}", touch.contact.last_moved_mm);
     assert!(touch.largest_penetration() < 0.05, "{}", touch.largest_penetration());
     assert!((force(&found, "fixed") + force(&found, "jaw")).norm() < 1e-3);
+}
+
+/// Two bars pressed on each other over a gap, their meshes not matching: it ended as `solver-diverged`, with a residual below what it wanted.
+#[test]
+fn contact_that_does_not_settle_says_so_and_where() {
+    let size = Vector::new(30.0, 12.0, 10.0);
+    let lower = block(size, [6, 1, 1], CellShape::Hex8);
+    let upper = at(block(size, [9, 1, 1], CellShape::Hex8), [0.0, 0.0, 10.8]);
+    let mesh = together(&[("lower", lower), ("upper", upper)]);
+    let ends = ["lower/x_min", "lower/x_max", "upper/x_min", "upper/x_max"];
+    let case = Case {
+        fixed: ends.map(set).to_vec(),
+        skin: Some(set("lower/z_max")),
+        ..case_of(mesh, material(15.0, 0.4))
+    };
+    let pressed = |faces, traction| Load::Traction { faces: set(faces), traction };
+    let loads = vec![
+        pressed("lower/z_min", Vector::new(0.0, 0.0, 0.3)),
+        pressed("upper/z_max", Vector::new(0.0, 0.0, -0.3)),
+    ];
+    let plan = Plan { loads, ..Plan::default() };
+    let settings = Settings { relative_residual: 1e-8, ..at_finite_strain() };
+    let scene = Scene::new(&case, &plan, &settings).unwrap();
+    let error = predict(&scene, &Unobserved).err().unwrap();
+    assert_eq!(error.code(), "contact-unsettled", "{error}");
+    let ModelError::ContactAlternates { steps, residual, place, .. } = &error else {
+        panic!("{error}")
+    };
+    assert!(*steps > 150 && *residual <= 1e-3, "{error}");
+    let [x, _, z] = place.unwrap();
+    assert!((0.0..=30.0).contains(&x) && (z == 10.0 || z == 10.8), "{error}");
 }

@@ -11,8 +11,8 @@ use mechanics::mesh::{CellShape, TriangleSurface, Vector, sample::block};
 use mechanics::model::fem::mass_tensor::MassTensorSettings;
 use mechanics::muscle::strap::box_surface;
 use mechanics::prediction::{
-    Activation, BodyFibres, Case, FibreDirection, Load, Method, Muscle, MuscleCourse, MuscleMixing,
-    Plan, RegionNames, Scene, SceneError, Settings, Stiffening,
+    Activation, BodyFibres, Case, FibreDirection, Load, MOST_MUSCLE_WORK, Method, Muscle,
+    MuscleCourse, MuscleMixing, Plan, RegionNames, Scene, SceneError, Settings, Stiffening,
 };
 use mechanics::response::{ResponseError, inner_loads};
 
@@ -213,6 +213,26 @@ fn two_muscles_in_a_cell_share_it_and_their_axes_cross() {
     let mixed = made.material_of_cell.iter().map(|own| made.materials[usize::from(*own)]);
     let stiff = mixed.filter(|own| (own.young_modulus() - 30.0).abs() < 1e-9).count();
     assert_eq!(stiff, 64);
+}
+
+#[test]
+fn muscles_whose_cells_take_too_long_to_find_are_refused_before_with_the_numbers() {
+    let box_of = |name: &str, high: f64| {
+        muscle(name, boxed([0.1; 3], [high, 11.9, 11.9]), BodyFibres::Box { halvings: 0 })
+    };
+    let refused = |samples: usize| {
+        let mut case = held(vec![box_of("short", 2.9), box_of("long", 23.9)]);
+        case.muscle_mixing.samples = samples;
+        let built = Scene::new(&case, &pushed(), &Settings::default());
+        built.err().map(|errors| errors.0[0].clone())
+    };
+    // 16 and 128 cells, each with its samples and 100 more; two boxes of 12 triangles.
+    let told = refused(7_000_000).unwrap();
+    assert_eq!((told.pointer.as_str(), told.code.name()), ("/case/muscles", "too-many"));
+    assert!(told.detail.starts_with("1012016800 comparisons"), "{}", told.detail);
+    assert!(told.detail.contains(&format!("at most {MOST_MUSCLE_WORK}")), "{}", told.detail);
+    assert!(told.detail.contains("\"long\", 128 cells near it"), "{}", told.detail);
+    assert!(refused(64).is_none());
 }
 
 #[test]

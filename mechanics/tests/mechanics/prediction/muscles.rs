@@ -308,6 +308,10 @@ fn what_is_wrong_with_muscles_is_reported_with_its_place() {
     let far = around("arc", vec![vec![Vector::repeat(500.0), Vector::repeat(510.0)]], 5.0);
     let (pointer, code, _) = refused(far, &still);
     assert_eq!((pointer.as_str(), code), ("/case/muscles/0/lines_mm", "empty-selection"));
+    let point = around("point", vec![vec![Vector::repeat(5.0), Vector::repeat(5.0)]], 5.0);
+    let (pointer, code, detail) = refused(point, &still);
+    assert_eq!((pointer.as_str(), code), ("/case/muscles/0/lines_mm", "empty-selection"));
+    assert!(detail.contains("have no length") && !detail.contains("in mm"), "{detail}");
     let (pointer, code, _) = refused(in_region("biceps", "arm", Vector::x()), &still);
     assert_eq!((pointer.as_str(), code), ("/case/muscles/0/region", "unknown-region"));
     let (_, code, _) = refused(in_region("biceps", "tissue", Vector::zeros()), &still);

@@ -10,10 +10,10 @@ use mechanics::optimisation::{Goal, Question, SegmentBounds, SkinPoint, Target, 
 use mechanics::plan::RigidMovement;
 use mechanics::prediction::{
     Case, CaseSegment, ElementChoice, Estimated, Method, MethodKind, NonlinearityUnknown, Plan,
-    Prediction, Scene, Settings, Sliding, SlidingNormal, predict,
+    Prediction, Scene, Settings, Sliding, SlidingNormal, predict, without_second_order,
 };
 use mechanics::progress::Unobserved;
-use mechanics::response::{Columns, ResponseError, ResponseOrder, build_to, check_order};
+use mechanics::response::{Columns, ResponseError, ResponseOrder, build, build_to, check_order};
 use mechanics::study::methods;
 
 use crate::scenes::{case_of, half_head_case, material, set};
@@ -211,6 +211,12 @@ fn what_is_left_out_of_fibres_that_only_pull_is_not_known() {
     assert_eq!(prediction.nonlinearity.unwrap_err(), NonlinearityUnknown::PullingFibres);
     let refused = check_order(&scene, ResponseOrder::Second).unwrap_err();
     assert_eq!(refused, ResponseError::NoSecondOrder);
+    assert_eq!(without_second_order(&scene), Some(NonlinearityUnknown::PullingFibres));
+    let is_known = |case: &Case| {
+        let scene = Scene::new(case, &Plan::default(), &linear()).unwrap();
+        build(&scene, &[], &Unobserved).unwrap().linearity.is_known()
+    };
+    assert!(!is_known(&case) && is_known(&slab(CellShape::Tet4, 0.45)));
 }
 
 fn hard_block() -> Case {
@@ -484,4 +490,9 @@ fn a_response_of_quadratic_tetrahedra_has_no_second_order_and_is_refused() {
     let scene = Scene::new(&slab(CellShape::Tet4, 0.4), &Plan::default(), &quadratic).unwrap();
     let refused = build_to(&scene, &[], ResponseOrder::Second, &Unobserved).unwrap_err();
     assert_eq!(refused, ResponseError::NoSecondOrder);
+    // Nor is known what its first order leaves out, as of a prediction.
+    assert!(!build(&scene, &[], &Unobserved).unwrap().linearity.is_known());
+    assert_eq!(without_second_order(&scene), Some(NonlinearityUnknown::Quadratic));
+    let (_, prediction) = solved(&slab(CellShape::Tet4, 0.4), &movements(0.1), &quadratic);
+    assert_eq!(prediction.nonlinearity.unwrap_err(), NonlinearityUnknown::Quadratic);
 }

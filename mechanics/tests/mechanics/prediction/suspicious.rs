@@ -14,7 +14,7 @@ use mechanics::prediction::{
 use mechanics::progress::Unobserved;
 use mechanics::solver::stationary::{Iteration, Stationary};
 
-use crate::scenes::{case_of, half_head_case, material, set, solve};
+use crate::scenes::{case_of, half_head_case, largest_error, material, set, solve};
 use crate::support::responses::plan_of;
 
 fn layer() -> Case {
@@ -50,6 +50,9 @@ fn a_plan_that_moves_nothing_says_so_and_a_case_without_one_does_not() {
     }
     let moved = plan_of(&case, &[shifted(0.5)]);
     assert_eq!(warnings(&case, &moved, &settings, "nothing-moves"), []);
+    // Its square is none.
+    let vanishing = plan_of(&case, &[shifted(1e-300)]);
+    assert_eq!(warnings(&case, &vanishing, &settings, "nothing-moves").len(), 1);
 }
 
 #[test]
@@ -84,6 +87,29 @@ fn skin_that_moves_farther_than_bone_is_told_with_its_place() {
     let [_, (_, skin_mm), (_, moving_mm)] = warning.numbers[..] else { panic!("{warning:?}") };
     assert!(moving_mm == 4.0 && skin_mm > 5.0, "{warning:?}");
     assert!(warning.detail.contains("nothing that moves it by more than 4.0 mm"), "{warning:?}");
+}
+
+#[test]
+fn skin_that_turns_with_its_bone_farther_from_the_pivot_does_not_outrun_it() {
+    let mesh = block(Vector::new(50.0, 40.0, 30.0), [5, 4, 3], CellShape::Hex8);
+    let case = Case {
+        segments: vec![CaseSegment { name: "jaw".to_owned(), nodes: set("z_min") }],
+        skin: Some(set("z_max")),
+        allow_unfixed: true,
+        ..case_of(mesh, material(20.0, 0.4))
+    };
+    let angles = Vector::x() * f64::to_radians(45.0);
+    let turned = RigidMovement::about_pivot(angles, Vector::new(20.0, 20.0, 0.0), Vector::zeros());
+    let settings = Settings { method: Method::FemNonlinear, ..Settings::default() };
+    let found = solve(&case, &plan_of(&case, &[turned]), &settings);
+    let farthest = |name: &str| {
+        let nodes = case.volume.node_sets[name].iter();
+        nodes.map(|&node| found.displacement[node as usize].norm()).fold(0.0, f64::max)
+    };
+    assert!(farthest("z_max") > 1.5 * farthest("z_min"));
+    let off = largest_error(&case.volume, &found.displacement, |x| turned.displacement(x));
+    assert!(off < 1e-2, "{off}");
+    assert!(found.warnings.iter().all(|own| own.code != "skin-outruns-plan"));
 }
 
 #[test]

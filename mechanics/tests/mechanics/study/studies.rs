@@ -9,8 +9,8 @@ use mechanics::mesh::sample::block;
 use mechanics::mesh::{CellShape, Vector};
 use mechanics::plan::{PlannedSegment, RigidMovement};
 use mechanics::prediction::{
-    Accepted, Case, CaseSegment, ContactKind, ElementChoice, Method, MethodKind, Plan, RegionNames,
-    Scene, Settings, TissueWindow,
+    Accepted, Case, CaseSegment, ContactKind, ElementChoice, Load, Method, MethodKind, Plan,
+    RegionNames, Scene, Settings, TissueWindow,
 };
 use mechanics::progress::{Phase, Progress, Unobserved};
 use mechanics::study::report::Solved;
@@ -23,7 +23,7 @@ use mechanics::study::{
 };
 
 use crate::prediction::contact_on_bone;
-use crate::scenes::{StopsAfter, case_of, material, set, solve};
+use crate::scenes::{StopsAfter, case_of, exact, material, set, solve};
 
 /// Time stands still, so that reports can be compared whole.
 struct Still;
@@ -194,6 +194,61 @@ fn rows_that_are_the_truth_themselves_are_left_out() {
     let rows: Vec<(&str, u32)> =
         report.rows.iter().map(|row| (row.label.as_str(), row.level)).collect();
     assert_eq!(rows, [("plain", 0), ("quadratic", 0), ("plain", 1)]);
+}
+
+/// A block that forces pull at nodes of its front.
+fn pulled_at_nodes() -> (Case, Plan) {
+    let mesh = block(Vector::new(20.0, 20.0, 10.0), [4, 4, 2], CellShape::Hex8);
+    let case = Case {
+        fixed: vec![set("x_min")],
+        skin: Some(set("z_max")),
+        ..case_of(mesh, material(15.0, 0.3))
+    };
+    let loads = vec![Load::Force { nodes: set("x_max"), force: Vector::z() * 2.0 }];
+    (case, Plan { loads, ..Plan::default() })
+}
+
+#[test]
+fn forces_at_nodes_stay_there_on_finer_meshes_and_that_is_told() {
+    let (case, plan) = pulled_at_nodes();
+    let pulled = case.volume.node_sets["x_max"].len();
+    let mut finer = refine(&case.volume);
+    assert!(finer.node_sets["x_max"].len() > 2 * pulled);
+    // Nodes keep their numbers.
+    finer.node_sets.insert("x_max".to_owned(), case.volume.node_sets["x_max"].clone());
+    let skin = Scene::new(&case, &plan, &Settings::default()).unwrap().skin;
+    let answer = solve(&Case { volume: finer.into(), ..case.clone() }, &plan, &exact());
+    let expected: Vec<Vector> =
+        skin.nodes().iter().map(|&node| answer.displacement[node as usize]).collect();
+    let still = vec![Vector::zeros(); expected.len()];
+    let expected = errors_of(&expected, &still, &skin.surface.point_areas()).mean;
+
+    let scene = |truth| StudyScene {
+        name: "block".to_owned(),
+        case: case.clone(),
+        plans: vec![("pulled".to_owned(), plan.clone())],
+        materials: vec![Materials { by_region: case.materials.clone(), ..Materials::default() }],
+        truth,
+    };
+    let rest = || Truth::Known { displacement: still.clone(), strain: Some(Strain::Small) };
+    let stabilised = || vec![variant("stabilised", ElementChoice::Stabilised)];
+    let report = of(&study(scene(rest()), stabilised(), &[0, 1]));
+    let [coarse, fine] = [0, 1].map(|row| solved(&report.rows[row]));
+    let apart = (fine.skin_mean_mm - expected).abs();
+    assert!(apart < 1e-5 * expected, "{} {expected}", fine.skin_mean_mm);
+    let is_told = |row: &Solved| row.warnings.iter().any(|code| code == "points-refined");
+    assert_eq!([is_told(coarse), is_told(fine)], [false, true], "{:?}", fine.warnings);
+    let [told] = &report.scenes[0].warnings[..] else { panic!("{:?}", report.scenes[0].warnings) };
+    assert_eq!(told.numbers, [("held_nodes", 0.0), ("forces", pulled as f64)]);
+    assert!(told.detail.starts_with("plan \"pulled\": "), "{}", told.detail);
+
+    // So does the truth.
+    let finest = Truth::Refined { times: 1, element: ElementChoice::Plain, strain: Strain::Small };
+    let report = of(&study(scene(finest), stabilised(), &[0]));
+    let error = solved(&report.rows[0]).error.mean;
+    assert!(error < 0.3 * expected && !report.scenes[0].warnings.is_empty(), "{error} {expected}");
+    let alone = of(&study(scene(rest()), stabilised(), &[0]));
+    assert!(alone.scenes[0].warnings.is_empty());
 }
 
 #[test]
@@ -511,6 +566,51 @@ fn a_sweep_of_unknown_regions_or_too_many_values_is_refused() {
     let stiff = Values { young_modulus: vec![-1.0], ..Values::default() };
     let refused = combinations(&base, &[], &BTreeMap::from([("soft".to_owned(), stiff)]));
     assert!(matches!(refused, Err(SweepError::Material { .. })));
+}
+
+/// `*` was swept in regions without an entry of their own alone, under the name of all.
+#[test]
+fn a_sweep_of_all_regions_changes_all_of_them() {
+    let soft = ("soft".to_owned(), material(50.0, 0.45));
+    let base = BTreeMap::from([soft, ("*".to_owned(), material(10.0, 0.4))]);
+    let window = TissueWindow {
+        name: "muscle".to_owned(),
+        from_hu: -30.0,
+        to_hu: 100.0,
+        material: material(300.0, 0.43),
+    };
+    let windows = std::slice::from_ref(&window);
+    let nu = |poisson_ratio: Vec<f64>| Values { poisson_ratio, ..Values::default() };
+    let all = Values { volume_change: vec![0.1], ..nu(vec![0.3]) };
+    let sweep = BTreeMap::from([("*".to_owned(), all.clone())]);
+    let found = combinations(&base, windows, &sweep).unwrap().remove(0);
+    let both = [("soft", material(50.0, 0.3)), ("*", material(10.0, 0.3))];
+    assert_eq!(found.by_region, both.map(|(name, own)| (name.to_owned(), own)).into());
+    assert_eq!(found.tissues["muscle"], material(300.0, 0.3));
+    let growth = [("*".to_owned(), 0.1)];
+    assert_eq!(
+        found.growth.iter().map(|g| (g.region.clone(), g.volume_change)).collect::<Vec<_>>(),
+        growth
+    );
+
+    // What is varied by name is not of all; the rest of its material is.
+    let young = Values { young_modulus: vec![20.0], ..Values::default() };
+    let named = [
+        ("*", Values { poisson_ratio: vec![0.3], ..young }),
+        ("!fat", nu(vec![0.2])),
+        ("soft", nu(vec![0.4])),
+    ];
+    let sweep = named.map(|(name, own)| (name.to_owned(), own)).into();
+    let found = combinations(&base, &[], &sweep).unwrap().remove(0);
+    assert_eq!(found.by_region["soft"], material(20.0, 0.4));
+    assert_eq!(found.by_region["!fat"], material(20.0, 0.2));
+    assert_eq!(found.by_region["*"], material(20.0, 0.3));
+
+    let along = Fibre { young_modulus: 80.0, shear_modulus: None, law: FibreLaw::default() };
+    let fibrous = base["soft"].with_fibre(&along).unwrap();
+    let striped = BTreeMap::from([("soft".to_owned(), fibrous), ("*".to_owned(), base["*"])]);
+    let refused = combinations(&striped, &[], &BTreeMap::from([("*".to_owned(), nu(vec![0.3]))]));
+    assert_eq!(refused.err(), Some(SweepError::Fibres { region: "soft".to_owned() }));
 }
 
 fn row(label: &str, level: u32, wall_s: f64, p95: f64, skin_mean_mm: f64) -> Row {

@@ -10,7 +10,8 @@ use nalgebra::Matrix3;
 use super::edge_equations::{EdgeEquation, EdgeEquations};
 use super::edges::Edges;
 use crate::mesh::{Vector, VolumeMesh};
-use crate::model::fem::membrane::{Membrane, Stretched, Triangle};
+use crate::model::fem::membrane::{Membrane, Triangle};
+use crate::model::fem::stretched_membrane::Stretched;
 
 /// The sides of triangles as edges of cells.
 pub(super) struct Sheet<'a> {

@@ -25,6 +25,9 @@ const MOST_INNER_MIXED: usize = 60;
 const SURE: f64 = 0.01;
 const MOST_STIFF: usize = 400;
 
+/// The smallest relative residual of the linear system of a step, once bones stand still.
+const SHARPEST: f64 = 1e-3;
+
 /// A hierarchy serves this many steps, unless it has grown this much worse.
 const SERVES: usize = 2;
 const WORSE: f64 = 1.5;
@@ -242,6 +245,12 @@ impl Hierarchy {
         let is_worse = found.iterations as f64 > WORSE * self.fresh as f64 + 2.0;
         self.served = if is_worse || !found.is_convex { SERVES } else { self.served + 1 };
     }
+}
+
+/// That residual, at most `most`, after these residuals of rest (Eisenstat, Walker 1996, choice 2).
+pub(super) fn inner_tolerance_at_rest([last, residual]: [f64; 2], wanted: f64, most: f64) -> f64 {
+    let ratio = residual / last;
+    (0.9 * ratio * ratio).clamp(SHARPEST, most).max(0.3 * wanted / residual)
 }
 
 /// Displacements without pressures.

@@ -28,7 +28,9 @@ const ON_THE_WAY: f64 = 1e-3;
 pub(super) fn is_too_much(error: &ModelError) -> bool {
     matches!(
         error,
-        ModelError::Standstill { .. } | ModelError::Solver(SolverError::NotConverged { .. })
+        ModelError::Standstill { .. }
+            | ModelError::ContactAlternates { .. }
+            | ModelError::Solver(SolverError::NotConverged { .. })
     )
 }
 

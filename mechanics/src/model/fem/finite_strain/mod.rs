@@ -296,6 +296,7 @@ impl<'a> FiniteStrain<'a> {
         ) {
             Ok((tissue, Ending::Rest(rest))) => return Ok((tissue, *rest)),
             Ok((_, Ending::Jam(_) | Ending::Near(..))) | Err(ModelError::Standstill { .. }) => {}
+            Err(ModelError::ContactAlternates { .. }) => {}
             Err(ModelError::Solver(SolverError::NotConverged { .. })) => {}
             Err(error) => return Err(error),
         }

@@ -5,19 +5,17 @@
 //! changes of hexahedra and wedges (`bricks`). Once s = 1 the energy has to fall too, where neither makes of its least a saddle.
 
 use super::balance::Balance;
-use super::direction::{Direction, Directions, Remaining};
-use super::newton_state::{Ending, NewtonExits, Question, Rest, Start};
+use super::direction::{Direction, Directions, Remaining, inner_tolerance_at_rest};
+use super::newton_state::{Ending, NewtonExits, Question, Rest, Start, advanced};
 use super::tissue::{Deformed, Rounding, Tissue};
 use super::touching::Touching;
 use crate::mesh::Vector;
 use crate::model::problem::{LoadCase, ModelError};
 use crate::solver::{NewtonReport, SolveReport, SolverError, tell};
 
-/// Relative residual of the linear system of a step while bones move, without pressures and with them, and the bounds of it
-/// afterwards.
+/// Relative residual of the linear system of a step while bones move, without pressures and with them.
 const ADVANCING: f64 = 0.01;
 const ADVANCING_MIXED: f64 = 0.003;
-const SHARPEST: f64 = 1e-3;
 
 /// Steps this short, this often one after the other, are a standstill.
 const SHORT: f64 = 0.01;
@@ -122,7 +120,7 @@ impl<'a, 'b> Newton<'a, 'b> {
                 }
             }
             if self.history.len() > most_steps {
-                return Err(self.not_converged().into());
+                return Err(self.no_rest(&deformed));
             }
             self.step(&deformed)?;
             if until.jammed && self.jammed >= MOST_JAMMED {
@@ -153,9 +151,8 @@ impl<'a, 'b> Newton<'a, 'b> {
 
     /// One step: a direction, how far, and the same of the movement of the bones.
     fn step(&mut self, deformed: &Deformed) -> Result<(), ModelError> {
-        let residual = self.balance.residual;
         let Question { share, out_of_balance, .. } = self.question;
-        let rests = self.unsettled && residual > out_of_balance;
+        let rests = self.unsettled && self.balance.residual > out_of_balance;
         let ahead = if rests { 0.0 } else { self.ahead.min(share - self.made) };
         let direction = self.direction(deformed, ahead)?;
         if direction.is_convex || self.means.is_empty() {
@@ -178,9 +175,9 @@ impl<'a, 'b> Newton<'a, 'b> {
         direction: Direction,
         ahead: f64,
     ) -> Result<(), ModelError> {
-        let (residual, Question { share, out_of_balance, .. }) =
-            (self.balance.residual, self.question);
-        self.unsettled = !direction.is_convex || (self.unsettled && residual > out_of_balance);
+        let Question { share, out_of_balance, .. } = self.question;
+        let is_out = self.balance.residual > out_of_balance;
+        self.unsettled = !direction.is_convex || (self.unsettled && is_out);
         let longest = self.tissue.longest_step(&self.x, &direction.positions);
         if let Some(touching) = &mut self.touching {
             touching.press(direction.multipliers);
@@ -239,16 +236,13 @@ impl<'a, 'b> Newton<'a, 'b> {
         self.directions.of(deformed, self.question.constrained, &remaining, touching)
     }
 
-    /// Eisenstat, Walker 1996, choice 2, once the bones stand still.
     fn inner_tolerance(&self) -> f64 {
         if self.made < self.question.share {
             return if self.has_pressures() { ADVANCING_MIXED } else { ADVANCING };
         }
         let last = self.history.iter().rev().nth(1).copied().unwrap_or(1.0);
         let wanted = self.question.tolerance.relative_residual;
-        let residual = self.balance.residual;
-        let ratio = residual / last;
-        (0.9 * ratio * ratio).clamp(SHARPEST, 2.0 * ADVANCING).max(0.3 * wanted / residual)
+        inner_tolerance_at_rest([last, self.balance.residual], wanted, 2.0 * ADVANCING)
     }
 
     /// What of movement and load is made in this step, with the forces that are not balanced yet, for each node.
@@ -283,8 +277,7 @@ impl<'a, 'b> Newton<'a, 'b> {
             forces.iter().zip(step).map(|(force, d)| force.dot(d)).sum()
         };
         let (pull, work) = (along(&deformed.forces), along(&self.acting()));
-        let energy = self.tissue.energy(&self.x);
-        let mut taken = longest;
+        let (energy, mut taken) = (self.tissue.energy(&self.x), longest);
         for _ in 0..MOST_HALVINGS {
             let there: Vec<Vector> = self.x.iter().zip(step).map(|(x, d)| x + d * taken).collect();
             let change = self.tissue.energy(&there) - energy - taken * work;
@@ -332,6 +325,19 @@ impl<'a, 'b> Newton<'a, 'b> {
     fn positions(&self) -> Vec<Vector> {
         let places = self.question.constrained.dof_map.ordering.place.iter();
         places.map(|&row| self.x[row as usize]).collect()
+    }
+
+    /// Why there is no rest after so many steps: forces out of balance, contact, or bones on their way.
+    fn no_rest(&mut self, deformed: &Deformed) -> ModelError {
+        if self.balance.rest() > self.question.tolerance.relative_residual {
+            return self.not_converged().into();
+        }
+        let (displacement, steps) = (self.displacement(), self.history.len());
+        let Some(touching) = self.touching.as_mut().filter(|_| self.made >= self.question.share)
+        else {
+            return self.standstill(deformed);
+        };
+        touching.alternates(&displacement, self.made, steps, self.balance.residual)
     }
 
     fn not_converged(&self) -> SolverError {
@@ -390,10 +396,4 @@ impl<'a, 'b> Newton<'a, 'b> {
             }),
         })
     }
-}
-
-/// The share of the movement after one more part of it, on the way to one.
-fn advanced(made: f64, more: f64, wanted: f64) -> f64 {
-    let made = made + more;
-    if wanted - made < 1e-12 { wanted } else { made }
 }

@@ -131,3 +131,9 @@ impl<'a> Rest<'a> {
         }
     }
 }
+
+/// The share of the movement after one more part of it, on the way to one.
+pub(super) fn advanced(made: f64, more: f64, wanted: f64) -> f64 {
+    let made = made + more;
+    if wanted - made < 1e-12 { wanted } else { made }
+}

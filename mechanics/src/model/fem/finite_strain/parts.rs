@@ -115,7 +115,9 @@ fn in_part(question: Question, share: f64, begun: usize) -> Question {
 /// Steps with those before.
 fn steps_of(error: &ModelError) -> usize {
     match error {
-        ModelError::Standstill { steps, .. } => *steps,
+        ModelError::Standstill { steps, .. } | ModelError::ContactAlternates { steps, .. } => {
+            *steps
+        }
         ModelError::Solver(SolverError::NotConverged { iterations, .. }) => *iterations,
         _ => 0,
     }

@@ -4,7 +4,8 @@ use super::elements::rounded;
 use super::problem::FiniteStrain;
 use crate::mesh::Vector;
 use crate::model::dofs::{DofMap, add_cell};
-use crate::model::fem::membrane::{Stretched, Triangle};
+use crate::model::fem::membrane::Triangle;
+use crate::model::fem::stretched_membrane::Stretched;
 use crate::solver::Block;
 use crate::solver::half_matrix::HalfMatrix;
 

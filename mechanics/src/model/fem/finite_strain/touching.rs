@@ -5,10 +5,10 @@
 //! K a = G^T (m' - m), g(x + d + a) >= 0, m' >= 0, m' g = 0, and the step is d + a. Where K is not positive definite d is no solution,
 //! and a answers to what it leaves, too: tissue that buckles by itself may be held by what it presses on.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use crate::boundary::Constraint;
-use crate::boundary::contact::{Alike, CLOSED_MM, FacingSurfaces, with_pressing};
+use crate::boundary::contact::{Alike, CLOSED_MM, ContactRow, FacingSurfaces, with_pressing};
 use crate::mesh::Vector;
 use crate::model::dofs::DofMap;
 use crate::model::fem::contact::{
@@ -51,6 +51,8 @@ pub(super) struct Touching<'a> {
     last_moved_mm: f64,
     /// Whether the set that presses repeated at the last step.
     repeats: bool,
+    /// A node that began or ceased to press in the last step.
+    changed: Option<u32>,
     effort: Effort,
     /// What pressed at the end of each load step.
     at_load_steps: Vec<PressedStep>,
@@ -98,6 +100,7 @@ impl<'a> Touching<'a> {
             last: Vec::new(),
             last_moved_mm: 0.0,
             repeats: true,
+            changed: None,
             effort: Effort::default(),
             at_load_steps: Vec::new(),
         }
@@ -185,6 +188,7 @@ impl<'a> Touching<'a> {
         }
         self.repeats = true;
         if set.presses.iter().all(|presses| !presses) {
+            self.changed = self.kept_rows.pressing.pop_first();
             self.kept_rows.pressing.clear();
             return Ok(None);
         }
@@ -211,7 +215,9 @@ impl<'a> Touching<'a> {
         self.effort.count(&settled);
         self.repeats = settled.repeats;
         let (point, active) = (settled.point, settled.rows);
-        self.kept_rows.pressing = active.iter().map(|&row| rows[row].node).collect();
+        let pressing: BTreeSet<u32> = active.iter().map(|&row| rows[row].node).collect();
+        self.changed = self.kept_rows.pressing.symmetric_difference(&pressing).next().copied();
+        self.kept_rows.pressing = pressing;
         let mut multipliers = vec![0.0; rows.len()];
         active.iter().zip(&point.multipliers).for_each(|(&row, m)| multipliers[row] = *m);
         Ok(Some(Change { step: point.x, multipliers }))
@@ -239,6 +245,26 @@ impl<'a> Touching<'a> {
     /// What ends without an answer.
     pub fn unsettled(&self, moved_mm: f64) -> ModelError {
         ModelError::ContactUnsettled { passes: self.effort.passes, moved_mm }
+    }
+
+    /// What ends after so many steps with forces in balance to a residual: points that begin and cease to press, or go deeper than
+    /// what they face each time that this is looked for.
+    pub fn alternates(
+        &mut self,
+        displacement: &[Vector],
+        share: f64,
+        steps: usize,
+        residual: f64,
+    ) -> ModelError {
+        self.late_rounds = 0;
+        self.look(displacement, share, true);
+        let gap = |row: &ContactRow| row.gap_after(displacement, share);
+        let nearest = self.kept_rows.rows.iter().min_by(|a, b| gap(a).total_cmp(&gap(b)));
+        let deepest = nearest.filter(|row| gap(row) < -CLOSED_MM).map(|row| row.node);
+        let node = deepest.or(self.changed).or(nearest.map(|row| row.node));
+        let place = node.map(|node| self.surfaces.rest_positions()[node as usize].into());
+        let depth_mm = self.deepest(displacement, share);
+        ModelError::ContactAlternates { steps, residual, depth_mm, place }
     }
 
     /// The contact of an answer; none where nothing presses, at the end of load steps either.

@@ -2,11 +2,11 @@
 
 use std::collections::HashMap;
 
-use crate::mesh::Vector;
+use super::Vector;
 
 /// Numbered points in cubes as wide as one searches.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Cubes {
+pub struct Cubes {
     width: f64,
     numbers: HashMap<[i64; 3], Vec<u32>>,
 }
@@ -25,6 +25,15 @@ impl Cubes {
     pub fn around(&self, place: &Vector) -> impl Iterator<Item = u32> + '_ {
         let [x, y, z] = self.cube(place);
         let cubes = (0..27).map(move |n| [x + n % 3 - 1, y + n / 3 % 3 - 1, z + n / 9 - 1]);
+        cubes.filter_map(|cube| self.numbers.get(&cube)).flatten().copied()
+    }
+
+    /// The numbers of all points in a box, by its lowest and its highest corner, and of some beside it.
+    pub fn in_box(&self, low: &Vector, high: &Vector) -> impl Iterator<Item = u32> + '_ {
+        let (first, last) = (self.cube(low), self.cube(high));
+        let along = move |axis: usize| first[axis]..=last[axis];
+        let cubes = along(0).flat_map(move |x| along(1).map(move |y| [x, y]));
+        let cubes = cubes.flat_map(move |[x, y]| along(2).map(move |z| [x, y, z]));
         cubes.filter_map(|cube| self.numbers.get(&cube)).flatten().copied()
     }
 

@@ -1,0 +1,153 @@
+//! The clock of the database as retention sees it: once an hour its time is stored. A clock that is suddenly far ahead, as that of a
+//! machine which starts without a battery may be, would make everything too old, so that nothing is erased by it until it is confirmed,
+//! goes back, or has run on for long.
+
+use super::database::{Row, query};
+use super::{Store, StoreError};
+
+const HOUR_MS: i64 = 3600 * 1000;
+const DAY_MS: i64 = 24 * HOUR_MS;
+/// A time so far beyond the newest one is doubted.
+const AHEAD_MS: i64 = 2 * DAY_MS;
+/// A doubted clock that has gone on for so long is trusted.
+const CONTINUOUS_MS: i64 = 7 * DAY_MS;
+
+const SEEN: &str = "SELECT trusted, latest, doubted FROM seen_clock WHERE number = 1 FOR UPDATE";
+const READ: &str = "SELECT trusted, latest, doubted FROM seen_clock WHERE number = 1";
+const NOW: &str = "SELECT now_ms FROM clock";
+const NEWEST: &str = "SELECT MAX(newest) FROM (SELECT MAX(updated) AS newest FROM cases \
+     UNION ALL SELECT MAX(updated) FROM jobs UNION ALL SELECT MAX(created) FROM meshes) AS times";
+const STORE: &str = "INSERT INTO seen_clock (number, trusted, latest, doubted) VALUES (1, $1, $2, $3) \
+     ON CONFLICT (number) DO UPDATE SET trusted = excluded.trusted, latest = excluded.latest, \
+     doubted = excluded.doubted";
+
+/// Times in ms since 1970.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Seen {
+    trusted: i64,
+    latest: i64,
+    doubted: Option<i64>,
+}
+
+/// A clock that is far ahead of the newest time at which this deployment was seen to run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ClockDoubt {
+    pub ahead_h: i64,
+    /// After so many hours it is trusted, if it goes on as it does.
+    pub trusted_in_h: i64,
+}
+
+impl Seen {
+    fn at(self, now: i64) -> Seen {
+        let trusted = Seen { trusted: self.trusted.max(now), latest: now, doubted: None };
+        if now <= self.trusted.saturating_add(AHEAD_MS) {
+            return trusted;
+        }
+        let goes_on = now.abs_diff(self.latest) <= AHEAD_MS as u64;
+        let from = self.doubted.filter(|_| goes_on).map_or(now, |from| from.min(now));
+        if now - from >= CONTINUOUS_MS {
+            return trusted;
+        }
+        Seen { trusted: self.trusted, latest: now, doubted: Some(from) }
+    }
+
+    fn doubt(self) -> Option<ClockDoubt> {
+        self.doubted.map(|from| ClockDoubt {
+            ahead_h: (self.latest - self.trusted) / HOUR_MS,
+            trusted_in_h: (CONTINUOUS_MS - (self.latest - from) + HOUR_MS - 1) / HOUR_MS,
+        })
+    }
+}
+
+fn seen(row: &Row) -> Result<Seen, sqlx::Error> {
+    Ok(Seen {
+        trusted: row.try_get("trusted")?,
+        latest: row.try_get("latest")?,
+        doubted: row.try_get("doubted")?,
+    })
+}
+
+impl Store {
+    /// Stores the time of now; the doubt in it, if there is one. What ran before it was stored is as new as its newest row.
+    pub(super) async fn note_clock(&self) -> Result<Option<ClockDoubt>, StoreError> {
+        let mut transaction = self.database.begin().await?;
+        let row = query(SEEN).fetch_optional(&mut transaction).await?;
+        let now: i64 = query(NOW).fetch_one(&mut transaction).await?.try_get(0)?;
+        let before = match row {
+            Some(row) => seen(&row)?,
+            None => {
+                let newest = query(NEWEST).fetch_one(&mut transaction).await?;
+                let newest = newest.try_get::<Option<i64>, _>(0)?.unwrap_or(now);
+                Seen { trusted: newest, latest: newest, doubted: None }
+            }
+        };
+        let Seen { trusted, latest, doubted } = before.at(now);
+        let stored = query(STORE).bind(trusted).bind(latest).bind(doubted);
+        stored.execute(&mut transaction).await?;
+        transaction.commit().await?;
+        Ok(before.at(now).doubt())
+    }
+
+    /// The doubt in the clock when it was last looked at.
+    pub async fn clock_doubt(&self) -> Result<Option<ClockDoubt>, StoreError> {
+        let row = query(READ).fetch_optional(self.database.reader()).await?;
+        let seen = row.as_ref().map(seen).transpose()?;
+        Ok(seen.and_then(Seen::doubt))
+    }
+
+    /// Takes the time of now for right.
+    pub async fn trust_clock(&self) -> Result<(), StoreError> {
+        let mut transaction = self.database.begin().await?;
+        let now: i64 = query(NOW).fetch_one(&mut transaction).await?.try_get(0)?;
+        let stored = query(STORE).bind(now).bind(now).bind(None::<i64>);
+        stored.execute(&mut transaction).await?;
+        transaction.commit().await?;
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const START: i64 = 20_000 * DAY_MS;
+
+    fn right() -> Seen {
+        Seen { trusted: START, latest: START, doubted: None }
+    }
+
+    /// Looked at every hour from a time on, for so many hours.
+    fn run(seen: Seen, from: i64, hours: i64) -> Seen {
+        (0..=hours).fold(seen, |seen, hour| seen.at(from + hour * HOUR_MS))
+    }
+
+    #[test]
+    fn a_clock_a_year_ahead_is_doubted_until_it_goes_back_or_has_gone_on_for_a_week() {
+        let year = START + 366 * DAY_MS;
+        let ahead = right().at(year);
+        let told = ClockDoubt { ahead_h: 366 * 24, trusted_in_h: 7 * 24 };
+        assert_eq!(ahead.doubt(), Some(told));
+        let back = ahead.at(START + HOUR_MS);
+        assert_eq!((back.doubt(), back.trusted), (None, START + HOUR_MS));
+        assert!(run(ahead, year, 7 * 24 - 1).doubt().is_some());
+        let long = run(ahead, year, 7 * 24);
+        assert_eq!((long.doubt(), long.trusted), (None, year + 7 * DAY_MS));
+    }
+
+    #[test]
+    fn a_doubted_clock_that_stands_still_or_jumps_again_is_doubted_anew() {
+        let year = START + 366 * DAY_MS;
+        let days = run(right(), year, 6 * 24);
+        assert_eq!(days.doubt().map(|doubt| doubt.trusted_in_h), Some(24));
+        let later = days.at(year + 10 * DAY_MS);
+        assert_eq!(later.doubt().map(|doubt| doubt.trusted_in_h), Some(7 * 24));
+    }
+
+    #[test]
+    fn a_clock_that_goes_on_after_a_night_or_was_behind_for_a_while_is_not_doubted() {
+        assert_eq!(right().at(START + 2 * DAY_MS).doubt(), None);
+        let behind = right().at(DAY_MS);
+        assert_eq!((behind.doubt(), behind.trusted), (None, START));
+        assert_eq!(behind.at(START + DAY_MS).doubt(), None);
+    }
+}
