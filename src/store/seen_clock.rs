@@ -23,7 +23,7 @@ const STORE: &str = "INSERT INTO seen_clock (number, trusted, latest, doubted) V
 
 /// Times in ms since 1970.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Seen {
+struct ClockRecord {
     trusted: i64,
     latest: i64,
     doubted: Option<i64>,
@@ -37,9 +37,9 @@ pub struct ClockDoubt {
     pub trusted_in_h: i64,
 }
 
-impl Seen {
-    fn at(self, now: i64) -> Seen {
-        let trusted = Seen { trusted: self.trusted.max(now), latest: now, doubted: None };
+impl ClockRecord {
+    fn at(self, now: i64) -> ClockRecord {
+        let trusted = ClockRecord { trusted: self.trusted.max(now), latest: now, doubted: None };
         if now <= self.trusted.saturating_add(AHEAD_MS) {
             return trusted;
         }
@@ -48,7 +48,7 @@ impl Seen {
         if now - from >= CONTINUOUS_MS {
             return trusted;
         }
-        Seen { trusted: self.trusted, latest: now, doubted: Some(from) }
+        ClockRecord { trusted: self.trusted, latest: now, doubted: Some(from) }
     }
 
     fn doubt(self) -> Option<ClockDoubt> {
@@ -59,8 +59,8 @@ impl Seen {
     }
 }
 
-fn seen(row: &Row) -> Result<Seen, sqlx::Error> {
-    Ok(Seen {
+fn seen(row: &Row) -> Result<ClockRecord, sqlx::Error> {
+    Ok(ClockRecord {
         trusted: row.try_get("trusted")?,
         latest: row.try_get("latest")?,
         doubted: row.try_get("doubted")?,
@@ -78,10 +78,10 @@ impl Store {
             None => {
                 let newest = query(NEWEST).fetch_one(&mut transaction).await?;
                 let newest = newest.try_get::<Option<i64>, _>(0)?.unwrap_or(now);
-                Seen { trusted: newest, latest: newest, doubted: None }
+                ClockRecord { trusted: newest, latest: newest, doubted: None }
             }
         };
-        let Seen { trusted, latest, doubted } = before.at(now);
+        let ClockRecord { trusted, latest, doubted } = before.at(now);
         let stored = query(STORE).bind(trusted).bind(latest).bind(doubted);
         stored.execute(&mut transaction).await?;
         transaction.commit().await?;
@@ -92,7 +92,7 @@ impl Store {
     pub async fn clock_doubt(&self) -> Result<Option<ClockDoubt>, StoreError> {
         let row = query(READ).fetch_optional(self.database.reader()).await?;
         let seen = row.as_ref().map(seen).transpose()?;
-        Ok(seen.and_then(Seen::doubt))
+        Ok(seen.and_then(ClockRecord::doubt))
     }
 
     /// Takes the time of now for right.
@@ -112,12 +112,12 @@ mod tests {
 
     const START: i64 = 20_000 * DAY_MS;
 
-    fn right() -> Seen {
-        Seen { trusted: START, latest: START, doubted: None }
+    fn right() -> ClockRecord {
+        ClockRecord { trusted: START, latest: START, doubted: None }
     }
 
     /// Looked at every hour from a time on, for so many hours.
-    fn run(seen: Seen, from: i64, hours: i64) -> Seen {
+    fn run(seen: ClockRecord, from: i64, hours: i64) -> ClockRecord {
         (0..=hours).fold(seen, |seen, hour| seen.at(from + hour * HOUR_MS))
     }
 

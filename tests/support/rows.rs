@@ -84,7 +84,7 @@ pub async fn blob_count(store: &Store) -> usize {
 
 /// As the service reads it.
 const MESH_REPORT: &str = r#"{"id":"","sha256":"","bytes":0,"format":"vtu","created":"","report":{"kind":"volume",
-    "nodes":0,"triangles":0,"bounding_box":[[0,0,0],[0,0,0]],"diagonal":0,"warnings":[]}}"#;
+    "nodes":0,"triangles":0,"bounding_box":[0,0,0,0,0,0],"diagonal":0,"warnings":[]}}"#;
 
 /// A mesh of these bytes; other options make another mesh of the same bytes.
 pub fn mesh(content: &'static str, options: &str) -> NewMesh {

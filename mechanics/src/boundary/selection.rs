@@ -3,6 +3,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
+use rayon::prelude::*;
+
 use crate::mesh::closest_point::SurfaceSearch;
 use crate::mesh::ignored::listed;
 use crate::mesh::{ArrayUse, TriangleSurface, VolumeMesh};
@@ -47,11 +49,13 @@ pub struct Selector<'a> {
     pub boundary_nodes: &'a [u32],
     /// For each node of the mesh whether it belongs to a cell; others are never selected.
     pub is_in_cell: &'a [bool],
+    /// How far the boundary nodes, in their order, are from surfaces that were asked for, in mm, by the names of these.
+    pub distances: &'a mut BTreeMap<String, Vec<f64>>,
 }
 
 impl Selector<'_> {
     /// The selected nodes, ascending and without repeats; never none.
-    pub fn select(&self, selection: &NodeSelection) -> Result<Vec<u32>, SelectionError> {
+    pub fn select(&mut self, selection: &NodeSelection) -> Result<Vec<u32>, SelectionError> {
         let mut nodes = self.collect(selection)?;
         nodes.sort_unstable();
         nodes.dedup();
@@ -66,7 +70,7 @@ impl Selector<'_> {
         }
     }
 
-    fn collect(&self, selection: &NodeSelection) -> Result<Vec<u32>, SelectionError> {
+    fn collect(&mut self, selection: &NodeSelection) -> Result<Vec<u32>, SelectionError> {
         match selection {
             NodeSelection::NodeSet(name) => {
                 let missing = || SelectionError::UnknownSet(self.mesh.missing_set(name));
@@ -117,15 +121,19 @@ impl Selector<'_> {
             .collect())
     }
 
-    fn near(&self, name: &str, distance: f64) -> Result<Vec<u32>, SelectionError> {
-        let surface = self
-            .surfaces
-            .get(name)
-            .ok_or_else(|| SelectionError::UnknownSurface(name.to_owned()))?;
-        let search = SurfaceSearch::new(surface)
-            .map_err(|_| SelectionError::FlatSurface(name.to_owned()))?;
-        let is_near =
-            |node: &&u32| search.closest(&self.mesh.nodes[**node as usize]).distance <= distance;
-        Ok(self.boundary_nodes.iter().filter(is_near).copied().collect())
+    fn near(&mut self, name: &str, distance: f64) -> Result<Vec<u32>, SelectionError> {
+        if !self.distances.contains_key(name) {
+            let surface = self
+                .surfaces
+                .get(name)
+                .ok_or_else(|| SelectionError::UnknownSurface(name.to_owned()))?;
+            let search = SurfaceSearch::new(surface)
+                .map_err(|_| SelectionError::FlatSurface(name.to_owned()))?;
+            let from = |&node: &u32| search.closest(&self.mesh.nodes[node as usize]).distance;
+            let distances = self.boundary_nodes.par_iter().map(from).collect();
+            self.distances.insert(name.to_owned(), distances);
+        }
+        let nodes = self.boundary_nodes.iter().zip(&self.distances[name]);
+        Ok(nodes.filter(|(_, from)| **from <= distance).map(|(node, _)| *node).collect())
     }
 }

@@ -30,6 +30,8 @@ pub(super) struct Check<'a> {
     pub(super) boundary: &'a [BoundaryFace],
     pub(super) boundary_nodes: Vec<u32>,
     is_in_cell: Vec<bool>,
+    /// As `Selector` keeps them.
+    distances: BTreeMap<String, Vec<f64>>,
     pub(super) problems: Problems,
     pub(super) warnings: Vec<Warning>,
     /// The conditions so far.
@@ -42,18 +44,18 @@ impl<'a> Check<'a> {
             boundary.iter().flat_map(|face| face.nodes()).copied().collect();
         boundary_nodes.sort_unstable();
         boundary_nodes.dedup();
-        let problems = Problems::default();
-        let (warnings, stated) = (Vec::new(), Vec::new());
-        let is_in_cell = case.volume.is_in_cell();
-        Check { case, boundary, boundary_nodes, is_in_cell, problems, warnings, stated }
+        let (problems, warnings, stated) = (Problems::default(), Vec::new(), Vec::new());
+        let (is_in_cell, distances) = (case.volume.is_in_cell(), BTreeMap::new());
+        Check { case, boundary, boundary_nodes, is_in_cell, distances, problems, warnings, stated }
     }
 
     pub(super) fn select(&mut self, selection: &NodeSelection, pointer: &str) -> Vec<u32> {
-        let selector = Selector {
+        let mut selector = Selector {
             mesh: &self.case.volume,
             surfaces: &self.case.surfaces,
             boundary_nodes: &self.boundary_nodes,
             is_in_cell: &self.is_in_cell,
+            distances: &mut self.distances,
         };
         let selected = selector.select(selection);
         selected.unwrap_or_else(|error| {

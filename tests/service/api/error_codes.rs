@@ -66,7 +66,9 @@ fn sources(folder: &Path) -> Vec<PathBuf> {
 }
 
 /// Words that look like codes: of a file format, and of errors of the rows of a study.
-const NO_WARNINGS: [&str; 6] = [
+const NO_WARNINGS: [&str; 8] = [
+    "answer-absurd",
+    "budget-exceeded",
     "left-posterior-superior",
     "right-anterior-superior",
     "missing-material",
