@@ -3,6 +3,7 @@
 pub mod area_sampling;
 pub mod bisection;
 mod bounds;
+pub mod cell_overlap;
 pub mod check;
 pub mod closest_point;
 pub mod clusters;

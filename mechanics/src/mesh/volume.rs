@@ -113,6 +113,11 @@ impl Cells {
         self.nodes.row_mut(cell)
     }
 
+    /// The cells around each of so many nodes, ascending.
+    pub fn around(&self, nodes: usize) -> Rows<u32> {
+        self.nodes.inverted(nodes)
+    }
+
     /// All cells in order: shape and nodes.
     pub fn iter(&self) -> impl ExactSizeIterator<Item = (CellShape, &[u32])> {
         (0..self.len()).map(|cell| (self.shapes[cell], self.nodes(cell)))

@@ -3,11 +3,11 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::case::ContactKind;
-use super::contact_overlap::{Overlap, deepest_overlap};
 use super::numerical_error::{ErrorOrReason, at_last_tangent, estimate_in_contact};
 use super::scene::Scene;
 use crate::boundary::NodeClass;
 use crate::boundary::contact::{BoneInside, Embedded, FacingSurfaces, bones_inside};
+use crate::mesh::cell_overlap::{Overlap, deepest_overlap};
 use crate::mesh::{Vector, Warning};
 use crate::model::fem::contact::{
     Contact, ContactProblem, Effort, PressedStep, PressingRow, SETTLED_MM, forces_of,

@@ -9,7 +9,6 @@ mod build;
 pub mod case;
 mod check;
 mod contact;
-mod contact_overlap;
 mod cut;
 mod element_choice;
 mod error_code;

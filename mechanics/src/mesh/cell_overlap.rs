@@ -1,16 +1,24 @@
 //! Depth of overlap of a meshed boundary: its nodes that lie in cells which are not theirs.
 //!
-//! What such a node lies in is of another body, or of its own as where lips pass through each other. From another body
-//! the way out is that to the closest place of its boundary; in its own it is that to the closest boundary which faces the node,
-//! because its own surroundings are closer. A node outside of all cells has no depth, however oddly triangles cross around it.
+//! The depth of such a node is its way out through the tissue that it lies in: cells are visited from that which it is in, the nearest
+//! first, up to the closest place of their boundary. Tissue around the node itself is not taken for that unless it is connected within
+//! this distance, and a node outside of all cells has no depth, however oddly triangles cross around it.
+
+use std::cmp::Ordering;
+use std::collections::{BTreeSet, BinaryHeap};
 
 use parry3d_f64::bounding_volume::Aabb;
 use parry3d_f64::math::Vector as ParryVector;
 use parry3d_f64::partitioning::{Bvh, BvhBuildStrategy};
+use parry3d_f64::query::PointQuery;
+use parry3d_f64::shape::Triangle;
 use rayon::prelude::*;
 
-use crate::mesh::disjoint_sets::DisjointSets;
-use crate::mesh::{Cells, SurfaceSearch, TriangleSurface, Vector, bounds_of};
+use super::{Cells, TriangleSurface, Vector, bounds_of};
+use crate::rows::Rows;
+
+/// Distances that differ by less than this part are one.
+const ROUNDING: f64 = 1e-9;
 
 /// The node that lies deepest in cells that are not its own.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,7 +30,7 @@ pub struct Overlap {
 
 /// The deepest overlap of cells whose nodes are at `positions`, in mm, and whose boundary is a surface with the numbers of nodes as
 /// those of its points. Positions have to be finite.
-pub(super) fn deepest_overlap(
+pub fn deepest_overlap(
     cells: &Cells,
     positions: &[Vector],
     boundary: &TriangleSurface,
@@ -39,7 +47,7 @@ pub(super) fn deepest_overlap(
             !nodes.contains(&node_of[point as usize])
                 && contains(cells, cell, positions, &boundary.points[point as usize])
         };
-        tree.intersect_aabb(&around).filter(is_inside).map(|point| (point, nodes[0])).collect()
+        tree.intersect_aabb(&around).filter(is_inside).map(|point| (point, cell as u32)).collect()
     };
     let mut inside: Vec<(u32, u32)> =
         (0..cells.len()).into_par_iter().flat_map_iter(strangers).collect();
@@ -47,29 +55,119 @@ pub(super) fn deepest_overlap(
         return None;
     }
     inside.sort_unstable();
-    let mut bodies = DisjointSets::new(positions.len());
-    for (_, nodes) in cells.iter() {
-        nodes.iter().for_each(|&node| bodies.join(nodes[0], node));
-    }
-    let body_of: Vec<u32> = (0..positions.len() as u32).map(|node| bodies.root(node)).collect();
-    let body = |point: u32| body_of[node_of[point as usize] as usize];
-    let (search, normals) = (SurfaceSearch::new(boundary).ok()?, boundary.point_normals());
+    let ways = WaysOut::new(cells, positions, boundary, node_of);
     let depth = |&(point, stranger): &(u32, u32)| {
-        let (own, other) = (body(point), body_of[stranger as usize]);
-        let at = boundary.points[point as usize];
-        let counts = |triangle: usize| {
-            let corners = &boundary.triangles[triangle];
-            let normal = &normals[point as usize];
-            body(corners[0]) == other
-                && !corners.contains(&point)
-                && (own != other || boundary.area_vector(triangle).dot(normal) < 0.0)
-        };
-        let closest = search.closest_where(&at, counts)?;
-        let is_behind = (closest.point - at).dot(&search.pseudo_normal(&closest)) > 0.0;
-        is_behind.then_some(Overlap { depth: closest.distance, at })
+        let depth = ways.shortest(point, stranger)?;
+        Some(Overlap { depth, at: boundary.points[point as usize] })
     };
     let found: Vec<Overlap> = inside.par_iter().filter_map(depth).collect();
     found.into_iter().max_by(|one, other| one.depth.total_cmp(&other.depth))
+}
+
+/// Cells and their boundary, from node to node.
+struct WaysOut<'a> {
+    cells: &'a Cells,
+    positions: &'a [Vector],
+    boundary: &'a TriangleSurface,
+    node_of: &'a [u32],
+    /// The cells around each node.
+    around: Rows<u32>,
+    /// The triangles of the boundary around each node.
+    fans: Rows<u32>,
+}
+
+/// A cell that is to be visited, the nearest first.
+#[derive(PartialEq)]
+struct Ahead {
+    squared_distance: f64,
+    cell: u32,
+}
+
+impl Eq for Ahead {}
+
+impl Ord for Ahead {
+    fn cmp(&self, other: &Self) -> Ordering {
+        let nearer = other.squared_distance.total_cmp(&self.squared_distance);
+        nearer.then(other.cell.cmp(&self.cell))
+    }
+}
+
+impl PartialOrd for Ahead {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl<'a> WaysOut<'a> {
+    fn new(
+        cells: &'a Cells,
+        positions: &'a [Vector],
+        boundary: &'a TriangleSurface,
+        node_of: &'a [u32],
+    ) -> Self {
+        let mut corners = Rows::default();
+        for triangle in &boundary.triangles {
+            corners.push(triangle.map(|corner| node_of[corner as usize]));
+        }
+        let (around, fans) = (cells.around(positions.len()), corners.inverted(positions.len()));
+        WaysOut { cells, positions, boundary, node_of, around, fans }
+    }
+
+    /// From a point of the boundary in a cell, in mm; none where it lies in front of the boundary after all, as beside a face that is
+    /// not flat.
+    fn shortest(&self, point: u32, first: u32) -> Option<f64> {
+        let at = &self.boundary.points[point as usize];
+        let (mut shortest, mut is_behind) = (f64::INFINITY, false);
+        let mut seen = BTreeSet::from([first]);
+        let mut ahead = BinaryHeap::from([Ahead { squared_distance: 0.0, cell: first }]);
+        while let Some(Ahead { squared_distance, cell }) = ahead.pop() {
+            if squared_distance >= shortest * shortest {
+                break;
+            }
+            let nodes = self.cells.nodes(cell as usize);
+            let triangles = nodes.iter().flat_map(|&node| self.fans.row(node as usize));
+            for &triangle in triangles {
+                let (distance, behind) = self.distance(at, triangle, (point, nodes));
+                // At an edge it is behind one of both.
+                if distance < shortest * (1.0 - ROUNDING) {
+                    (shortest, is_behind) = (distance, behind);
+                } else if distance <= shortest * (1.0 + ROUNDING) {
+                    is_behind |= behind;
+                }
+            }
+            for &next in nodes.iter().flat_map(|&node| self.around.row(node as usize)) {
+                if seen.insert(next) {
+                    let squared_distance = self.squared_distance(at, next);
+                    ahead.push(Ahead { squared_distance, cell: next });
+                }
+            }
+        }
+        is_behind.then_some(shortest)
+    }
+
+    /// From a triangle of the boundary that is of a cell, but not around the point; and whether the point is behind it.
+    fn distance(&self, at: &Vector, triangle: u32, (point, nodes): (u32, &[u32])) -> (f64, bool) {
+        let corners = &self.boundary.triangles[triangle as usize];
+        let is_of_cell = corners.iter().all(|&own| nodes.contains(&self.node_of[own as usize]));
+        if !is_of_cell || corners.contains(&point) {
+            return (f64::INFINITY, false);
+        }
+        let triangle = triangle as usize;
+        let places = self.boundary.corners(triangle).map(|own| own - at);
+        let is_behind = self.boundary.area_vector(triangle).dot(&places[0]) > 0.0;
+        let [a, b, c] = places.map(|own| to_parry(&own));
+        let distance = Triangle::new(a, b, c).distance_to_local_point(ParryVector::ZERO, true);
+        (distance, is_behind)
+    }
+
+    /// From the box around a cell.
+    fn squared_distance(&self, at: &Vector, cell: u32) -> f64 {
+        let corners = self.cells.nodes(cell as usize).iter();
+        let bounds = bounds_of(corners.map(|&node| &self.positions[node as usize]));
+        bounds.map_or(f64::INFINITY, |[low, high]| {
+            (low - at).sup(&(at - high)).sup(&Vector::zeros()).norm_squared()
+        })
+    }
 }
 
 /// Whether a point lies in a cell: in one of the tetrahedra between the middle of the cell and the triangles of its faces.
@@ -91,8 +189,11 @@ fn contains(cells: &Cells, cell: usize, positions: &[Vector], at: &Vector) -> bo
 }
 
 fn box_of(low: &Vector, high: &Vector) -> Aabb {
-    let corner = |at: &Vector| ParryVector::new(at.x, at.y, at.z);
-    Aabb::new(corner(low), corner(high))
+    Aabb::new(to_parry(low), to_parry(high))
+}
+
+fn to_parry(vector: &Vector) -> ParryVector {
+    ParryVector::new(vector.x, vector.y, vector.z)
 }
 
 #[cfg(test)]
