@@ -19,6 +19,10 @@ const THICKNESSES: std::ops::RangeInclusive<f64> = 1e-3..=20.0;
 /// In kPa.
 const TENSIONS: std::ops::RangeInclusive<f64> = 0.0..=1000.0;
 
+/// The least tension of a sheet that bears no compression, as a part of Young's modulus: below, Newton's method stalls at the kink of its
+/// law.
+const LEAST_TENSION: f64 = 5e-3;
+
 /// A sheet of skin: what it is made of, and how thick it is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlaneStress {
@@ -65,6 +69,11 @@ pub enum SheetError {
     TooSoftAlongLines { along: f64, least: f64 },
     #[error("the tension at rest is {0} kPa, and has to be at least 0 and at most 1000 kPa")]
     Tension(f64),
+    #[error(
+        "the tension at rest is {tension} kPa, and a sheet that bears no compression needs at least a 200th of its Young's modulus, \
+         {least} kPa: without, it is taut and slack at once where nothing moves it"
+    )]
+    TooSlack { tension: f64, least: f64 },
 }
 
 impl PlaneStress {
@@ -116,8 +125,12 @@ impl PlaneStress {
     }
 
     /// The sheet that wrinkles instead of being pressed (`tension_field`).
-    pub fn without_compression(self) -> Self {
-        PlaneStress { bears_compression: false, ..self }
+    pub fn without_compression(self) -> Result<Self, SheetError> {
+        let least = LEAST_TENSION * self.young_modulus;
+        match self.tension >= least {
+            true => Ok(PlaneStress { bears_compression: false, ..self }),
+            false => Err(SheetError::TooSlack { tension: self.tension, least }),
+        }
     }
 
     /// Whether it resists being pressed along itself.

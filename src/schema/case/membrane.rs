@@ -35,7 +35,8 @@ pub struct MembraneDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub fibre: Option<LinesDocument>,
-    /// Whether the skin resists being pressed along itself. Default `carried`; `none`, for `fem_nonlinear`, wrinkles instead.
+    /// Whether the skin resists being pressed along itself. Default `carried`; `none`, for `fem_nonlinear` and with a `pretension_kpa` of
+    /// at least a 200th of `young_modulus_kpa`, wrinkles instead.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub compression: Option<Compression>,
@@ -99,9 +100,9 @@ impl MembraneDocument {
             along_lines: self.fibre.as_ref().map(|lines| lines.young_modulus_kpa),
         });
         let sheet = sheet.and_then(|own| own.with_tension(self.pretension_kpa.unwrap_or(0.0)));
-        let sheet = sheet.map(|own| match self.compression {
+        let sheet = sheet.and_then(|own| match self.compression {
             Some(Compression::None) => own.without_compression(),
-            Some(Compression::Carried) | None => own,
+            Some(Compression::Carried) | None => Ok(own),
         });
         match (sheet, lines) {
             (Ok(_), Some(None)) => None,
@@ -114,7 +115,9 @@ impl MembraneDocument {
                         (at.key("young_modulus_kpa"), ErrorCode::OutOfRange)
                     }
                     SheetError::PoissonRatio(_) => (at.key("poisson_ratio"), ErrorCode::OutOfRange),
-                    SheetError::Tension(_) => (at.key("pretension_kpa"), ErrorCode::OutOfRange),
+                    SheetError::Tension(_) | SheetError::TooSlack { .. } => {
+                        (at.key("pretension_kpa"), ErrorCode::OutOfRange)
+                    }
                     SheetError::AlongLines(_) => (along, ErrorCode::OutOfRange),
                     SheetError::TooSoftAlongLines { .. } => (along, ErrorCode::NotPositiveDefinite),
                 };

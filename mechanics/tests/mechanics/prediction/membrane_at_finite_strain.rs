@@ -2,7 +2,7 @@
 
 use mechanics::boundary::Constraint;
 use mechanics::material::hyperelastic::{Law, NeoHookean};
-use mechanics::material::{PlaneStress, Sheet};
+use mechanics::material::{PlaneStress, Sheet, SheetError};
 use mechanics::mesh::sample::block;
 use mechanics::mesh::{CellShape, Vector, VolumeMesh};
 use mechanics::model::fem::finite_strain::{Advance, Elements, FibreField, FiniteStrain};
@@ -92,27 +92,30 @@ fn a_sheet_that_is_stretched_and_turned_pulls_by_its_law_along_itself() {
 fn a_sheet_that_bears_no_compression_pulls_along_its_largest_strain_only() {
     let mesh = strip();
     let turn = Rotation3::from_euler_angles(0.7, -0.4, 0.9);
-    let Sheet { thickness, young_modulus, .. } = SKIN;
-    let sheet = PlaneStress::new(&SKIN).unwrap().without_compression();
-    // Across, the strip is narrowed by more than it would narrow by itself.
-    let moved = |x: &Vector| turn * Vector::new(1.2 * x.x, 0.8 * x.y, x.z);
-    let pulled = forces(&mesh, sheet, moved);
-    let (mut end, mut side) = (Vector::zeros(), Vector::zeros());
-    for (x, force) in mesh.nodes.iter().zip(&pulled) {
-        if x.x > 9.9 {
-            end += force;
-        } else if x.y > 7.9 && x.x > 0.1 {
-            side += force;
-        }
-    }
-    // S = E (lambda² - 1) / 2.
-    let stress = young_modulus * (1.2 * 1.2 - 1.0) / 2.0;
-    let expected = turn * Vector::x() * (8.0 * thickness * 1.2 * stress);
+    let Sheet { thickness, young_modulus, poisson_ratio: nu, .. } = SKIN;
+    let tension = 1.0;
+    let sheet = PlaneStress::new(&SKIN).unwrap().with_tension(tension).unwrap();
+    let sheet = sheet.without_compression().unwrap();
+    // At the end of 8 mm, and at three of the five nodes of a side of 10 mm.
+    let pulled = |moved: &dyn Fn(&Vector) -> Vector| {
+        let forces = forces(&mesh, sheet, moved);
+        let at = |counts: &dyn Fn(&Vector) -> bool| -> Vector {
+            let nodes = mesh.nodes.iter().zip(&forces).filter(|(x, _)| counts(x));
+            nodes.map(|(_, force)| force).sum()
+        };
+        [at(&|x| x.x > 9.9), at(&|x| x.y > 7.9 && x.x > 0.1 && x.x < 9.9)]
+    };
+    // What balances the tension at rest stays as it is.
+    let at_rest = [Vector::x() * 8.0, Vector::y() * 7.5].map(|way| way * thickness * tension);
+    // Across, the strip is narrowed by more than it would narrow by itself: S = E (lambda² - 1) / 2 + (1 - nu) s.
+    let [end, side] = pulled(&|x| turn * Vector::new(1.2 * x.x, 0.8 * x.y, x.z));
+    let stress = young_modulus * (1.2 * 1.2 - 1.0) / 2.0 + (1.0 - nu) * tension;
+    let expected = turn * Vector::x() * (8.0 * thickness * 1.2 * stress) - at_rest[0];
     assert!((end - expected).norm() < 1e-8, "{end} instead of {expected}");
-    assert!(side.norm() < 1e-8, "{side}");
-    // Pressed in all directions it has no force.
-    let slack = forces(&mesh, sheet, |x: &Vector| turn * Vector::new(0.9 * x.x, 0.9 * x.y, x.z));
-    assert!(slack.iter().all(|force| force.norm() < 1e-8), "{slack:?}");
+    assert!((side + at_rest[1]).norm() < 1e-8, "{side}");
+    // Pressed in all directions it has no force of its own.
+    let slack = pulled(&|x| turn * Vector::new(0.9 * x.x, 0.9 * x.y, x.z));
+    assert!(slack.iter().zip(&at_rest).all(|(own, rest)| (own + rest).norm() < 1e-8), "{slack:?}");
 }
 
 #[test]
@@ -257,6 +260,8 @@ fn a_sheet_that_is_pressed_until_it_wrinkles_is_told() {
 #[test]
 fn a_sheet_that_bears_no_compression_has_a_limit_where_it_wrinkles() {
     let carried = PlaneStress::new(&SKIN).unwrap();
+    // The least tension that it may have.
+    let tension_only = carried.with_tension(1.0).unwrap().without_compression().unwrap();
     let changes = |sheet: PlaneStress| {
         let meshes = [[10, 6, 2], [20, 12, 4], [30, 18, 6]].map(|cells| {
             PressedSkin { cells, towards: 3.0, sheet, method: Method::FemNonlinear }.movements()
@@ -266,14 +271,22 @@ fn a_sheet_that_bears_no_compression_has_a_limit_where_it_wrinkles() {
         };
         [change(&meshes[0], &meshes[1]), change(&meshes[1], &meshes[2])]
     };
-    let (pressed, tension) = (changes(carried), changes(carried.without_compression()));
+    let (pressed, tension) = (changes(carried), changes(tension_only));
     println!("changes from mesh to mesh in mm: carried {pressed:.3?}, tension only {tension:.3?}");
     assert!(tension[1] < 0.5 * tension[0], "{tension:?}");
     let told = PressedSkin {
         cells: [20, 12, 4],
         towards: 3.0,
-        sheet: carried.without_compression(),
+        sheet: tension_only,
         method: Method::FemNonlinear,
     };
     assert!(!told.is_told());
+}
+
+#[test]
+fn a_sheet_that_bears_no_compression_is_refused_without_tension() {
+    let sheet = PlaneStress::new(&SKIN).unwrap();
+    let found = sheet.with_tension(0.9).unwrap().without_compression();
+    assert_eq!(found, Err(SheetError::TooSlack { tension: 0.9, least: 1.0 }));
+    assert!(sheet.with_tension(1.0).unwrap().without_compression().is_ok());
 }
