@@ -5,9 +5,8 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use crate::mesh::closest_point::SurfaceSearch;
 use crate::mesh::ignored::listed;
-use crate::mesh::{ArrayUse, TriangleSurface, VolumeMesh};
+use crate::mesh::{ArrayUse, TriangleSearch, TriangleSurface, VolumeMesh};
 
 /// How a set of nodes is asked for (SELECT of the documents).
 #[derive(Clone, Debug, PartialEq)]
@@ -127,7 +126,7 @@ impl Selector<'_> {
                 .surfaces
                 .get(name)
                 .ok_or_else(|| SelectionError::UnknownSurface(name.to_owned()))?;
-            let search = SurfaceSearch::new(surface)
+            let search = TriangleSearch::new(surface)
                 .map_err(|_| SelectionError::FlatSurface(name.to_owned()))?;
             let from = |&node: &u32| search.closest(&self.mesh.nodes[node as usize]).distance;
             let distances = self.boundary_nodes.par_iter().map(from).collect();

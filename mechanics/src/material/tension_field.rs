@@ -14,7 +14,9 @@
 
 use std::f64::consts::PI;
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{Matrix2, Matrix3, Matrix3x2, Vector3};
+
+use super::ElasticTensor;
 
 /// Stresses (11, 22, 12) and strains (11, 22, twice 12) in the plane.
 pub type InPlane = Vector3<f64>;
@@ -74,6 +76,62 @@ impl TensionField {
     }
 }
 
+/// A sheet that bears no compression, in a plane in space.
+#[derive(Clone)]
+pub struct TensionOnly {
+    /// Two directions in its plane.
+    axes: Matrix3x2<f64>,
+    /// C in these: stresses 11, 22, 12 of strains 11, 22 and twice 12.
+    stiffness: Matrix3<f64>,
+    /// The strain that the stress at rest is that of.
+    before: InPlane,
+}
+
+impl TensionOnly {
+    /// Of a sheet whose stiffness and stress at rest, in kPa, are given, in the plane of this normal and a direction in it, both of length 1.
+    pub fn new(
+        tensor: &ElasticTensor,
+        tension: f64,
+        along: Vector3<f64>,
+        normal: Vector3<f64>,
+    ) -> Self {
+        let across = normal.cross(&along);
+        let shear = (along * across.transpose() + across * along.transpose()) * 0.5;
+        let strains = [along * along.transpose(), across * across.transpose(), shear];
+        let stiffness = Matrix3::from_columns(&strains.map(|strain| {
+            let stress = tensor.stress(&strain);
+            let [a, b] = [stress * along, stress * across];
+            InPlane::new(along.dot(&a), across.dot(&b), along.dot(&b))
+        }));
+        let before =
+            stiffness.try_inverse().unwrap_or_default() * InPlane::new(tension, tension, 0.0);
+        TensionOnly { axes: Matrix3x2::from_columns(&[along, across]), stiffness, before }
+    }
+
+    /// After a strain in the plane.
+    pub fn at(&self, strain: &Matrix3<f64>) -> TensionField {
+        let own = self.axes.transpose() * strain * self.axes;
+        let own = InPlane::new(own[(0, 0)], own[(1, 1)], 2.0 * own[(0, 1)]);
+        TensionField::at(&self.stiffness, &(own + self.before))
+    }
+
+    /// A stress of it.
+    pub fn in_space(&self, stress: &InPlane) -> Matrix3<f64> {
+        let own = Matrix2::new(stress.x, stress.z, stress.z, stress.y);
+        self.axes * own * self.axes.transpose()
+    }
+
+    /// Two directions in its plane.
+    pub fn axes(&self) -> &Matrix3x2<f64> {
+        &self.axes
+    }
+
+    /// In kPa, of the stress at rest.
+    pub fn energy_at_rest(&self) -> f64 {
+        0.5 * self.before.dot(&(self.stiffness * self.before))
+    }
+}
+
 /// Whether a stress has no principal value below 0.
 fn presses_nowhere(stress: &InPlane) -> bool {
     let [a, b, c] = [stress.x, stress.y, stress.z];
@@ -98,7 +156,7 @@ impl Pull {
             InPlane::new(-2.0 * sin * cos, 2.0 * sin * cos, cos * cos - sin * sin),
             InPlane::new(sin * sin - cos * cos, cos * cos - sin * sin, -2.0 * sin * cos) * 2.0,
         ];
-        let [t, by, _] = along.map(|own| compliance * own);
+        let [t, by] = [along[0], along[1]].map(|own| compliance * own);
         let compliance = [
             along[0].dot(&t),
             2.0 * along[1].dot(&t),

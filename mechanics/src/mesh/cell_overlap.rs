@@ -7,13 +7,13 @@
 use std::cmp::Ordering;
 use std::collections::{BTreeSet, BinaryHeap};
 
-use parry3d_f64::bounding_volume::Aabb;
 use parry3d_f64::math::Vector as ParryVector;
 use parry3d_f64::partitioning::{Bvh, BvhBuildStrategy};
 use parry3d_f64::query::PointQuery;
 use parry3d_f64::shape::Triangle;
 use rayon::prelude::*;
 
+use super::bounds::{parry_box, to_parry};
 use super::{Cells, TriangleSurface, Vector, bounds_of};
 use crate::rows::Rows;
 
@@ -36,13 +36,12 @@ pub fn deepest_overlap(
     boundary: &TriangleSurface,
 ) -> Option<Overlap> {
     let node_of = boundary.node_ids.as_ref()?;
-    let boxes: Vec<Aabb> = boundary.points.iter().map(|at| box_of(at, at)).collect();
+    let boxes: Vec<_> = boundary.points.iter().map(|at| parry_box([*at, *at])).collect();
     let tree = Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes);
     let strangers = |cell: usize| -> Vec<(u32, u32)> {
         let nodes = cells.nodes(cell);
         let corners = || nodes.iter().map(|&node| &positions[node as usize]);
-        let Some([low, high]) = bounds_of(corners()) else { return Vec::new() };
-        let around = box_of(&low, &high);
+        let Some(around) = bounds_of(corners()).map(parry_box) else { return Vec::new() };
         let is_inside = |&point: &u32| {
             !nodes.contains(&node_of[point as usize])
                 && contains(cells, cell, positions, &boundary.points[point as usize])
@@ -186,14 +185,6 @@ fn contains(cells: &Cells, cell: usize, positions: &[Vector], at: &Vector) -> bo
             sides.map(|[a, b, c]| volume(a - middle, b - middle, c - middle));
         whole > 0.0 && of_a >= 0.0 && of_b >= 0.0 && of_c >= 0.0 && of_a + of_b + of_c <= whole
     })
-}
-
-fn box_of(low: &Vector, high: &Vector) -> Aabb {
-    Aabb::new(to_parry(low), to_parry(high))
-}
-
-fn to_parry(vector: &Vector) -> ParryVector {
-    ParryVector::new(vector.x, vector.y, vector.z)
 }
 
 #[cfg(test)]

@@ -10,6 +10,7 @@
 //! IEEE Transactions on Visualization and Computer Graphics 11 (2005), section 3. It holds for closed
 //! surfaces without self-intersection; beside an open border the sign is that of the extended border.
 
+use super::bounds::to_parry;
 pub use super::surface_topology::Feature;
 use super::surface_topology::SurfaceTopology;
 use super::{TriangleSurface, Vector};
@@ -255,10 +256,6 @@ fn has_area(a: &Vector, b: &Vector, c: &Vector) -> bool {
     let [ab, bc, ca] = [b - a, c - b, a - c];
     let longest_square = ab.norm_squared().max(bc.norm_squared()).max(ca.norm_squared());
     ab.cross(&ca).norm() > SMALLEST_RELATIVE_HEIGHT * longest_square
-}
-
-fn to_parry(vector: &Vector) -> ParryVector {
-    ParryVector::new(vector.x, vector.y, vector.z)
 }
 
 fn from_parry(vector: ParryVector) -> Vector {

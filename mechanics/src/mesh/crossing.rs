@@ -7,12 +7,12 @@
 //! Computational Geometry 18 (1997), section 4.3 (orientation).
 
 use parry3d_f64::bounding_volume::Aabb;
-use parry3d_f64::math::Vector as ParryVector;
 use parry3d_f64::partitioning::{Bvh, BvhBuildStrategy};
 use rayon::prelude::*;
 use robust::{Coord3D, orient3d};
 use std::cmp::Ordering;
 
+use super::bounds::parry_box;
 use super::{TriangleSurface, Vector};
 
 /// Pairs that are kept for one triangle; the others are only counted, so that memory grows with the surface.
@@ -87,7 +87,7 @@ pub fn self_crossings(
 fn box_of(surface: &TriangleSurface, triangle: usize) -> Aabb {
     let [a, b, c] = surface.corners(triangle);
     let (low, high) = (a.inf(&b).inf(&c), a.sup(&b).sup(&c));
-    Aabb::new(ParryVector::new(low.x, low.y, low.z), ParryVector::new(high.x, high.y, high.z))
+    parry_box([low, high])
 }
 
 /// An edge that passes through a triangle or its border.

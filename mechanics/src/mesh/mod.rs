@@ -1,6 +1,7 @@
 //! Meshes: volume meshes of soft tissue and triangle surfaces, node positions in mm.
 
 pub mod area_sampling;
+pub mod ball;
 pub mod bisection;
 mod bounds;
 pub mod cell_overlap;
@@ -31,7 +32,7 @@ mod surface_topology;
 pub mod volume;
 pub mod warning;
 
-pub use bounds::{EMPTY_BOUNDS, bounds_of};
+pub use bounds::{EMPTY_BOUNDS, bounds_of, boxes_meet};
 pub use closest_point::{ClosestPoint, SearchError, SurfaceSearch, TriangleSearch};
 pub use frame::Frame;
 pub use ignored::{ArrayUse, IgnoredArray, IgnoredArrays, ValuesOf};

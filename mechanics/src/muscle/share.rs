@@ -4,6 +4,7 @@ use rayon::prelude::*;
 
 use crate::domain::{ClosedSurface, SurfaceDomainError, SurfaceName};
 use crate::image::SamplingRule;
+use crate::mesh::ball::Ball;
 use crate::mesh::{TriangleSurface, Vector, VolumeMesh};
 
 /// No more sample points are looked at one by one also where the surface is far from the cell.
@@ -41,10 +42,12 @@ pub fn shares_of(
         if (0..3).any(far) {
             return 0.0;
         }
-        if samples > FEW
-            && let Some(is_inside) = contains_all(&inside, &corners)
-        {
-            return f64::from(is_inside);
+        if samples > FEW {
+            // Decided at once unless the surface meets the ball about the cell.
+            let ball = Ball::of(mesh, cell);
+            if let Some(is_inside) = inside.contains_ball(&ball.middle, ball.radius()) {
+                return f64::from(is_inside);
+            }
         }
         let mut count = 0_usize;
         rule.for_each(mesh.cells.shape(cell), &corners, |point| {
@@ -53,11 +56,4 @@ pub fn shares_of(
         count as f64 / rule.count as f64
     };
     Ok(cells.par_iter().map(|&cell| of_cell(cell as usize)).collect())
-}
-
-/// Whether a cell is inside or, if false, outside; `None` where the surface meets the ball about it.
-fn contains_all(inside: &ClosedSurface, corners: &[Vector]) -> Option<bool> {
-    let middle = corners.iter().sum::<Vector>() / corners.len() as f64;
-    let radius = corners.iter().map(|x| (x - middle).norm()).fold(0.0, f64::max);
-    inside.contains_ball(&middle, radius * (1.0 + 1e-9))
 }

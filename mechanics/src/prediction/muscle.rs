@@ -204,13 +204,13 @@ impl<'a> Check<'a> {
     ) -> Vec<CellStress> {
         let course = Lines::new(lines, within);
         let cells = course.as_ref().map_or_else(Vec::new, |own| own.cells(&self.case.volume, near));
-        match course.filter(|_| !cells.is_empty()) {
-            Some(course) => {
-                let pull = PullShare::new(&course, &self.case.volume, (near, &cells));
+        match &course {
+            Some(course) if !cells.is_empty() => {
+                let pull = PullShare::new(course, &self.case.volume, (near, &cells));
                 self.warnings.extend(pull.warnings(name));
             }
-            None => {
-                let detail = match Lines::new(lines, within) {
+            _ => {
+                let detail = match &course {
                     None => format!(
                         "the lines of muscle {name:?} have no length: all points of each are at one place"
                     ),

@@ -6,9 +6,10 @@ use nalgebra::Matrix3;
 
 use super::fibres::unit;
 use super::muscle_field::{elsewhere, muscle_volume};
-use super::muscle_pieces::{Ball, Piece, Search};
+use super::muscle_pieces::{Piece, Search};
+use crate::mesh::ball::Ball;
 use crate::mesh::refinement::refine;
-use crate::mesh::{Vector, VolumeMesh, Warning, bounds_of};
+use crate::mesh::{Vector, VolumeMesh, Warning, bounds_of, boxes_meet};
 use crate::model::fem::inner_stress::CellStress;
 use crate::model::reference_cell;
 use crate::muscle::lines::FEW_CELLS;
@@ -99,10 +100,6 @@ fn pull_of(mesh: &VolumeMesh, cells: &[CellStress]) -> f64 {
 /// Squared distances that differ by less than this share of the squared reach are equal.
 const EQUAL: f64 = 1e-9;
 
-fn overlap([low, high]: &[Vector; 2], [other_low, other_high]: &[Vector; 2]) -> bool {
-    (0..3).all(|axis| high[axis] >= other_low[axis] && low[axis] <= other_high[axis])
-}
-
 /// The lines of a muscle.
 pub(super) struct Lines {
     pieces: Vec<Piece>,
@@ -168,7 +165,7 @@ impl Lines {
         mut pieces: impl Iterator<Item = &'a Piece>,
     ) -> bool {
         let Some(around) = bounds_of(corners) else { return false };
-        overlap(&around, &self.reach) && pieces.any(|piece| overlap(&around, &piece.reach))
+        boxes_meet(&around, &self.reach) && pieces.any(|piece| boxes_meet(&around, &piece.reach))
     }
 
     /// The cells that may have tissue within reach, of those near.

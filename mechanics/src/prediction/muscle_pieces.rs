@@ -3,6 +3,7 @@
 
 use rayon::prelude::*;
 
+use crate::mesh::ball::Ball;
 use crate::mesh::{Vector, VolumeMesh, bounds_of};
 
 /// So many cells have their pieces in common.
@@ -28,26 +29,6 @@ impl Piece {
         let share = (place - self.from).dot(&self.along) / self.along.norm_squared();
         let foot = self.from + self.along * share.clamp(0.0, 1.0);
         (place - foot).norm_squared()
-    }
-}
-
-/// The ball about the middle of a cell that has all of it.
-#[derive(Clone, Copy)]
-pub(super) struct Ball {
-    pub middle: Vector,
-    pub squared_radius: f64,
-}
-
-impl Ball {
-    pub(super) fn of(mesh: &VolumeMesh, cell: usize) -> Ball {
-        let middle = mesh.centroid(cell);
-        let squared = mesh.corners(cell).map(|x| (x - middle).norm_squared());
-        Ball { middle, squared_radius: squared.fold(0.0, f64::max) }
-    }
-
-    /// With room for rounding.
-    pub(super) fn radius(&self) -> f64 {
-        self.squared_radius.sqrt() * (1.0 + 1e-9)
     }
 }
 

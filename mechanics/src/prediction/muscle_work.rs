@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use super::case::{BodyFibres, Muscle, MuscleCourse};
 use super::check::Check;
 use super::error_code::SceneErrorCode;
-use crate::mesh::{Vector, VolumeMesh, bounds_of};
+use crate::mesh::{Vector, VolumeMesh, bounds_of, boxes_meet};
 
 /// Comparisons that find the cells of all muscles of a case: cells near a muscle times its sample points and the pieces of its lines, and
 /// what else costs as much. 15 muscles around lines in a face of 300 000 cells take a thirtieth.
@@ -107,9 +107,7 @@ fn work(muscle: &Muscle, samples: u64) -> Work {
 }
 
 fn meet(one: &Bounds, other: &Bounds) -> bool {
-    one.as_ref().zip(other.as_ref()).is_some_and(|([low, high], [other_low, other_high])| {
-        (0..3).all(|axis| high[axis] >= other_low[axis] && low[axis] <= other_high[axis])
-    })
+    one.as_ref().zip(other.as_ref()).is_some_and(|(one, other)| boxes_meet(one, other))
 }
 
 fn pieces(lines: &[Vec<Vector>]) -> u64 {

@@ -131,7 +131,7 @@ pub enum StartName {
 
 impl AlignDocument {
     pub(in crate::schema) fn check(&self, at: &Pointer, limits: &Limits, faults: &mut Faults) {
-        check_landmarks(&self.landmarks, &at.key("landmarks"), limits, faults);
+        check_keys(&self.landmarks, &at.key("landmarks"), limits, faults);
         let (method, name) = (self.method, self.method.name());
         let by_surfaces = method == AlignMethod::Surfaces;
         let by_landmarks = method == AlignMethod::Landmarks
@@ -193,14 +193,4 @@ impl AlignMethod {
             AlignMethod::Surfaces => "surfaces",
         }
     }
-}
-
-/// Adds faults of their number and names.
-pub(super) fn check_landmarks(
-    landmarks: &BTreeMap<String, LandmarkDocument>,
-    at: &Pointer,
-    limits: &Limits,
-    faults: &mut Faults,
-) {
-    check_keys(landmarks, at, limits, faults);
 }

@@ -10,7 +10,7 @@ pub use super::align::{AlignDocument, AlignMethod, AlignReference, LandmarkDocum
 pub use super::place::{ComparedRegionDocument, PlaceDocument};
 pub use super::reference::{MeshReference, SurfaceReference};
 
-use super::align::{align, check_landmarks};
+use super::align::align;
 use crate::schema::case::acquisition::AcquisitionDocument;
 use crate::schema::code::ErrorCode;
 use crate::schema::wire::canonical;
@@ -137,7 +137,7 @@ impl CompareToDocument {
         let density = 1e-4..=limits.samples_per_mm2;
         let place = at.key("samples_per_mm2");
         faults.check_range(&place, self.samples_per_mm2, density, "per mm2");
-        check_landmarks(&self.landmarks, &at.key("landmarks"), limits, faults);
+        check_keys(&self.landmarks, &at.key("landmarks"), limits, faults);
         if let Some(acquisition) = &self.acquisition {
             acquisition.check(&at.key("acquisition"), limits, faults);
         }

@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 use std::sync::OnceLock;
 
 use crate::mesh::VolumeMesh;
+use crate::rows::Rows;
 
 /// Nodes this many cells of tissue apart, or fewer, are of one fold.
 const FOLD: usize = 4;
@@ -12,17 +13,14 @@ const FOLD: usize = 4;
 pub(super) struct Folds<'a> {
     mesh: &'a VolumeMesh,
     /// The cells around each node.
-    around: Vec<Vec<u32>>,
+    around: Rows<u32>,
     /// For each node those of its fold but itself, ascending.
     of_node: Vec<OnceLock<Vec<u32>>>,
 }
 
 impl<'a> Folds<'a> {
     pub fn new(mesh: &'a VolumeMesh) -> Self {
-        let mut around = vec![Vec::new(); mesh.nodes.len()];
-        for (cell, (_, nodes)) in (0_u32..).zip(mesh.cells.iter()) {
-            nodes.iter().for_each(|&node| around[node as usize].push(cell));
-        }
+        let around = mesh.cells.around(mesh.nodes.len());
         let of_node = mesh.nodes.iter().map(|_| OnceLock::new()).collect();
         Folds { mesh, around, of_node }
     }
@@ -38,7 +36,7 @@ impl<'a> Folds<'a> {
         let mut ring = vec![first];
         for _ in 0..FOLD {
             let cells: BTreeSet<u32> =
-                ring.iter().flat_map(|&node| &self.around[node as usize]).copied().collect();
+                ring.iter().flat_map(|&node| self.around.row(node as usize)).copied().collect();
             let reached = cells.iter().flat_map(|&cell| self.mesh.cells.nodes(cell as usize));
             ring = reached.copied().filter(|&node| seen.insert(node)).collect();
         }

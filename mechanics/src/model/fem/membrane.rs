@@ -17,9 +17,10 @@
 //! Source: Zienkiewicz, Taylor, The Finite Element Method, 5th ed., vol. 1, chapter 4; skin as a membrane:
 //! Zachow et al. 2006, section 4.2 (docs/methods.md#membrane). The sheet weighs nothing.
 
-use nalgebra::{Matrix3, Matrix3x2};
+use nalgebra::Matrix3;
 
 use super::edge_nodes::EdgeNodes;
+use crate::material::tension_field::TensionOnly;
 use crate::material::{ElasticTensor, PlaneStress};
 use crate::mesh::{Vector, VolumeMesh};
 use crate::model::dofs::{DofMap, add_cell};
@@ -58,8 +59,8 @@ pub(super) struct Triangle {
     pub tensor: ElasticTensor,
     /// At rest, in kPa.
     pub tension: f64,
-    /// Two directions in the plane where it bears no compression.
-    pub axes: Option<Matrix3x2<f64>>,
+    /// Where it bears no compression.
+    pub tension_only: Option<TensionOnly>,
 }
 
 impl Membrane {
@@ -183,18 +184,16 @@ impl Membrane {
             let normal = area_vector / area;
             let across = |side: Vector| normal.cross(&side) / (2.0 * area);
             let lines = self.lines.get(number).copied().unwrap_or_default();
-            let along = match lines == Vector::zeros() {
-                true => (b - a).normalize(),
-                false => lines,
-            };
-            let axes = Matrix3x2::from_columns(&[along, normal.cross(&along)]);
+            let (tensor, tension) = (self.sheet.tensor(&lines), self.sheet.tension());
+            let tension_only = (!self.sheet.bears_compression())
+                .then(|| TensionOnly::new(&tensor, tension, (b - a).normalize(), normal));
             let triangle = Triangle {
                 normal,
                 volume: self.sheet.thickness() * area,
                 gradients: [across(c - b), across(a - c), across(b - a)],
-                tensor: self.sheet.tensor(&lines),
-                tension: self.sheet.tension(),
-                axes: (!self.sheet.bears_compression()).then_some(axes),
+                tensor,
+                tension,
+                tension_only,
             };
             Some((triangle, nodes))
         })

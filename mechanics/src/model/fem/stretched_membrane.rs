@@ -9,7 +9,6 @@
 use nalgebra::{Matrix3, Matrix3x2};
 
 use super::membrane::Triangle;
-use crate::material::tension_field::{InPlane, TensionField};
 use crate::mesh::Vector;
 use crate::solver::Block;
 
@@ -83,39 +82,14 @@ impl Triangle {
             energy: 0.5 * (strain.dot(&of_strain) + self.tension * slope.norm_squared()),
             relaxed: None,
         };
-        match &self.axes {
+        match &self.tension_only {
             None => carried,
-            Some(axes) => {
-                let stiffness = self.in_axes(axes);
-                // The strain that the tension at rest is that of.
-                let before = stiffness.try_inverse().unwrap_or_default()
-                    * InPlane::new(self.tension, self.tension, 0.0);
-                let [x, y] = [0, 1].map(|k| axes.column(k).into_owned());
-                let own = InPlane::new(
-                    x.dot(&(strain * x)),
-                    y.dot(&(strain * y)),
-                    2.0 * x.dot(&(strain * y)),
-                );
-                let found = TensionField::at(&stiffness, &(own + before));
-                let [a, b, c] = [found.stress.x, found.stress.y, found.stress.z];
-                let stress = x * x.transpose() * a
-                    + y * y.transpose() * b
-                    + (x * y.transpose() + y * x.transpose()) * c;
-                let at_rest = 0.5 * self.tension * (before.x + before.y);
-                let energy = found.energy - at_rest - self.tension * slope.dot(&plane);
-                Stretched { stress, energy, relaxed: Some((*axes, found.tangent)), ..carried }
+            Some(own) => {
+                let found = own.at(&strain);
+                let energy = found.energy - own.energy_at_rest() - self.tension * slope.dot(&plane);
+                let relaxed = Some((*own.axes(), found.tangent));
+                Stretched { stress: own.in_space(&found.stress), energy, relaxed, ..carried }
             }
         }
-    }
-
-    /// C in two directions of the plane: stresses 11, 22, 12 of strains 11, 22 and twice 12.
-    fn in_axes(&self, axes: &Matrix3x2<f64>) -> Matrix3<f64> {
-        let [x, y] = [0, 1].map(|k| axes.column(k).into_owned());
-        let strains =
-            [x * x.transpose(), y * y.transpose(), (x * y.transpose() + y * x.transpose()) * 0.5];
-        Matrix3::from_columns(&strains.map(|strain| {
-            let stress = self.tensor.stress(&strain);
-            InPlane::new(x.dot(&(stress * x)), y.dot(&(stress * y)), x.dot(&(stress * y)))
-        }))
     }
 }
