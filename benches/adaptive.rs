@@ -150,6 +150,7 @@ fn adapted(scene: &Scene, cells: usize) -> AdaptivePrediction {
         regions_mm: BTreeMap::new(),
         landmarks_mm: BTreeMap::new(),
         cells,
+        is_of_answer: false,
         time_s: f64::INFINITY,
     };
     predict_adaptively(scene, &wanted, &|| 0.0, &Unobserved).expect("it is solved")

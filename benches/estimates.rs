@@ -48,7 +48,7 @@ struct Row {
 /// A name, and what makes its rows.
 type Entry = (&'static str, fn() -> Vec<Row>);
 
-const SCENES: [Entry; 8] = [
+const SCENES: [Entry; 9] = [
     ("slab", slabs),
     ("half_head", half_heads),
     ("sphere", spheres),
@@ -57,6 +57,7 @@ const SCENES: [Entry; 8] = [
     ("face", faces),
     ("shell", shells),
     ("finite", at_finite_strain),
+    ("pressed", pressed),
 ];
 
 const TETRAHEDRA: [ElementChoice; 2] = [ElementChoice::Plain, ElementChoice::Stabilised];
@@ -352,6 +353,30 @@ fn at_finite_strain() -> Vec<Row> {
     let heads = half_heads().into_iter().map(|row| finite(row, 1));
     let faces = faces().into_iter().filter(whole).map(|row| finite(row, 1));
     slabs.chain(cells).chain(heads).chain(faces).collect()
+}
+
+/// Both faces at finite strain, the jaw moved by 10 mm so that cells of the lips all but collapse (not in the subject's last row).
+fn pressed() -> Vec<Row> {
+    let (x, y, z) = (Vector::x(), Vector::y(), Vector::z());
+    let mut rows = Vec::new();
+    for row in faces().into_iter().filter(|row| !row.name.contains("split")) {
+        let axes = if row.name == "subject" { [x, -z, z] } else { [x, y, z] };
+        rows.extend(axes.map(|axis| {
+            let movement =
+                RigidMovement::about_pivot(Vector::zeros(), Vector::zeros(), axis * 10.0);
+            let segments = vec![PlannedSegment { name: "jaw".to_owned(), movement }];
+            let [along_x, along_y, along_z] = [axis.x, axis.y, axis.z].map(|own| own * 10.0);
+            Row {
+                name: format!("face of {}, {along_x} {along_y} {along_z} mm", row.name),
+                case: row.case.clone(),
+                plan: Plan { segments, ..Plan::default() },
+                elements: row.elements.clone(),
+                truth: row.truth,
+                method: Method::FemNonlinear,
+            }
+        }));
+    }
+    rows
 }
 
 /// The same direction, 10 mm long.

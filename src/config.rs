@@ -39,6 +39,8 @@ pub struct Config {
     pub grace: Duration,
     pub upload_bytes: usize,
     pub waiting_requests: u32,
+    /// Longest check of a case or a job within its request.
+    pub check: Duration,
     pub bodies_bytes: u64,
     pub client_bodies_bytes: u64,
     pub body_idle: Duration,
@@ -95,6 +97,7 @@ impl Config {
             grace: read.seconds("grace-s", 0.0, 3600.0)?,
             upload_bytes: read.whole("upload-mib", 1..=4096)? * MIB,
             waiting_requests: read.whole("waiting-requests", 1..=100_000)? as u32,
+            check: read.seconds("check-s", 1.0, 3600.0)?,
             bodies_bytes: (read.whole("bodies-mib", 1..=MIB)? * MIB) as u64,
             client_bodies_bytes: (read.whole("client-bodies-mib", 1..=MIB)? * MIB) as u64,
             body_idle: read.seconds("body-idle-s", 0.1, 600.0)?,

@@ -1,7 +1,7 @@
 //! A fair counting semaphore: permits go round robin between tenants, and within a tenant in the order of its requests.
-//! A tenant that sends a hundred requests delays only itself.
+//! A tenant that sends a hundred requests delays only itself, and where one permit is kept for others, it never has all.
 
-use std::collections::VecDeque;
+use std::collections::{BTreeMap, VecDeque};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use tokio::sync::oneshot;
@@ -17,6 +17,10 @@ pub struct FairSemaphore {
 
 struct Queue {
     free: usize,
+    /// Most permits of one line at a time.
+    most_held: usize,
+    /// Permits of each line that has some.
+    held: BTreeMap<String, usize>,
     /// Most that wait in one line.
     most: usize,
     /// Nonempty queues in the order of their next turns.
@@ -36,6 +40,7 @@ pub struct Permit {
 
 /// Handed on when it is dropped.
 struct Slot {
+    line: String,
     semaphore: Option<FairSemaphore>,
 }
 
@@ -53,7 +58,18 @@ enum Entered {
 impl FairSemaphore {
     /// `what` is what the places are for, in the words of the metrics; at most `most` wait in one line.
     pub fn new(what: &'static str, places: usize, most: usize) -> FairSemaphore {
-        let queue = Queue { free: places, most, lines: VecDeque::new() };
+        FairSemaphore::holding(what, places, places, most)
+    }
+
+    /// The same where one line holds all places but one at most: long work of one never keeps all others waiting. Of a single place it
+    /// may hold that.
+    pub fn keeping_one(what: &'static str, places: usize, most: usize) -> FairSemaphore {
+        FairSemaphore::holding(what, places, places.saturating_sub(1).max(1), most)
+    }
+
+    fn holding(what: &'static str, places: usize, most_held: usize, most: usize) -> FairSemaphore {
+        let (held, lines) = (BTreeMap::new(), VecDeque::new());
+        let queue = Queue { free: places, most_held, held, most, lines };
         FairSemaphore { what, queue: Arc::new(Mutex::new(queue)) }
     }
 
@@ -61,7 +77,7 @@ impl FairSemaphore {
     pub async fn acquire(&self, line: &str) -> Result<Permit, Full> {
         loop {
             match self.enter(line)? {
-                Entered::Now => return Ok(self.taken()),
+                Entered::Now => return Ok(self.taken(line.to_owned())),
                 Entered::Later(permit) => {
                     if let Ok(permit) = permit.await {
                         return Ok(permit);
@@ -80,8 +96,8 @@ impl FairSemaphore {
 
     fn enter(&self, line: &str) -> Result<Entered, Full> {
         let mut queue = self.lock();
-        if queue.free > 0 {
-            queue.free -= 1;
+        if queue.free > 0 && queue.may_hold_more(line) {
+            queue.take(line);
             return Ok(Entered::Now);
         }
         let later = queue.wait(line);
@@ -89,22 +105,21 @@ impl FairSemaphore {
         later.map(Entered::Later)
     }
 
-    fn taken(&self) -> Permit {
-        Permit { _slot: Arc::new(Slot { semaphore: Some(self.clone()) }) }
+    fn taken(&self, line: String) -> Permit {
+        Permit { _slot: Arc::new(Slot { line, semaphore: Some(self.clone()) }) }
     }
 
-    /// Gives a free permit to the next waiting request.
-    fn pass_on(&self) {
+    /// Takes a permit back from a line and gives it to the next waiting request that may have it.
+    fn pass_on(&self, mut line: String) {
         loop {
             let mut queue = self.lock();
+            queue.release(&line);
             let next = queue.next();
             http::waiting(self.what, queue.length());
-            let Some(next) = next else {
-                queue.free += 1;
-                return;
-            };
+            let Some((name, next)) = next else { return };
             drop(queue);
-            let Err(permit) = next.send(self.taken()) else { return };
+            line.clone_from(&name);
+            let Err(permit) = next.send(self.taken(name)) else { return };
             // The waiting request is gone: the permit goes to the next one.
             if let Some(mut slot) = Arc::into_inner(permit._slot) {
                 slot.semaphore = None;
@@ -137,15 +152,37 @@ impl Queue {
         Ok(later)
     }
 
-    /// The first of the line whose turn it is.
-    fn next(&mut self) -> Option<oneshot::Sender<Permit>> {
+    /// Takes a permit for the first of the line whose turn it is, of those that may hold one more.
+    fn next(&mut self) -> Option<(String, oneshot::Sender<Permit>)> {
         loop {
-            let mut line = self.lines.pop_front()?;
+            let turn = self.lines.iter().position(|line| self.may_hold_more(&line.name))?;
+            let mut line = self.lines.remove(turn)?;
             let Some(first) = line.waiting.pop_front() else { continue };
+            let name = line.name.clone();
+            self.take(&name);
             if !line.waiting.is_empty() {
                 self.lines.push_back(line);
             }
-            return Some(first);
+            return Some((name, first));
+        }
+    }
+
+    fn may_hold_more(&self, line: &str) -> bool {
+        self.held.get(line).is_none_or(|held| *held < self.most_held)
+    }
+
+    fn take(&mut self, line: &str) {
+        self.free -= 1;
+        *self.held.entry(line.to_owned()).or_default() += 1;
+    }
+
+    fn release(&mut self, line: &str) {
+        self.free += 1;
+        if let Some(held) = self.held.get_mut(line) {
+            *held -= 1;
+            if *held == 0 {
+                self.held.remove(line);
+            }
         }
     }
 
@@ -157,7 +194,7 @@ impl Queue {
 impl Drop for Slot {
     fn drop(&mut self) {
         if let Some(semaphore) = self.semaphore.take() {
-            semaphore.pass_on();
+            semaphore.pass_on(std::mem::take(&mut self.line));
         }
     }
 }
@@ -193,6 +230,37 @@ mod tests {
         assert!(greedy[1..].iter_mut().all(|permit| permit.now_or_never().is_none()));
         drop(second.unwrap());
         assert!((&mut greedy[1]).now_or_never().is_some());
+    }
+
+    #[tokio::test]
+    async fn a_tenant_never_has_all_permits_where_one_is_kept_for_others() {
+        let semaphore = FairSemaphore::keeping_one("test", 3, 100);
+        let one = semaphore.acquire("greedy").await.unwrap();
+        let two = semaphore.acquire("greedy").await.unwrap();
+        let (mut third, mut fourth) = (asked(&semaphore, "greedy"), asked(&semaphore, "greedy"));
+        let other = (&mut semaphore.acquire("modest").boxed()).now_or_never();
+        let other = other.expect("it has the one that is kept").unwrap();
+        let mut late = asked(&semaphore, "modest");
+        // The permit that is kept goes to others, also where a tenant with enough waits longer.
+        drop(other);
+        let late = (&mut late).now_or_never().expect("it is not for the greedy").unwrap();
+        drop(late);
+        assert!((&mut third).now_or_never().is_none(), "nobody else waits, and yet it is kept");
+        drop(one);
+        let third = (&mut third).now_or_never().expect("its own permit is free");
+        assert!((&mut fourth).now_or_never().is_none());
+        drop((two, third));
+        assert!((&mut fourth).now_or_never().is_some(), "no permit is lost");
+    }
+
+    #[tokio::test]
+    async fn one_permit_is_for_everybody_also_where_one_is_kept() {
+        let semaphore = FairSemaphore::keeping_one("test", 1, 100);
+        let running = semaphore.acquire("a").await.unwrap();
+        let (gone, mut next) = (asked(&semaphore, "a"), asked(&semaphore, "a"));
+        drop(gone);
+        drop(running);
+        assert!((&mut next).now_or_never().is_some(), "who has left holds none");
     }
 
     #[tokio::test]

@@ -1,5 +1,7 @@
 //! Progress and cancellation of a long computation.
 
+use std::sync::atomic::{AtomicBool, Ordering};
+
 /// What the work is at; the caller takes the time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Phase {
@@ -72,6 +74,48 @@ pub struct Unobserved;
 
 /// Work inside an iteration of other work: cancelled with it, without progress of its own.
 pub struct Inner<'a>(pub &'a dyn Progress);
+
+/// Whether to stop, for loops that then leave out the rest and whose results are dropped. A stop that was asked for once stays, so that
+/// nobody who asks after the loop takes what is not whole for an answer.
+pub struct StopQuery<'a> {
+    progress: &'a dyn Progress,
+    is_asked: AtomicBool,
+}
+
+/// Items of a loop between two questions to its observer.
+const ITEMS_UNASKED: usize = 64;
+
+impl<'a> StopQuery<'a> {
+    pub fn of(progress: &'a dyn Progress) -> Self {
+        StopQuery { progress, is_asked: AtomicBool::new(false) }
+    }
+
+    /// That of work that nobody stops.
+    pub fn never() -> StopQuery<'static> {
+        StopQuery::of(&Unobserved)
+    }
+
+    /// Asks the observer, unless the stop is known.
+    pub fn is_asked(&self) -> bool {
+        let is_asked = self.is_known() || self.progress.is_cancelled();
+        if is_asked {
+            self.is_asked.store(true, Ordering::Relaxed);
+        }
+        is_asked
+    }
+
+    /// The same for an item of a loop by its number: the observer is asked at every 64th.
+    pub fn is_asked_at(&self, item: usize) -> bool {
+        match item.is_multiple_of(ITEMS_UNASKED) {
+            true => self.is_asked(),
+            false => self.is_known(),
+        }
+    }
+
+    fn is_known(&self) -> bool {
+        self.is_asked.load(Ordering::Relaxed)
+    }
+}
 
 impl Progress for Unobserved {
     fn phase(&self, _phase: Phase) {}

@@ -1,6 +1,7 @@
 //! Acceptance of a job: its input is checked with its meshes and queued.
 
 use std::collections::BTreeMap;
+use std::time::Duration;
 
 use tokio::runtime::Handle;
 
@@ -13,6 +14,7 @@ use crate::schema::predict::result::EngineDocument;
 use crate::schema::study::expected::TruthCostDocument;
 use crate::schema::{ErrorCode, Faults, Limits, Pointer, PredictDocument, Problem};
 use crate::store::{JobRow, NewJob};
+use mechanics::progress::StopQuery;
 
 /// The most waiting jobs.
 pub(super) const LONGEST_QUEUE: i64 = 10_000;
@@ -26,18 +28,42 @@ pub(super) fn queue_full() -> ApiError {
 pub(super) async fn prepared<I: Send + 'static, T: Send + 'static>(
     service: &Service,
     input: I,
-    prepare: fn(&I, &dyn MeshSource, &Limits) -> Result<T, JobError>,
+    prepare: fn(&I, &dyn MeshSource, &Limits, &StopQuery) -> Result<T, JobError>,
 ) -> ApiResult<(I, T)> {
     let sources = service.library.source(Handle::current(), BTreeMap::new());
-    let limits: Limits = (*service.limits).clone();
+    let found = checked_in_time(service, move |limits, stop| {
+        let found = prepare(&input, &sources, limits, stop)?;
+        Ok((input, found))
+    });
+    found.await.map_err(|error| error.map_problem(in_spec))
+}
+
+/// What a check finds, with the permit of its request and off the async threads. It ends with its client, and is refused when it takes
+/// longer than `check_s` of the limits.
+pub(super) async fn checked_in_time<T: Send + 'static>(
+    service: &Service,
+    check: impl FnOnce(&Limits, &StopQuery) -> Result<T, JobError> + Send + 'static,
+) -> ApiResult<T> {
+    let limits = service.limits.clone();
+    let check_s = limits.check_s;
+    let longest = Duration::try_from_secs_f64(check_s).unwrap_or(Duration::MAX);
     let permit = service.check_permit().await?;
-    let (input, found) = permit
-        .compute(move || {
-            let found = prepare(&input, &sources, &limits);
-            (input, found)
-        })
-        .await?;
-    Ok((input, found.map_err(|error| refusal(error).map_problem(in_spec))?))
+    let found =
+        permit.compute_within(longest, move |watch| check(&limits, &StopQuery::of(watch))).await?;
+    found.map_err(|error| match error {
+        JobError::Cancelled => too_long(check_s),
+        other => refusal(other),
+    })
+}
+
+/// The refusal of a check that would hold its permit too long: the same again takes as long.
+fn too_long(check_s: f64) -> ApiError {
+    let detail = format!(
+        "the check took more than {check_s} s, which `check_s` of /v1/limits allows, and was given up: the mesh, its surfaces, muscles or \
+         image, or the scenes of a study, are too many for one request"
+    );
+    let problem = Problem::new(ErrorCode::BudgetExceeded, detail);
+    problem.with("which", "check").with("allowed_s", check_s).into()
 }
 
 /// A job named by a document, which has to be successful.
@@ -150,4 +176,30 @@ pub(super) async fn require_compared(
         }
     }
     Ok(named)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use super::*;
+
+    #[tokio::test]
+    async fn a_check_beyond_its_time_is_refused_with_the_limit_and_one_within_it_is_not() {
+        let folder = tempfile::TempDir::new().unwrap();
+        let mut service = Service::example(folder.path(), &[("check-s", "3600")]).await;
+        let check = |_: &Limits, stop: &StopQuery| match stop.is_asked() {
+            true => Err(JobError::Cancelled),
+            false => Ok(7),
+        };
+        assert_eq!(checked_in_time(&service, check).await.ok(), Some(7));
+        service.limits = Arc::new(Limits { check_s: 0.0, ..(*service.limits).clone() });
+        let problem = checked_in_time(&service, check).await.err().unwrap().problem;
+        assert_eq!((problem.code, problem.code.status()), (ErrorCode::BudgetExceeded, 422));
+        assert_eq!(
+            (&problem.members["which"], &problem.members["allowed_s"]),
+            (&"check".into(), &0.0.into())
+        );
+        assert!(problem.detail.contains("more than 0 s"), "{}", problem.detail);
+    }
 }

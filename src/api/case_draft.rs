@@ -4,13 +4,13 @@ use std::collections::BTreeMap;
 
 use tokio::runtime::Handle;
 
-use super::accepted::{Accepted, LONGEST_QUEUE, queue_full};
+use super::Service;
+use super::accepted::{Accepted, LONGEST_QUEUE, checked_in_time, queue_full};
 use super::error::{ApiError, ApiResult};
 use super::idempotency::{KeyedRequest, NewId};
 use super::meshes::{UploadedMesh, take_in};
 use super::permits::Permit;
 use super::spool::SpooledBody;
-use super::{Service, accepted};
 use crate::jobs::{
     CheckReport, JobError, JobInput, MeshSource, MeshingInput, PredictInput, SourceError,
     StoredMesh, StoredShape, WaitingCase,
@@ -18,9 +18,7 @@ use crate::jobs::{
 use crate::library::upload::{Statement, Upload};
 use crate::schema::case::meshed::{CaseBody, MeshedCaseDocument};
 use crate::schema::predict::check::CheckDocument;
-use crate::schema::{
-    CaseDocument, ErrorCode, Faults, Limits, Pointer, PredictDocument, Problem, hashes,
-};
+use crate::schema::{CaseDocument, ErrorCode, Faults, Pointer, PredictDocument, Problem, hashes};
 use crate::store::{AddedCase, NewCase, NewJob};
 
 /// The part of a form with the document; the other parts are meshes.
@@ -190,14 +188,12 @@ impl Draft {
         let spec = case.meshing.clone();
         let input = MeshingInput { job: None, queue_s: None, spec, case: None };
         let sources = service.library.source(Handle::current(), self.brought());
-        let limits: Limits = (*service.limits).clone();
         let image = case.hounsfield.as_ref().map(|hounsfield| hounsfield.image.clone());
-        let permit = service.check_permit().await?;
-        let prepared = permit.compute(move || {
+        let prepared = checked_in_time(service, move |limits, _| {
             image.iter().try_for_each(|image| require_image(&sources, image))?;
-            input.prepare(&sources, &limits)
+            input.prepare(&sources, limits)
         });
-        let prepared = prepared.await?.map_err(accepted::refusal);
+        let prepared = prepared.await;
         let moved = |problem: Problem| problem.moved("/spec", "/meshing");
         let prepared = prepared.map_err(|error| error.map_problem(moved))?;
         let contents = prepared.meshes.into_iter().map(|(_, mesh)| mesh.sha256);
@@ -322,8 +318,6 @@ pub(super) async fn checked(
     extra: BTreeMap<String, StoredMesh>,
 ) -> ApiResult<CheckReport> {
     let sources = service.library.source(Handle::current(), extra);
-    let limits: Limits = (*service.limits).clone();
-    let permit = service.check_permit().await?;
-    let report = permit.compute(move || crate::jobs::check(&input, &sources, &limits)).await?;
-    report.map_err(accepted::refusal)
+    checked_in_time(service, move |limits, stop| crate::jobs::check(&input, &sources, limits, stop))
+        .await
 }

@@ -10,6 +10,7 @@ use serde::{Deserialize, Serialize};
 use utoipa::{IntoParams, ToSchema};
 use utoipa_axum::routes;
 
+use super::accepted::checked_in_time;
 use super::caller::Caller;
 use super::case_draft::{PostedCase, checked, split};
 use super::case_state::{CaseMeshingView, CaseState, meshed_again, meshing_view, tag_of};
@@ -21,7 +22,7 @@ use super::paging::Page;
 use super::parameters::{Id, Parameters, listed_tag};
 use super::prefer::{requested_wait, wait_for_end, with_wait};
 use super::resources::Resources;
-use super::{Service, accepted, body, case_state, conditional, job_input, json, time, with_header};
+use super::{Service, body, case_state, conditional, job_input, json, time, with_header};
 use crate::jobs::PredictInput;
 use crate::schema::case::meshed::CaseBody;
 use crate::schema::key::Scope;
@@ -340,9 +341,7 @@ async fn check(service: Service, Id(id): Id, request: Request) -> ApiResult {
     if wants_counts {
         return Ok(json(StatusCode::OK, &report.document));
     }
-    let permit = service.check_permit().await?;
-    let drawn = permit.compute(move || report.picture()).await?.map_err(accepted::refusal)?;
-    let svg = Bytes::from(drawn);
+    let svg = Bytes::from(checked_in_time(&service, move |_, _| report.picture()).await?);
     if let Some(question) = question {
         service.pictures.keep(&id, question, svg.clone());
     }

@@ -7,14 +7,15 @@ use axum::response::IntoResponse;
 use bytes::Bytes;
 use tokio::runtime::Handle;
 
+use super::accepted::checked_in_time;
 use super::error::{ApiError, ApiResult};
 use super::parameters::no_such_job;
 use super::report::stored_report;
-use super::{Service, accepted, conditional, middleware};
+use super::{Service, conditional, middleware};
 use crate::jobs::{Finished, JobInput};
 use crate::schema::predict::output::PictureName;
 use crate::schema::wire::problem::Problem;
-use crate::schema::{ErrorCode, Language, Limits};
+use crate::schema::{ErrorCode, Language};
 use crate::store::JobRow;
 use mechanics::mesh::ignored::listed;
 
@@ -85,10 +86,10 @@ async fn drawn(service: &Service, job: &JobRow, wanted: DrawingRequest) -> ApiRe
         return Err(ApiError::new(ErrorCode::NoSuchOutput, detail));
     }
     let sources = service.library.source(Handle::current(), BTreeMap::new());
-    let limits: Limits = (*service.limits).clone();
-    let permit = service.check_permit().await?;
-    let draw = move || finished.draw(picture, language, &sources, &limits);
-    let bytes = Bytes::from(permit.compute(draw).await?.map_err(accepted::refusal)?);
+    let drawn = checked_in_time(service, move |limits, stop| {
+        finished.draw(picture, language, &sources, limits, stop)
+    });
+    let bytes = Bytes::from(drawn.await?);
     let (case, cache_key) = (job.case_id.as_deref(), wanted.cache_key());
     service.pictures.keep_job_picture(&job.id, case, &cache_key, bytes.clone());
     // If it was erased meanwhile, the picture was not in the cache yet.

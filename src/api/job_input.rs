@@ -23,6 +23,7 @@ use crate::schema::{
     PredictDocument, ReproduceDocument, ResponseDocument,
 };
 use crate::store::{CaseRow, NewJob};
+use mechanics::progress::StopQuery;
 
 /// The job of a document.
 pub async fn of(service: &Service, document: JobDocument) -> ApiResult<NewJob> {
@@ -72,11 +73,12 @@ async fn of_prediction(service: &Service, mut spec: PredictDocument) -> ApiResul
         None => Vec::new(),
     };
     let tags = input.spec.tags.clone();
-    let prepare = |input: &PredictInput, sources: &dyn MeshSource, limits: &Limits| {
-        let prepared = input.prepare(sources, limits)?;
-        prepared.admit(0, limits)?;
-        Ok(prepared.spec_hash)
-    };
+    let prepare =
+        |input: &PredictInput, sources: &dyn MeshSource, limits: &Limits, stop: &StopQuery| {
+            let prepared = input.prepare(sources, limits, stop)?;
+            prepared.admit(0, limits)?;
+            Ok(prepared.spec_hash)
+        };
     let (input, spec_hash) = prepared(service, input, prepare).await?;
     let new =
         Accepted { case_id: Some(row.id), shared_cases, spec_hash, tags, mesh_ids, study: None };
@@ -105,7 +107,9 @@ async fn of_comparison(service: &Service, spec: CompareDocument) -> ApiResult<Ne
     let spec_hash = crate::schema::hashes::compare_hash(&spec, &content_of);
     let tags = spec.tags.clone();
     let input = CompareInput { job: None, queue_s: None, spec };
-    let admit = |input: &CompareInput, sources: &dyn MeshSource, _: &Limits| input.admit(sources);
+    let admit = |input: &CompareInput, sources: &dyn MeshSource, _: &Limits, _: &StopQuery| {
+        input.admit(sources)
+    };
     let (input, ()) = prepared(service, input, admit).await?;
     let new =
         Accepted { case_id, shared_cases: Vec::new(), spec_hash, tags, mesh_ids, study: None };
@@ -124,11 +128,12 @@ async fn of_response(service: &Service, mut spec: ResponseDocument) -> ApiResult
     };
     let (mesh_ids, tags) = (case.mesh_ids(), spec.tags.clone());
     let input = ResponseInput { job: None, queue_s: None, case, spec };
-    let prepare = |input: &ResponseInput, sources: &dyn MeshSource, limits: &Limits| {
-        let prepared = input.prepare(sources, limits)?;
-        prepared.admit(limits)?;
-        Ok(prepared.key)
-    };
+    let prepare =
+        |input: &ResponseInput, sources: &dyn MeshSource, limits: &Limits, stop: &StopQuery| {
+            let prepared = input.prepare(sources, limits, stop)?;
+            prepared.admit(limits)?;
+            Ok(prepared.key)
+        };
     let (input, spec_hash) = prepared(service, input, prepare).await?;
     let case_id = Some(row.id);
     let new =
@@ -149,11 +154,12 @@ async fn of_optimisation(service: &Service, mut spec: OptimiseDocument) -> ApiRe
     let tags = spec.tags.clone();
     let input = OptimiseInput { job: None, queue_s: None, case, spec };
     let mesh_ids = input.mesh_ids();
-    let prepare = |input: &OptimiseInput, sources: &dyn MeshSource, limits: &Limits| {
-        let prepared = input.prepare(sources, limits)?;
-        prepared.rest.admit(prepared.moving, limits)?;
-        Ok(prepared.spec_hash)
-    };
+    let prepare =
+        |input: &OptimiseInput, sources: &dyn MeshSource, limits: &Limits, stop: &StopQuery| {
+            let prepared = input.prepare(sources, limits, stop)?;
+            prepared.rest.admit(prepared.moving, limits)?;
+            Ok(prepared.spec_hash)
+        };
     let (input, spec_hash) = prepared(service, input, prepare).await?;
     let case_id = Some(row.id);
     let new =
@@ -186,9 +192,10 @@ async fn of_conformation(service: &Service, mut spec: ConformDocument) -> ApiRes
     }
     let tags = spec.tags.clone();
     let input = ConformInput { job: None, queue_s: None, spec };
-    let prepare = |input: &ConformInput, sources: &dyn MeshSource, limits: &Limits| {
-        Ok(input.prepare(sources, limits)?.spec_hash)
-    };
+    let prepare =
+        |input: &ConformInput, sources: &dyn MeshSource, limits: &Limits, stop: &StopQuery| {
+            Ok(input.prepare(sources, limits, stop)?.spec_hash)
+        };
     let (input, spec_hash) = prepared(service, input, prepare).await?;
     let (case_id, shared_cases, study) = (None, Vec::new(), None);
     let new = Accepted { case_id, shared_cases, spec_hash, tags, mesh_ids, study };
@@ -204,9 +211,10 @@ async fn of_meshing(service: &Service, mut spec: MeshingDocument) -> ApiResult<N
     }
     let tags = spec.tags.clone();
     let input = MeshingInput { job: None, queue_s: None, spec, case: None };
-    let prepare = |input: &MeshingInput, sources: &dyn MeshSource, limits: &Limits| {
-        Ok(input.prepare(sources, limits)?.spec_hash)
-    };
+    let prepare =
+        |input: &MeshingInput, sources: &dyn MeshSource, limits: &Limits, _: &StopQuery| {
+            Ok(input.prepare(sources, limits)?.spec_hash)
+        };
     let (input, spec_hash) = prepared(service, input, prepare).await?;
     let (case_id, shared_cases, study) = (None, Vec::new(), None);
     let new = Accepted { case_id, shared_cases, spec_hash, tags, mesh_ids, study };

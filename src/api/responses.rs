@@ -226,8 +226,8 @@ async fn rest(service: &Service, found: &FoundResponse, headers: &HeaderMap) -> 
                 ("Facies-Largest-Rotation-Deg" = f64, description = "the largest rotation of a segment"),
                 ("Facies-Order" = u8, description = "that of the response: 2 if the displacement includes the second-order term"),
                 ("Facies-Second-Order-Mm" = Option<f64>, description = "of order 2: the mean length of the second-order term, as `second_order_mm`"),
-                ("Facies-Nonlinearity-Estimate-Mm" = f64, description = "the linearisation error: of order 1 the second-order term, of order 2 the third-order term, from samples; absent if tissue grows or muscles pull"),
-                ("Facies-Within-Linear-Range" = bool, description = "as `within_linear_range`"),
+                ("Facies-Nonlinearity-Estimate-Mm" = Option<f64>, description = "the linearisation error: of order 1 the second-order term, of order 2 the third-order term, from samples; absent where it is unknown"),
+                ("Facies-Within-Linear-Range" = Option<bool>, description = "as `within_linear_range`; absent where it is null"),
                 ("Facies-Warning" = Option<String>, description = "the codes of the warnings: outside-linear-range, outside-second-order-range, nonlinearity-unknown, nothing-moves, plan-units-suspect, sliding-normal-turned, tearing, skin-overlaps, other-response, solved-loosely, and those of the case as the response was built"),
                 ("Facies-Not-Measured" = Option<String>, description = "codes of warnings that were not checked, as `not_measured`"),
                 ("Server-Timing" = String, description = "milliseconds to find the response, to add up its columns, to check the skin, and to write the result"))),
@@ -330,15 +330,16 @@ fn with_summary(response: Response, job: &str, applied: &Applied) -> Response {
         ("facies-max-mm", summary.max_mm.to_string()),
         ("facies-largest-rotation-deg", summary.largest_rotation_deg.to_string()),
         ("facies-order", summary.order.to_string()),
-        ("facies-within-linear-range", summary.within_linear_range.to_string()),
     ];
     let warnings: Vec<String> =
         applied.warnings.iter().map(|warning| warning.code.clone()).collect();
     let estimate = summary.nonlinearity_estimate_mm.map(|estimate| estimate.to_string());
+    let within = summary.within_linear_range.map(|is_within| is_within.to_string());
     let second_order = summary.second_order_mm.map(|length| length.to_string());
     let words = [
         ("facies-second-order-mm", second_order.unwrap_or_default()),
         ("facies-nonlinearity-estimate-mm", estimate.unwrap_or_default()),
+        ("facies-within-linear-range", within.unwrap_or_default()),
         ("facies-warning", warnings.join(", ")),
         ("facies-not-measured", applied.not_measured().join(", ")),
     ];

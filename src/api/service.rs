@@ -16,9 +16,10 @@ use crate::worker::process::slot_bytes;
 use std::sync::Arc;
 use std::time::Duration;
 
-/// Meshes parsed concurrently, and jobs checked.
-const PARSED_AT_ONCE: usize = 2;
-const CHECKED_AT_ONCE: usize = 2;
+/// Meshes parsed concurrently, and jobs checked; one tenant has one permit less of each. A posted case keeps that of its meshes while it
+/// is checked, so that what holds of checks has to hold of both.
+const PARSED_AT_ONCE: usize = 3;
+const CHECKED_AT_ONCE: usize = 3;
 /// Pages of jobs read and serialised concurrently.
 const LISTED_AT_ONCE: usize = 2;
 /// How long a list of jobs waits for its permit, equal to the wait for a database connection.
@@ -55,6 +56,7 @@ pub fn limits(config: &Config) -> Limits {
         event_streams: config.event_streams,
         keys: config.most_keys,
         waiting_requests: config.waiting_requests,
+        check_s: config.check.as_secs_f64(),
         // One body of the largest size always fits.
         client_bodies_bytes: config.client_bodies_bytes.max(config.upload_bytes as u64),
         ..Limits::default()
@@ -79,8 +81,8 @@ impl Service {
             store: store.with_waiting_limit(limits.waiting_requests),
             library,
             streams: super::streams::Streams::new(limits.event_streams),
-            parsing: FairSemaphore::new("parse", PARSED_AT_ONCE, waiting),
-            checking: FairSemaphore::new("check", CHECKED_AT_ONCE, waiting),
+            parsing: FairSemaphore::keeping_one("parse", PARSED_AT_ONCE, waiting),
+            checking: FairSemaphore::keeping_one("check", CHECKED_AT_ONCE, waiting),
             listing: FairSemaphore::new("list", LISTED_AT_ONCE, waiting),
             budget: Budget::new(ByteLimits {
                 of_process: config.bodies_bytes.max(limits.client_bodies_bytes),

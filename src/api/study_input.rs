@@ -17,6 +17,7 @@ use crate::schema::study::expected::truth_costs;
 use crate::schema::study::truth::TruthMethodName;
 use crate::schema::{CaseDocument, ErrorCode, Faults, Limits, ReportDocument, StudyDocument};
 use crate::store::NewJob;
+use mechanics::progress::StopQuery;
 
 /// A study: its cases and its baseline in their present versions, its scenes made and checked.
 pub async fn of_study(service: &Service, mut spec: StudyDocument) -> ApiResult<NewJob> {
@@ -42,11 +43,12 @@ pub async fn of_study(service: &Service, mut spec: StudyDocument) -> ApiResult<N
     let (job, queue_s, earlier) = (None, None, None);
     let input = StudyInput { job, queue_s, cases, baseline, truth_method, earlier, spec };
     let mesh_ids = input.mesh_ids();
-    let prepare = |input: &StudyInput, sources: &dyn MeshSource, limits: &Limits| {
-        let prepared = input.prepare(sources, limits)?;
-        let truths = truth_costs(&prepared.study);
-        Ok((prepared.spec_hash, AcceptedStudy { rows_key: prepared.rows_key, truths }))
-    };
+    let prepare =
+        |input: &StudyInput, sources: &dyn MeshSource, limits: &Limits, stop: &StopQuery| {
+            let prepared = input.prepare(sources, limits, stop)?;
+            let truths = truth_costs(&prepared.study);
+            Ok((prepared.spec_hash, AcceptedStudy { rows_key: prepared.rows_key, truths }))
+        };
     let (mut input, (spec_hash, mut study)) = prepared(service, input, prepare).await?;
     input.earlier = report::with_rows(service, &study.rows_key, &ids).await?.map(Box::new);
     if input.earlier.is_some() {

@@ -14,6 +14,7 @@ use crate::jobs::result::folder::{self, CHECK, CHECK_PICTURE};
 use crate::schema::Limits;
 use crate::schema::predict::planned::MovementReportDocument;
 use crate::schema::wire::canonical;
+use mechanics::progress::StopQuery;
 
 #[derive(Debug, Args)]
 pub struct Arguments {
@@ -31,7 +32,7 @@ pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
     let asked = arguments.scene.documents(arguments.plan.plan.as_deref())?;
     asked.file.refuse_beside_spec(&asked.path)?;
     let input = asked.file.to_input();
-    let report = check(&input, &asked.sources, &Limits::default())?;
+    let report = check(&input, &asked.sources, &Limits::default(), &StopQuery::never())?;
     print_check(&report.document);
     let Some(out) = &arguments.out else { return Ok(()) };
     let document = canonical::to_value(&report.document);

@@ -54,15 +54,14 @@ pub struct Arguments {
     /// With `surfaces`: the same bone as it lies beside the actual surface
     #[arg(long, help_heading = ALIGNED, value_name = "FILE")]
     align_moving: Option<PathBuf>,
-    /// With `matrix`: the movement of the actual surface, row by row in mm
+    /// With `matrix`: the movement of the actual surface, row by row in mm; 16 numbers with commas, or with spaces in quotes
     #[arg(
         long, help_heading = ALIGNED,
-        value_name = "16 NUMBERS",
-        value_delimiter = ',',
-        num_args = 1,
+        value_name = "M11,M12,..,M44",
+        value_parser = row,
         allow_hyphen_values = true
     )]
-    matrix4x4: Vec<f64>,
+    matrix4x4: Option<Row>,
     /// Only this sphere decides the alignment: x,y,z,r
     #[arg(
         long, help_heading = ALIGNED,
@@ -164,7 +163,7 @@ impl Arguments {
                     AlignArgument::Icp => AlignMethod::Icp,
                     AlignArgument::Surfaces => AlignMethod::Surfaces,
                 },
-                matrix4x4: numbers(&self.matrix4x4, "--matrix4x4")?.map(Matrix4x4),
+                matrix4x4: self.matrix()?,
                 landmarks: Default::default(),
                 fixed: mesh(&self.align_fixed),
                 moving: mesh(&self.align_moving),
@@ -187,12 +186,28 @@ impl Arguments {
         })
     }
 
+    fn matrix(&self) -> Result<Option<Matrix4x4>, CommandError> {
+        let given = self.matrix4x4.as_ref().map_or(&[][..], |Row(numbers)| numbers);
+        Ok(numbers(given, "--matrix4x4")?.map(Matrix4x4))
+    }
+
     fn mask(&self) -> Result<Option<PlaceDocument>, CommandError> {
         let sphere = numbers(&self.mask_sphere_mm, "--mask-sphere-mm")?.map(Sphere);
         let corners = numbers(&self.mask_box_mm, "--mask-box-mm")?.map(CornerPair);
         let given = sphere.is_some() || corners.is_some();
         Ok(given.then_some(PlaceDocument { sphere_mm: sphere, box_mm: corners }))
     }
+}
+
+/// Numbers in one argument.
+#[derive(Clone, Debug)]
+struct Row(Vec<f64>);
+
+/// Numbers parted by commas, spaces or both.
+fn row(text: &str) -> Result<Row, String> {
+    let words = text.split(|c: char| c == ',' || c.is_whitespace()).filter(|word| !word.is_empty());
+    let number = |word: &str| word.parse().map_err(|_| format!("{word:?} is no number"));
+    words.map(number).collect::<Result<_, _>>().map(Row)
 }
 
 /// Exactly as many numbers as wanted, or none at all.
@@ -264,4 +279,17 @@ fn print_result(result: &ResultDocument) {
         println!("aligned to {rms:.3} mm rms, {:.1} % of it above 1 mm", 100.0 * share);
     }
     print_warnings(&result.warnings);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::row;
+
+    #[test]
+    fn numbers_of_a_row_are_parted_by_commas_or_spaces() {
+        for text in ["1,-0.5,2e-3", "1 -0.5 2e-3", " 1, -0.5,\t2e-3\n"] {
+            assert_eq!(row(text).unwrap().0, [1.0, -0.5, 2e-3], "{text:?}");
+        }
+        assert_eq!(row("1,x").unwrap_err(), "\"x\" is no number");
+    }
 }

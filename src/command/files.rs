@@ -13,6 +13,7 @@ use crate::schema::learn::model::MODEL_FILE;
 use crate::schema::wire::canonical;
 use crate::schema::{CaseDocument, ErrorCode};
 use mechanics::format::{self, ReadLimits};
+use mechanics::mesh::Frame;
 
 /// Whether meshes are refused that no head can measure, as the service refuses them.
 #[derive(Clone, Copy, Debug, Default, Args)]
@@ -40,6 +41,26 @@ impl UnitArgument {
     }
 }
 
+/// Which way axes point that a file says nothing of.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub enum FrameArgument {
+    #[value(name = "LPS")]
+    Lps,
+    #[value(name = "RAS")]
+    Ras,
+    Unspecified,
+}
+
+impl FrameArgument {
+    pub fn frame(self) -> Frame {
+        match self {
+            FrameArgument::Lps => Frame::Lps,
+            FrameArgument::Ras => Frame::Ras,
+            FrameArgument::Unspecified => Frame::Unspecified,
+        }
+    }
+}
+
 /// What the meshes of files are in.
 enum FileUnits {
     All(LengthUnit),
@@ -52,6 +73,8 @@ pub struct FileSource {
     folder: PathBuf,
     units: FileUnits,
     allow_any_scale: bool,
+    /// Of images that state none.
+    frame: Option<Frame>,
     read: Mutex<BTreeMap<String, StoredMesh>>,
     /// The documents that the command writes beside its result.
     beside: Vec<String>,
@@ -63,6 +86,7 @@ impl FileSource {
             folder: folder.to_owned(),
             units: FileUnits::All(units),
             allow_any_scale: scale.allow_any_scale,
+            frame: None,
             read: Mutex::default(),
             beside: Vec::new(),
         }
@@ -71,6 +95,28 @@ impl FileSource {
     /// The same for a command that writes documents beside its result.
     pub fn beside(self, documents: &[&str]) -> Self {
         FileSource { beside: documents.iter().map(|&name| name.to_owned()).collect(), ..self }
+    }
+
+    /// The same with the frame of images that state none.
+    pub fn in_frame(self, frame: Option<Frame>) -> Self {
+        FileSource { frame: frame.filter(|frame| *frame != Frame::Unspecified), ..self }
+    }
+
+    /// The frame of a mesh that was read: that of its file, or of an image the one that is stated for those without.
+    fn frame_of(&self, id: &str, stored: &StoredMesh) -> Result<Option<Frame>, SourceError> {
+        let marked = stored.frame.filter(|mark| *mark != Frame::Unspecified);
+        let StoredShape::Image(_) = &stored.shape else { return Ok(stored.frame) };
+        match (marked, self.frame) {
+            (Some(mark), Some(frame)) if mark != frame => {
+                let detail = format!(
+                    "--frame has no meaning beside an image that states its axes: the file is in {mark}, --frame says {frame}; the plan \
+                     has a `frame` of its own"
+                );
+                let code = ErrorCode::FrameConflict;
+                Err(SourceError::Refused { id: id.to_owned(), code, detail })
+            }
+            (marked, frame) => Ok(marked.or(frame).or(stored.frame)),
+        }
     }
 
     /// The same with meshes that need not be read.
@@ -116,7 +162,10 @@ impl MeshSource for FileSource {
             ErrorKind::IsADirectory => SourceError::Refused {
                 id: id.to_owned(),
                 code: ErrorCode::UnknownMesh,
-                detail: format!("{} is a folder, and no file of a mesh", path.display()),
+                detail: format!(
+                    "{} is a folder, and no file of a mesh; the files of a DICOM series are given as one zip archive of them",
+                    path.display()
+                ),
             },
             _ => SourceError::Unreadable {
                 id: id.to_owned(),
@@ -129,7 +178,8 @@ impl MeshSource for FileSource {
             SourceError::Refused { id: id.to_owned(), code, detail }
         })?;
         let (stated, measured) = self.units_of(id);
-        let stored = StoredMesh::new(mesh, stated, canonical::sha256_hex(&bytes));
+        let mut stored = StoredMesh::new(mesh, stated, canonical::sha256_hex(&bytes));
+        stored.frame = self.frame_of(id, &stored)?;
         let size = MeshSize::of(&stored.shape, measured);
         size.check(self.allow_any_scale).map_err(|problem| {
             let remedy = match &stored.shape {

@@ -9,7 +9,7 @@ use serde_json::Value;
 use super::claim::Claim;
 use super::documents::{CASE_FILE, CaseFile, document, read};
 use super::failure::CommandError;
-use super::files::{FileSource, ScaleArguments, UnitArgument};
+use super::files::{FileSource, FrameArgument, ScaleArguments, UnitArgument};
 use super::screen::{print_files, print_warnings, run_with_progress};
 use super::selection::{BoneArgument, bone};
 use super::watch::Watch;
@@ -54,6 +54,9 @@ pub struct Arguments {
     /// The unit of length of the surfaces; default mm
     #[arg(long, help_heading = SCAN)]
     units: Option<UnitArgument>,
+    /// The frame of an image that states none, as NRRD with the space 3D-right-handed; default unspecified
+    #[arg(long, requires = "image", help_heading = SCAN)]
+    frame: Option<FrameArgument>,
     /// A plan whose osteotomy cuts the bone; without one all bone is fixed
     #[arg(long, value_name = "FILE", help_heading = SCAN)]
     plan: Option<PathBuf>,
@@ -71,6 +74,8 @@ pub struct ScanContext<'a> {
     pub plan: Option<&'a Path>,
     /// Of surfaces.
     pub units: Option<UnitArgument>,
+    /// Of an image that states none.
+    pub frame: Option<FrameArgument>,
     pub scale: ScaleArguments,
 }
 
@@ -78,14 +83,14 @@ pub struct ScanContext<'a> {
 #[derive(Debug, Args)]
 pub struct ScanArguments {
     /// A CT in Hounsfield units, to be meshed first
-    #[arg(long, value_name = "FILE", group = "meshed", help_heading = SCAN)]
+    #[arg(long, value_name = "FILE", groups = ["meshed", "image"], help_heading = SCAN)]
     scan: Option<PathBuf>,
     /// With --scan: a surface scan of the face, which is the skin where it covers that of the CT; landmarks that both have go into
     /// `skin_scan.landmarks` of --mesh-spec
     #[arg(long, value_name = "FILE", requires = "scan", help_heading = SCAN)]
     skin_scan: Option<PathBuf>,
     /// A label map, to be meshed first; `labels.classes` of --mesh-spec says what its labels are
-    #[arg(long, value_name = "FILE", conflicts_with = "scan", requires = "mesh_spec", group = "meshed", help_heading = SCAN)]
+    #[arg(long, value_name = "FILE", conflicts_with = "scan", requires = "mesh_spec", groups = ["meshed", "image"], help_heading = SCAN)]
     labels: Option<PathBuf>,
     /// The surface of all bone, to be meshed first with the skin around it; NAME=FILE, which may be given several
     /// times, for bones that are segments already
@@ -121,10 +126,11 @@ impl Meshed {
 
 /// Meshes, writes the files, and tells what is in them.
 pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
-    let Arguments { scan, skin, units, plan, out, scale } = arguments;
-    let (skin, plan, units, scale) = (skin.as_deref(), plan.as_deref(), *units, *scale);
+    let Arguments { scan, skin, units, frame, plan, out, scale } = arguments;
+    let (skin, plan) = (skin.as_deref(), plan.as_deref());
+    let (units, frame, scale) = (*units, *frame, *scale);
     let claim = Claim::of(out, &[CASE_FILE])?;
-    let meshed = scan.mesh(&ScanContext { skin, plan, units, scale }, out)?;
+    let meshed = scan.mesh(&ScanContext { skin, plan, units, frame, scale }, out)?;
     claim.put(CASE_FILE, format!("{:#}\n", canonical::to_value(&meshed.file)))?;
     meshed.print(out);
     print_warnings(&meshed.warnings);
@@ -134,7 +140,12 @@ pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
 
 impl ScanArguments {
     pub fn is_given(&self) -> bool {
-        self.scan.is_some() || self.labels.is_some() || !self.bone.is_empty()
+        self.is_image() || !self.bone.is_empty()
+    }
+
+    /// A scan or a label map.
+    pub fn is_image(&self) -> bool {
+        self.scan.is_some() || self.labels.is_some()
     }
 
     /// Meshes the scan, or what lies between skin and bone, into a folder: the case with the plan without its cuts. Paths of meshes
@@ -146,6 +157,7 @@ impl ScanArguments {
         let limits = Limits::default();
         let units = beside.units.unwrap_or_default().unit();
         let sources = FileSource::new(Path::new(""), units, beside.scale).beside(&[CASE_FILE]);
+        let sources = sources.in_frame(beside.frame.map(FrameArgument::frame));
         let place = JobContext { sources: &sources, limits: &limits, out };
         let input = MeshingInput { job: None, queue_s: None, spec, case: None };
         let _watch = Watch::start(&input.spec.budget);
@@ -163,9 +175,8 @@ impl ScanArguments {
 
     /// Refuses what says of surfaces what an image says itself.
     fn refuse_beside_image(&self, beside: &ScanContext) -> Result<(), CommandError> {
-        let is_image = self.scan.is_some() || self.labels.is_some();
         let why = match (beside.skin.is_some(), beside.units.is_some()) {
-            _ if !is_image => return Ok(()),
+            _ if !self.is_image() => return Ok(()),
             (true, _) => SKIN_OF_SCAN,
             // The unit is that of the surface scan.
             (false, true) if self.skin_scan.is_some() => return Ok(()),

@@ -21,6 +21,7 @@ use crate::schema::predict::check::CheckDocument;
 use crate::schema::predict::document::{ContactName, EstimateName, OutputName};
 use crate::schema::predict::newton::LoadStepDocument;
 use crate::schema::predict::result::ResultDocument;
+use mechanics::progress::StopQuery;
 
 /// What is kept goes to the meshes of a tenant.
 const NO_STORE: &str =
@@ -129,7 +130,7 @@ pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
     let input = asked.file.to_input();
     let _watch = Watch::start(&input.spec.budget);
 
-    let before = check(&input, &asked.sources, &limits)?.document;
+    let before = check(&input, &asked.sources, &limits, &StopQuery::never())?.document;
     print_check(&before);
 
     let place = JobContext { sources: &asked.sources, limits: &limits, out: &arguments.out };
@@ -255,8 +256,7 @@ fn print_load_steps(steps: &[LoadStepDocument]) {
         held.join("   ")
     );
     for step in steps {
-        let LoadStepDocument { rest, relative_residual, is_stable, reaction_millinewton, contact } =
-            step;
+        let LoadStepDocument { rest, is_stable, reaction_millinewton, contact, .. } = step;
         let stable = is_stable.map_or("?", |is_stable| if is_stable { "yes" } else { "no" });
         let norms = reaction_millinewton.values().zip(&held).map(|(force, title)| {
             let [x, y, z] = force.0;
@@ -268,13 +268,14 @@ fn print_load_steps(steps: &[LoadStepDocument]) {
             None => format!("{:>12}", "-"),
         };
         println!(
-            "             {:>6.3} {:>5} {:>12.2} {:>10.4} {:>9.1e} {stable:>7}{area}   {}",
+            "             {:>6.3} {:>5} {:>12.2} {:>10.4} {:>9.1e} {stable:>7}{area}   {}{}",
             rest.share,
             rest.steps,
             rest.energy_mn_mm,
             rest.least_det_f,
-            relative_residual,
-            norms.collect::<Vec<_>>().join("   ")
+            step.relative_residual,
+            norms.collect::<Vec<_>>().join("   "),
+            step.warnings.iter().map(|code| format!("   {code}")).collect::<String>()
         );
     }
 }

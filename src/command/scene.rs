@@ -6,7 +6,7 @@ use clap::{Args, ValueEnum};
 
 use super::documents::{CaseDocuments, CaseFile, read};
 use super::failure::CommandError;
-use super::files::{FileSource, ScaleArguments, UnitArgument};
+use super::files::{FileSource, FrameArgument, ScaleArguments, UnitArgument};
 use super::mesh::{Meshed, ScanArguments, ScanContext};
 use super::selection::{segment, selection};
 use crate::schema::case::document::{FrameName, SegmentDocument};
@@ -26,8 +26,8 @@ const FIXED_BESIDE_SCAN: &str = "--fixed has no meaning where a scan or surfaces
                                  `facies mesh` writes a case.json whose `fixed` may be changed";
 const SEGMENT_BESIDE_SCAN: &str = "--segment has no meaning where a scan or surfaces are meshed: segments are those of \
                                    `osteotomy` in the plan, or of --bone NAME=FILE";
-const FRAME_BESIDE_SCAN: &str = "--frame has no meaning where a scan or surfaces are meshed: the frame is that of their files; \
-                                 state `frame` in the plan where surfaces name none";
+const FRAME_BESIDE_SURFACES: &str = "--frame has no meaning where surfaces are meshed: the frame is that of their files; state `frame` \
+                                     in the plan where they name none";
 
 /// What is to be predicted.
 #[derive(Debug, Args)]
@@ -53,7 +53,7 @@ pub struct SceneArguments {
     /// The unit of length of the mesh, or of the surfaces that are meshed; default mm
     #[arg(long, conflicts_with = "case", help_heading = SCENE)]
     units: Option<UnitArgument>,
-    /// The frame of the mesh; default unspecified
+    /// The frame of the mesh; default unspecified. Beside --scan or --labels that of an image which states none
     #[arg(long, conflicts_with = "case", help_heading = SCENE)]
     frame: Option<FrameArgument>,
     /// The material of all tissue by its name in the literature: `facies materials` lists them; moduli given as well override those of the preset
@@ -78,15 +78,6 @@ pub struct PlanArgument {
     /// The plan document; its segments are segments of the case or node sets of the mesh
     #[arg(long, value_name = "FILE", conflicts_with = "case", help_heading = SCENE)]
     pub plan: Option<PathBuf>,
-}
-
-#[derive(Clone, Copy, Debug, ValueEnum)]
-enum FrameArgument {
-    #[value(name = "LPS")]
-    Lps,
-    #[value(name = "RAS")]
-    Ras,
-    Unspecified,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -129,10 +120,11 @@ impl SceneArguments {
             let detail = "give one of --case, --mesh, --scan and --bone: the last two become a mesh and a case";
             return Err(CommandError::Usage(detail.to_owned()));
         }
-        self.refuse_beside_scan()?;
+        self.refuse_beside_scan(scan)?;
         let folder = out.join("mesh");
         let (skin, units, scale) = (self.skin.as_deref(), self.units, self.scale);
-        let meshed = scan.mesh(&ScanContext { skin, plan, units, scale }, &folder)?;
+        let frame = self.frame;
+        let meshed = scan.mesh(&ScanContext { skin, plan, units, frame, scale }, &folder)?;
         meshed.print(&folder);
         let Meshed { mut file, meshes, .. } = meshed;
         file.spec = self.spec();
@@ -141,11 +133,11 @@ impl SceneArguments {
     }
 
     /// Refuses what says of a mesh that is there what a meshing finds.
-    fn refuse_beside_scan(&self) -> Result<(), CommandError> {
+    fn refuse_beside_scan(&self, scan: &ScanArguments) -> Result<(), CommandError> {
         let given = [
             (!self.fixed.is_empty(), FIXED_BESIDE_SCAN),
             (!self.segment.is_empty(), SEGMENT_BESIDE_SCAN),
-            (self.frame.is_some(), FRAME_BESIDE_SCAN),
+            (self.frame.is_some() && !scan.is_image(), FRAME_BESIDE_SURFACES),
         ];
         let refused: Vec<&str> =
             given.into_iter().filter(|(is_given, _)| *is_given).map(|(_, why)| why).collect();
@@ -159,11 +151,7 @@ impl SceneArguments {
         let plan = plan.map(read::<PlanDocument>).transpose()?;
         let mut case =
             CaseDocument::of_volume(&mesh.to_string_lossy(), self.units.unwrap_or_default().unit());
-        case.frame = match self.frame {
-            Some(FrameArgument::Lps) => FrameName::Lps,
-            Some(FrameArgument::Ras) => FrameName::Ras,
-            Some(FrameArgument::Unspecified) | None => FrameName::Unspecified,
-        };
+        case.frame = self.frame.map_or(FrameName::Unspecified, |frame| frame.frame().into());
         let skin = self.skin.as_deref().map(selection).transpose();
         case.skin = skin.map_err(CommandError::Usage)?;
         case.fixed.clone_from(&self.fixed);

@@ -23,6 +23,7 @@ use crate::schema::study::document::{
 use crate::schema::study::expected::truth_costs;
 use crate::schema::study::report::{OutcomeName, ReportDocument};
 use crate::schema::{CaseDocument, Limits, MaterialDocument, StudyDocument};
+use mechanics::progress::StopQuery;
 use mechanics::study::methods;
 
 /// The scenes and levels of a study that names none.
@@ -113,7 +114,7 @@ pub fn run(arguments: &Arguments) -> Result<(), CommandError> {
     let limits = Limits::default();
     let sources = FileSource::of_cases(input.cases.values(), arguments.scale);
     let place = JobContext { sources: &sources, limits: &limits, out: &arguments.out };
-    let prepared = input.prepare(&sources, &limits)?;
+    let prepared = input.prepare(&sources, &limits, &StopQuery::never())?;
     let kept = arguments.keep.as_ref().map(|folder| folder.join(prepared.rows_key + ".json"));
     if let Some(file) = kept.as_ref().filter(|file| file.exists()) {
         input.earlier = Some(Box::new(read_report(file)?));

@@ -150,6 +150,11 @@ pub const SETTINGS: &[Setting] = &[
         "requests of one tenant that may wait for their turn at the parser, as many for the check of jobs, as many to list jobs, and as many to write; 1 to 100000",
     ),
     setting(
+        "check-s",
+        "30",
+        "seconds that the check of a case or a job may take within its request, above which it gets 422; 1 to 3600",
+    ),
+    setting(
         "body-idle-s",
         "30",
         "seconds a client may stay silent in the middle of a request, between two, or take nothing of an answer, and in which it has to send or take 16 KiB a second; 0.1 to 600",

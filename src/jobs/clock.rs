@@ -7,7 +7,7 @@ use super::failure::JobError;
 use crate::schema::predict::result::TimingDocument;
 use crate::schema::wire::date::date_and_time;
 use mechanics::prediction::{ModelError, SolverError};
-use mechanics::progress::{Phase, Progress};
+use mechanics::progress::{Phase, Progress, StopQuery};
 
 /// Forwards progress, measures the time of the phases, and cancels the work once its time is used up.
 pub struct Observed<'a> {
@@ -55,6 +55,17 @@ impl<'a> Observed<'a> {
             ModelError::Solver(SolverError::Stopped) => self.stopped(),
             other => other.into(),
         }
+    }
+
+    /// The input of a job, checked while the clock runs.
+    pub fn prepared<T>(
+        &self,
+        prepare: impl FnOnce(&StopQuery) -> Result<T, JobError>,
+    ) -> Result<T, JobError> {
+        prepare(&StopQuery::of(self)).map_err(|error| match error {
+            JobError::Cancelled => self.stopped(),
+            other => other,
+        })
     }
 
     /// Reason of a cancellation: the caller, or the budget.
@@ -165,6 +176,18 @@ mod tests {
             (error.kind().name(), &error.to_document().members["which"]),
             ("budget-exceeded", &"wall".into())
         );
+    }
+
+    #[test]
+    fn input_that_is_checked_beyond_the_budget_is_over_it_and_not_cancelled() {
+        let clock = Observed::start(&Unobserved, 0.0);
+        let stopped = |stop: &StopQuery| match stop.is_asked() {
+            true => Err(JobError::Cancelled),
+            false => Ok(()),
+        };
+        let error = clock.prepared(stopped).unwrap_err();
+        assert_eq!(error.kind().name(), "budget-exceeded");
+        assert!(Observed::start(&Unobserved, 60.0).prepared(stopped).is_ok());
     }
 
     #[test]

@@ -16,6 +16,7 @@ use crate::schema::predict::output::PictureName;
 use crate::schema::predict::result::{ResultDocument, StatisticsDocument};
 use crate::schema::{Language, Limits, ReportDocument};
 use mechanics::mesh::TriangleSurface;
+use mechanics::progress::StopQuery;
 
 /// A successful job with something to draw.
 pub struct Finished {
@@ -67,19 +68,20 @@ impl Finished {
         matches!(self.made_of, MadeOf::Prediction(..))
     }
 
-    /// The bytes of a picture or a report. An SVG is the same as the job would have written.
+    /// The bytes of a picture or a report. An SVG is the same as the job would have written. After a stop it is cancelled.
     pub fn draw(
         &self,
         picture: PictureName,
         language: Language,
         sources: &dyn MeshSource,
         limits: &Limits,
+        stop: &StopQuery,
     ) -> Result<Vec<u8>, JobError> {
         if let Some(form) = ReportForm::of(picture.output()) {
-            return Ok(self.report(language, sources, limits)?.written(form));
+            return Ok(self.report(language, sources, limits, stop)?.written(form));
         }
         let MadeOf::Prediction(input, statistics) = &self.made_of else { return Ok(Vec::new()) };
-        let prepared = input.prepare(sources, limits)?;
+        let prepared = input.prepare(sources, limits, stop)?;
         if picture == PictureName::Classes {
             return Ok(prepared.classes_picture()?.into_bytes());
         }
@@ -94,11 +96,12 @@ impl Finished {
         language: Language,
         sources: &dyn MeshSource,
         limits: &Limits,
+        stop: &StopQuery,
     ) -> Result<Report, JobError> {
         let result = &self.result;
         match &self.made_of {
             MadeOf::Prediction(input, _) => {
-                let prepared = input.prepare(sources, limits)?;
+                let prepared = input.prepare(sources, limits, stop)?;
                 let facts = PredictionFacts {
                     case: &input.case,
                     plan: &input.plan,

@@ -12,7 +12,7 @@ use mechanics::chart::PngError;
 use mechanics::format::WriteError;
 use mechanics::meshing::MeshingError;
 use mechanics::optimisation::{OptimisationError, SearchError};
-use mechanics::prediction::{InvertedCell, ModelError, SolverError};
+use mechanics::prediction::{InvertedCell, ModelError, NoScene, SolverError};
 use mechanics::study::StudyError;
 use mechanics::validation::StatisticsError;
 
@@ -227,6 +227,15 @@ pub(super) fn thinned(history: &[f64]) -> Vec<f64> {
         told.push(last);
     }
     told
+}
+
+impl From<NoScene> for JobError {
+    fn from(none: NoScene) -> Self {
+        match none {
+            NoScene::Refused(errors) => JobError::Refused(errors.into()),
+            NoScene::Stopped => JobError::Cancelled,
+        }
+    }
 }
 
 impl From<Problem> for JobError {

@@ -25,7 +25,7 @@ use crate::schema::{
 use mechanics::format::SurfaceOutput;
 use mechanics::format::vtk::vtp;
 use mechanics::prediction::solved_loosely;
-use mechanics::progress::{Phase, Progress};
+use mechanics::progress::{Phase, Progress, StopQuery};
 use mechanics::response::{
     COLUMNS_PER_SEGMENT, ColumnRequest, Columns, InnerLoad, QuadraticForm, ResponseError,
     ResponseOrder, build_of, check_order, chosen,
@@ -75,6 +75,7 @@ impl ResponseInput {
         &self,
         sources: &dyn MeshSource,
         limits: &Limits,
+        stop: &StopQuery,
     ) -> Result<PreparedResponse, JobError> {
         let mut faults = Faults::default();
         self.spec.check(limits, &mut faults);
@@ -86,7 +87,7 @@ impl ResponseInput {
             plan: PlanDocument::default(),
             spec: self.spec.to_prediction(),
         };
-        let prepared = still.prepare(sources, limits)?;
+        let prepared = still.prepare(sources, limits, stop)?;
         let chosen = chosen(&prepared.scene, &self.spec.segments);
         let segments = chosen.map_err(|error| self.judge(error))?.len();
         check_order(&prepared.scene, self.spec.response_order())
@@ -115,7 +116,7 @@ pub fn response_job(
     let clock = Observed::start(progress, input.spec.budget.wall_s);
 
     // 1. Documents and meshes, checked together.
-    let checked = input.prepare(place.sources, place.limits)?;
+    let checked = clock.prepared(|stop| input.prepare(place.sources, place.limits, stop))?;
     checked.admit(place.limits)?;
     let PreparedResponse { key, prepared, inner, .. } = checked;
     clock.check()?;

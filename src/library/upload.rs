@@ -102,7 +102,11 @@ fn validate_upload(
     let frame = read.frame.or(statement.frame.map(Frame::from)).unwrap_or_default();
     let (mut report, stored) =
         rayon::join(|| mesh_report(&read), || encode_read(&read.mesh, frame));
-    let size = MeshSize { diagonal: report.diagonal, units: units.unwrap_or_default() };
+    let size = MeshSize {
+        diagonal: report.diagonal,
+        units: units.unwrap_or_default(),
+        of_image: is_image,
+    };
     let scale = size.check(statement.allow_any_scale)?;
     report.meshing = told;
     report.warnings.extend(scale.as_ref().map(WarningDocument::from));

@@ -52,15 +52,15 @@ pub struct AppliedSummary {
     #[schema(nullable = false)]
     pub second_order_mm: Option<f64>,
     /// The linearisation error, mean over the moving skin (by more than a tenth of the largest displacement): of order 1 the
-    /// second-order term, of order 2 the third-order term, both estimated from samples. Absent if the plan grows tissue, activates muscles
+    /// second-order term, of order 2 the third-order term, both estimated from samples. Null if the plan grows tissue, activates muscles
     /// or turns a wall with its segment (`sliding-normal-turned`), and of fibres that only pull or quadratic tetrahedra: then it is not
-    /// known.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(nullable = false)]
+    /// known, which the warning `nonlinearity-unknown` says.
+    #[schema(required)]
     pub nonlinearity_estimate_mm: Option<f64>,
     /// Whether the estimate is at most 0.5 mm, and of order 2 at most half of the second-order term if it is above
-    /// 0.1 mm. False without an estimate.
-    pub within_linear_range: bool,
+    /// 0.1 mm. Null without an estimate: then nobody knows.
+    #[schema(required)]
+    pub within_linear_range: Option<bool>,
 }
 
 /// Estimated linearisation error of a plan.
@@ -93,11 +93,10 @@ impl AppliedSummary {
             second_order_mm: beyond.map(|beyond| beyond.second),
             nonlinearity_estimate_mm: (!is_unknown)
                 .then(|| beyond.map_or(nonlinearity.estimate, |beyond| beyond.third)),
-            within_linear_range: !is_unknown
-                && match beyond {
-                    None => nonlinearity.is_within_linear_range(),
-                    Some(beyond) => outside_second_order(&beyond).is_none(),
-                },
+            within_linear_range: (!is_unknown).then(|| match beyond {
+                None => nonlinearity.is_within_linear_range(),
+                Some(beyond) => outside_second_order(&beyond).is_none(),
+            }),
         }
     }
 
@@ -111,7 +110,7 @@ impl AppliedSummary {
     pub const UNKNOWN: &'static str = "nonlinearity-unknown";
 
     pub fn warnings(&self) -> Vec<WarningDocument> {
-        if self.within_linear_range {
+        if self.within_linear_range == Some(true) {
             return Vec::new();
         }
         let Some(estimate) = self.nonlinearity_estimate_mm else {

@@ -103,6 +103,49 @@ fn what_has_no_meaning_where_a_scan_is_meshed_is_refused_by_name() {
     }
 }
 
+/// Replaces a line of the header of a NRRD file.
+fn with_space(scan: &[u8], space: &str) -> Vec<u8> {
+    let at = scan.windows(6).position(|bytes| bytes == b"space:").unwrap();
+    let end = at + scan[at..].iter().position(|byte| *byte == b'\n').unwrap();
+    [&scan[..at], b"space: ", space.as_bytes(), &scan[end..]].concat()
+}
+
+#[test]
+fn the_axes_of_a_scan_that_states_none_are_stated_beside_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = |name: &str| folder.path().join(name);
+    fs::write(file("ct.nrrd"), with_space(&ball_ct(), "3D-right-handed")).unwrap();
+    fs::write(file("plan.json"), plan().to_string()).unwrap();
+    let mut unstated = plan();
+    unstated.as_object_mut().unwrap().remove("frame");
+    fs::write(file("unstated.json"), unstated.to_string()).unwrap();
+    let (scan, out) = (file("ct.nrrd"), file("out"));
+    let asked = |command: &str, plan: &str, more: &[&str]| {
+        let plan = file(plan);
+        let rest = ["--scan", path(&scan), "--plan", path(&plan), "--out", path(&out)];
+        facies(&[&[command, "--tetrahedra", "20000"], &rest[..], more].concat())
+    };
+    let doubtful = |folder: &std::path::Path| {
+        let told = result(folder).warnings.into_iter();
+        told.filter(|warning| warning.code == "image-place-doubtful").count()
+    };
+    let frame_of = |file: &std::path::Path| {
+        let case: Value = serde_json::from_slice(&fs::read(file).unwrap()).unwrap();
+        case["case"]["frame"].clone()
+    };
+    let refused = asked("mesh", "plan.json", &[]);
+    let told = text(&refused.stderr);
+    assert!(refused.status.code() == Some(2) && told.contains("--frame LPS"), "{told}");
+    for (command, folder) in [("mesh", out.clone()), ("predict", out.join("mesh"))] {
+        let done = asked(command, "plan.json", &["--frame", "LPS"]);
+        assert_eq!(done.status.code(), Some(0), "{command}: {}", text(&done.stderr));
+        assert_eq!((doubtful(&folder), frame_of(&out.join("case.json"))), (0, json!("LPS")));
+    }
+    let meshed = asked("mesh", "unstated.json", &[]);
+    assert_eq!(meshed.status.code(), Some(0), "{}", text(&meshed.stderr));
+    assert_eq!((doubtful(&out), frame_of(&out.join("case.json"))), (1, json!("unspecified")));
+}
+
 #[test]
 fn a_label_map_is_meshed_in_its_regions_and_says_which_labels_it_was_not_told_of() {
     let folder = tempfile::tempdir().unwrap();

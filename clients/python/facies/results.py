@@ -95,9 +95,10 @@ class Applied:
         return estimate
 
     @property
-    def within_linear_range(self) -> bool:
-        """False where that is more than the service takes for small."""
-        return bool(self.document["within_linear_range"])
+    def within_linear_range(self) -> bool | None:
+        """False where that is more than the service takes for small; None where it is not known."""
+        within: bool | None = self.document["within_linear_range"]
+        return within
 
 
 @dataclass(frozen=True)

@@ -52,7 +52,7 @@ function showEstimate(applied?: Applied): void {
   const shown = find<HTMLElement>("#estimate");
   const warnings = applied?.warnings.map(({ code, detail }) => `\n${code}: ${detail}`) ?? [];
   shown.classList.toggle("doubtful", warnings.length > 0 || applied?.within_linear_range === false);
-  const left = applied?.nonlinearity_estimate_mm;
+  const left = applied?.nonlinearity_estimate_mm ?? undefined;
   const said = left === undefined ? "The linearisation error is unknown." : `Estimated linearisation error: about ${left.toFixed(2)} mm, mean over the skin.`;
   shown.textContent = applied === undefined ? "" : `${said}${warnings.join("")}`;
 }

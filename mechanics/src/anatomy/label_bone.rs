@@ -22,7 +22,8 @@ pub fn part_labels(
             let segments = body.segments();
             let labelled = label_given(&bone, osteotomy, |voxel| segments[voxel])?;
             let surfaces = surfaces_of(&bone, osteotomy, &labelled);
-            PartedBone { labelled, surfaces, teeth: None, wall_voxels: WALL_VOXELS }
+            let (as_given, wall_voxels) = (false, WALL_VOXELS);
+            PartedBone { labelled, surfaces, as_given, teeth: None, wall_voxels }
         }
         false => parted(&bone, osteotomy)?,
     };

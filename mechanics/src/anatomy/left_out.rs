@@ -61,15 +61,15 @@ pub(super) fn thinner_than_cells(report: &MeshingReport) -> Option<Warning> {
     let places: Vec<String> = report.pieces_lost.iter().take(TOLD).map(of).collect();
     let largest = ml(report.pieces_lost.first().map_or(0.0, |piece| piece.volume));
     let detail = format!(
-        "about {:.1} ml of tissue thinner than cells is missing from the mesh, in one piece {}; {:.0} ml are meshed, with cubes of {:.1} mm at \
+        "{:.1} ml of tissue thinner than cells is missing from the mesh, in one piece {}; {:.0} ml are meshed, with cubes of {:.1} mm at \
          the finest; more tetrahedra, or `size.fine` there, resolve it",
-        lost.max(largest),
+        lost,
         places.join(", "),
         ml(report.volume),
         report.finest
     );
     let is_told = largest > LEAST_PIECE || lost > MOST_LOST * ml(report.volume) && lost > LEAST;
-    let warning = || Warning::new("thin-tissue-lost", detail).with("volume_ml", lost.max(largest));
+    let warning = || Warning::new("thin-tissue-lost", detail).with("volume_ml", lost);
     is_told.then(|| warning().with("largest_ml", largest))
 }
 

@@ -38,9 +38,10 @@ use crate::meshing::{MeshingError, MeshingReport, MeshingSettings, TissueMesh, m
 use crate::osteotomy::bone_image::BoneImage;
 use crate::osteotomy::classes::{BoneContact, ClassRules, NodeClasses, TissueBoundary, classify};
 use crate::osteotomy::contact::Contact;
+use crate::osteotomy::enclosed::{Enclosed, enclosed};
 use crate::osteotomy::label_error::extent;
 use crate::osteotomy::label_surface::label_surface;
-use crate::osteotomy::labelling::{Labelled, label};
+use crate::osteotomy::labelling::{FoundSegment, Labelled, label};
 use crate::osteotomy::teeth::{ENAMEL_HU, MUCOSA_MM, Teeth};
 use crate::osteotomy::{LabelError, Osteotomy, Owner};
 use crate::progress::Progress;
@@ -83,6 +84,8 @@ pub struct PartedBone {
     pub labelled: Labelled,
     /// A closed surface for each segment, in their order.
     pub surfaces: Vec<TriangleSurface>,
+    /// The surfaces are those of a file, with what is open, doubled or hollow in them.
+    pub as_given: bool,
     /// Those that tissue slides on, with the mucosa around them; none where surfaces show no enamel.
     pub teeth: Option<Teeth>,
     /// Nodes of a wall of bone from which all voxels of bone are farther, in edges of voxels, lie on none; infinite where the wall is
@@ -101,6 +104,8 @@ pub struct Anatomy {
     pub classes: NodeClasses,
     /// A closed surface for each segment, in their order.
     pub bones: Vec<TriangleSurface>,
+    /// Volume and centre of each: what its surface encloses; of surfaces of a file their voxels.
+    pub solids: Vec<Enclosed>,
     /// Landmarks of the skin on its mid-plane, in mm.
     pub landmarks: BTreeMap<String, Vector>,
     /// The names of the node sets that are parts of the skin.
@@ -140,7 +145,20 @@ pub fn part_bone(scan: &ImageVolume, rules: &AnatomyRules) -> Result<PartedBone,
 fn parted(bone: &BoneImage<'_>, osteotomy: &Osteotomy) -> Result<PartedBone, AnatomyError> {
     let labelled = label(bone, osteotomy)?;
     let surfaces = surfaces_of(bone, osteotomy, &labelled);
-    Ok(PartedBone { labelled, surfaces, teeth: None, wall_voxels: WALL_VOXELS })
+    let (as_given, wall_voxels) = (false, WALL_VOXELS);
+    Ok(PartedBone { labelled, surfaces, as_given, teeth: None, wall_voxels })
+}
+
+impl PartedBone {
+    /// Volume, in mm³, and centre, in mm, of each segment: what its surface encloses; of surfaces of a file their voxels.
+    pub fn solids(&self) -> Vec<Enclosed> {
+        let solid = |(found, surface): (&FoundSegment, &TriangleSurface)| {
+            let of_voxels = Enclosed { volume_mm3: found.volume_mm3, centre: found.centre };
+            let of_surface = if self.as_given { None } else { enclosed(surface) };
+            of_surface.unwrap_or(of_voxels)
+        };
+        self.labelled.segments.iter().zip(&self.surfaces).map(solid).collect()
+    }
 }
 
 /// A closed surface for each segment, in their order.
@@ -160,7 +178,8 @@ pub fn build(
     rules: &AnatomyRules,
     progress: &dyn Progress,
 ) -> Result<Anatomy, AnatomyError> {
-    let PartedBone { labelled: bone, surfaces: bones, teeth, wall_voxels } = bone;
+    let solids = bone.solids();
+    let PartedBone { labelled: bone, surfaces: bones, teeth, wall_voxels, .. } = bone;
     let mut settings = rules.meshing.clone();
     settings.size.regions.extend(size::around_segments(&bone, settings.size.finest));
     let finest = settings.size.finest;
@@ -197,7 +216,8 @@ pub fn build(
     let sets = face.regions.into_iter().map(|(name, nodes)| (format!("skin_{name}"), nodes));
     volume.node_sets.extend(sets);
     let landmarks = face.landmarks;
-    Ok(Anatomy { volume, meshing: report, bone, classes, bones, landmarks, skin_regions, warnings })
+    let meshing = report;
+    Ok(Anatomy { volume, meshing, bone, classes, bones, solids, landmarks, skin_regions, warnings })
 }
 
 /// Cuts at which nothing is parted: planes beside the bone, or between bones that do not touch. A line of pieces is one cut, which

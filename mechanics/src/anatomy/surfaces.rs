@@ -40,7 +40,8 @@ pub fn take_as_segments(
     let bone = BoneImage { image: &image, threshold: 0.0 };
     let labelled = label_given(&bone, segments, |voxel| Some(usize::from(deepest[voxel])))?;
     let surfaces = bones.iter().map(|&bone| bone.clone()).collect();
-    Ok(PartedBone { labelled, surfaces, teeth: None, wall_voxels: f64::INFINITY })
+    let (as_given, wall_voxels) = (true, f64::INFINITY);
+    Ok(PartedBone { labelled, surfaces, as_given, teeth: None, wall_voxels })
 }
 
 /// Bones of which a part lies outside the skin.

@@ -7,6 +7,7 @@ use rayon::prelude::*;
 
 use crate::mesh::ignored::listed;
 use crate::mesh::{ArrayUse, TriangleSearch, TriangleSurface, VolumeMesh};
+use crate::progress::StopQuery;
 
 /// How a set of nodes is asked for (SELECT of the documents).
 #[derive(Clone, Debug, PartialEq)]
@@ -50,6 +51,8 @@ pub struct Selector<'a> {
     pub is_in_cell: &'a [bool],
     /// How far the boundary nodes, in their order, are from surfaces that were asked for, in mm, by the names of these.
     pub distances: &'a mut BTreeMap<String, Vec<f64>>,
+    /// Where it is asked for, distances are left out, and what is selected is to be dropped.
+    pub stop: &'a StopQuery<'a>,
 }
 
 impl Selector<'_> {
@@ -128,8 +131,11 @@ impl Selector<'_> {
                 .ok_or_else(|| SelectionError::UnknownSurface(name.to_owned()))?;
             let search = TriangleSearch::new(surface)
                 .map_err(|_| SelectionError::FlatSurface(name.to_owned()))?;
-            let from = |&node: &u32| search.closest(&self.mesh.nodes[node as usize]).distance;
-            let distances = self.boundary_nodes.par_iter().map(from).collect();
+            let from = |(place, &node): (usize, &u32)| match self.stop.is_asked_at(place) {
+                true => f64::INFINITY,
+                false => search.closest(&self.mesh.nodes[node as usize]).distance,
+            };
+            let distances = self.boundary_nodes.par_iter().enumerate().map(from).collect();
             self.distances.insert(name.to_owned(), distances);
         }
         let nodes = self.boundary_nodes.iter().zip(&self.distances[name]);

@@ -5,6 +5,7 @@ use rayon::prelude::*;
 use super::sampling::SamplingRule;
 use super::volume::ImageVolume;
 use crate::mesh::{CellShape, Vector, VolumeMesh};
+use crate::progress::StopQuery;
 
 /// Windows of values, from <= value < to, that do not overlap.
 #[derive(Clone, Debug, PartialEq)]
@@ -58,18 +59,22 @@ impl SampledCells {
     }
 }
 
-/// Samples every cell at the points of the rule. The same on any number of threads.
+/// Samples every cell at the points of the rule. The same on any number of threads. After a stop cells have no mean.
 pub fn sample_cells(
     mesh: &VolumeMesh,
     image: &ImageVolume,
     rule: &SamplingRule,
     windows: &Windows,
+    stop: &StopQuery,
 ) -> SampledCells {
     let cells = mesh.cells.len();
     let mut counts = vec![0; cells * windows.len()];
     let mut mean = vec![None; cells];
     counts.par_chunks_mut(windows.len().max(1)).zip(&mut mean).enumerate().for_each(
         |(cell, (counts, mean))| {
+            if stop.is_asked_at(cell) {
+                return;
+            }
             let corners: Vec<Vector> = mesh.corners(cell).collect();
             *mean = sample_cell((mesh.cells.shape(cell), &corners), image, rule, |value| {
                 if let Some(window) = windows.of(value) {

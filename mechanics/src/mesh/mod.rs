@@ -4,6 +4,7 @@ pub mod area_sampling;
 pub mod ball;
 pub mod bisection;
 mod bounds;
+mod cell_interior;
 pub mod cell_overlap;
 pub mod check;
 pub mod closest_point;
@@ -31,6 +32,7 @@ pub mod surface_edges;
 mod surface_topology;
 pub mod volume;
 pub mod warning;
+mod way_out;
 
 pub use bounds::{EMPTY_BOUNDS, bounds_of, boxes_meet};
 pub use closest_point::{ClosestPoint, SearchError, SurfaceSearch, TriangleSearch};

@@ -1,26 +1,28 @@
-//! Tissue in no cell, by points: how much of it is in one piece, and where.
+//! Tissue in no cell of a mesh, by points: how much of it there is, in which pieces, and where.
 //!
-//! Points are spread evenly over the leaves that hold a boundary. A leaf with little of its tissue in cells counts, so that the
-//! chords of a curved boundary do not: a sheet thinner than a cell is lost where lattice nodes miss it, and where all nodes
-//! in it were moved to its boundary.
+//! Points are spread evenly over the leaves that hold a boundary. Those in tissue, in no cell and deeper in what has none than chords of
+//! a curved boundary are off it show that their leaf has lost its tissue: a sheet thinner than a cell is lost where lattice
+//! nodes miss it, and where all nodes in it were moved to its boundary. All points of such a leaf in tissue and in no cell count.
 
-use super::draft::Draft;
+use super::draft::{Draft, FACES};
 use super::error::MeshingError;
 use super::octree::{Leaf, Leaves};
+use super::rims::RimFace;
 use super::shape::determinant;
 use super::watch::Watch;
 use crate::domain::{Coverage, Domain};
-use crate::mesh::Vector;
-use crate::mesh::clusters::{Clusters, clusters};
 use crate::mesh::cubes::Cubes;
+use crate::mesh::disjoint_sets::DisjointSets;
+use crate::mesh::{SurfaceSearch, TriangleSurface, Vector};
 
 /// Points of a leaf, no two of them at one height along an axis.
 const POINTS: usize = 16;
 /// Powers of the inverse of the root of x⁴ = x + 1. Source: Roberts, The unreasonable effectiveness of quasirandom sequences, 2018.
 const SPREAD: [f64; 3] =
     [0.819_172_513_396_164_4, 0.671_043_606_703_789_2, 0.549_700_477_901_970_3];
-/// A leaf with at least so many points of tissue in no cell, and at most as many in one, has lost its tissue.
-const LOST_POINTS: usize = 3;
+/// A point farther from all cells than this part of the edge of its leaf is lost. Chords of a boundary with the radius of an edge are
+/// an eighth off it.
+const DEEP: f64 = 0.25;
 /// So many pieces are told.
 const TOLD: usize = 20;
 
@@ -31,6 +33,27 @@ pub struct LostPiece {
     pub volume: f64,
     /// The place of it that is nearest to its middle.
     pub at: Vector,
+    /// The box around it.
+    pub low: Vector,
+    pub high: Vector,
+}
+
+/// All tissue that is in no cell.
+#[derive(Default)]
+pub(super) struct Lost {
+    /// In mm³.
+    pub volume: f64,
+    /// The largest pieces, the largest first.
+    pub pieces: Vec<LostPiece>,
+}
+
+/// Cells of a mesh, and those that were left out of it.
+pub(super) struct Cells<'a> {
+    pub draft: &'a Draft,
+    /// The triangles of its boundary.
+    pub faces: &'a [RimFace],
+    /// The corners of cells of pieces apart, which are told by themselves.
+    pub dropped: &'a [[Vector; 4]],
 }
 
 #[derive(Clone, Copy)]
@@ -40,50 +63,109 @@ struct Point {
     volume: f64,
 }
 
-/// The largest pieces, the largest first.
-pub(super) fn find(
-    leaves: &Leaves,
-    draft: &Draft,
-    domain: &dyn Domain,
-    watch: &Watch,
-) -> Result<Vec<LostPiece>, MeshingError> {
-    let unit = leaves.tree.grid.unit;
-    let points = points(leaves);
-    let numbered = (0_u32..).zip(&points).map(|(number, point)| (number, point.at));
-    let cubes = Cubes::new(4.0 * unit, numbered);
-    let held = watch.gather(&draft.tetrahedra, |tets, list| {
-        tets.iter().for_each(|tet| add_inside(&draft.corners(tet), &cubes, &points, list));
-    })?;
-    let mut is_held = vec![false; points.len()];
-    held.into_iter().for_each(|point| is_held[point as usize] = true);
-    let firsts: Vec<usize> = (0..points.len()).step_by(POINTS).collect();
-    let lost_of = |&first: &usize| {
-        let of_leaf = first..first + POINTS;
-        let held = of_leaf.clone().filter(|&point| is_held[point]).count();
-        if held > POINTS / 2 {
-            return Vec::new();
+impl Lost {
+    pub fn find(
+        leaves: &Leaves,
+        cells: &Cells,
+        domain: &dyn Domain,
+        watch: &Watch,
+    ) -> Result<Lost, MeshingError> {
+        let numbers = 0..leaves.list.len() as u32;
+        let mixed = |&leaf: &u32| leaves.list[leaf as usize].held == Coverage::Mixed;
+        let mixed: Vec<u32> = numbers.filter(mixed).collect();
+        let points: Vec<Point> = mixed.iter().flat_map(|&leaf| points(leaves, leaf)).collect();
+        let is_held = cells.held(&points, 4.0 * leaves.tree.grid.unit, watch)?;
+        let Ok(search) = SurfaceSearch::new(&cells.surface()) else { return Ok(Lost::default()) };
+        let places: Vec<usize> = (0..mixed.len()).collect();
+        let lost_of = |&place: &usize| {
+            let of_leaf = place * POINTS..(place + 1) * POINTS;
+            let is_out = |n: &usize| !is_held[*n] && domain.value(&points[*n].at) > 0.0;
+            let out: Vec<Point> = of_leaf.filter(is_out).map(|n| points[n]).collect();
+            let leaf = &leaves.list[mixed[place] as usize];
+            let deep = DEEP * f64::from(leaf.size) * leaves.tree.grid.unit;
+            let is_deep = |point: &Point| search.closest_within(&point.at, deep).is_none();
+            if out.iter().any(is_deep) { out } else { Vec::new() }
+        };
+        let lost = watch.map(&places, lost_of)?;
+        let lost = mixed.into_iter().zip(lost).filter(|(_, points)| !points.is_empty()).collect();
+        Ok(Lost::of(leaves, lost))
+    }
+
+    /// Of points by their leaves, ascending; those of leaves that touch are of one piece.
+    fn of(leaves: &Leaves, lost: Vec<(u32, Vec<Point>)>) -> Lost {
+        let mut joined = DisjointSets::new(lost.len());
+        for (number, (leaf, _)) in lost.iter().enumerate() {
+            for other in around(leaves, *leaf) {
+                if let Ok(other) = lost.binary_search_by_key(&other, |(leaf, _)| *leaf) {
+                    joined.join(number as u32, other as u32);
+                }
+            }
         }
-        let is_lost = |point: &usize| !is_held[*point] && domain.value(&points[*point].at) > 0.0;
-        let lost: Vec<usize> = of_leaf.filter(is_lost).collect();
-        if lost.len() >= LOST_POINTS.max(held) { lost } else { Vec::new() }
-    };
-    let lost = watch.map(&firsts, lost_of)?;
-    let lost: Vec<Point> = lost.into_iter().flatten().map(|point| points[point]).collect();
-    Ok(pieces(&lost, 2.0 * unit))
+        let mut of_piece: Vec<Vec<Point>> = vec![Vec::new(); lost.len()];
+        for (number, (_, points)) in lost.into_iter().enumerate() {
+            of_piece[joined.root(number as u32) as usize].extend(points);
+        }
+        let mut pieces: Vec<LostPiece> =
+            of_piece.iter().filter_map(|points| piece(points)).collect();
+        let volume = pieces.iter().map(|piece| piece.volume).sum::<f64>() + 0.0;
+        pieces.sort_by(|one, other| other.volume.total_cmp(&one.volume));
+        pieces.truncate(TOLD);
+        Lost { volume, pieces }
+    }
 }
 
-/// Of each leaf that holds a boundary.
-fn points(leaves: &Leaves) -> Vec<Point> {
-    let grid = &leaves.tree.grid;
-    let mixed = leaves.list.iter().filter(|leaf| leaf.held == Coverage::Mixed);
-    let of_leaf = |leaf: &Leaf| {
-        let (edge, corner) = (f64::from(leaf.size) * grid.unit, grid.position(leaf.corner));
-        (0..POINTS).map(move |n| {
-            let off = Vector::from(SPREAD.map(|step| (0.5 + step * (n + 1) as f64).fract()));
-            Point { at: corner + off * edge, volume: edge.powi(3) / POINTS as f64 }
-        })
+impl Cells<'_> {
+    /// Which points lie in a cell.
+    fn held(&self, points: &[Point], width: f64, watch: &Watch) -> Result<Vec<bool>, MeshingError> {
+        let numbered = (0_u32..).zip(points).map(|(number, point)| (number, point.at));
+        let cubes = Cubes::new(width, numbered);
+        let mut held = watch.gather(&self.draft.tetrahedra, |tets, list| {
+            let cells = tets.iter().map(|tet| self.draft.corners(tet));
+            cells.for_each(|corners| add_inside(&corners, &cubes, points, list));
+        })?;
+        held.extend(watch.gather(self.dropped, |cells, list| {
+            cells.iter().for_each(|corners| add_inside(corners, &cubes, points, list));
+        })?);
+        let mut is_held = vec![false; points.len()];
+        held.into_iter().for_each(|point| is_held[point as usize] = true);
+        Ok(is_held)
+    }
+
+    /// Where the mesh ends, and all faces of what was left out.
+    fn surface(&self) -> TriangleSurface {
+        let points = self.draft.nodes.iter().chain(self.dropped.iter().flatten()).copied();
+        let first = self.draft.nodes.len() as u32;
+        let of_cell =
+            |cell: u32| FACES.map(|face| face.map(|local| first + 4 * cell + local as u32));
+        let dropped = (0..self.dropped.len() as u32).flat_map(of_cell);
+        let triangles = self.faces.iter().map(|face| face.nodes).chain(dropped).collect();
+        TriangleSurface { points: points.collect(), triangles, ..TriangleSurface::default() }
+    }
+}
+
+/// Of a leaf.
+fn points(leaves: &Leaves, leaf: u32) -> impl Iterator<Item = Point> {
+    let (grid, Leaf { corner, size, .. }) = (&leaves.tree.grid, &leaves.list[leaf as usize]);
+    let (edge, corner) = (f64::from(*size) * grid.unit, grid.position(*corner));
+    (0..POINTS).map(move |n| {
+        let off = Vector::from(SPREAD.map(|step| (0.5 + step * (n + 1) as f64).fract()));
+        Point { at: corner + off * edge, volume: edge.powi(3) / POINTS as f64 }
+    })
+}
+
+/// Leaves that touch a leaf; of several smaller ones at a face or an edge not all.
+fn around(leaves: &Leaves, leaf: u32) -> impl Iterator<Item = u32> {
+    let Leaf { corner, size, .. } = leaves.list[leaf as usize];
+    let beside = move |step: u32| {
+        let steps = [step % 3, step / 3 % 3, step / 9];
+        let at = [0, 1, 2].map(|axis| match steps[axis] {
+            0 => corner[axis].wrapping_sub(1),
+            1 => corner[axis],
+            _ => corner[axis] + size,
+        });
+        leaves.at(at)
     };
-    mixed.flat_map(of_leaf).collect()
+    (0..27).filter_map(beside).filter(move |&other| other != leaf)
 }
 
 /// Adds the points in a tetrahedron.
@@ -100,22 +182,13 @@ fn add_inside(corners: &[Vector; 4], cubes: &Cubes, points: &[Point], list: &mut
     list.extend(cubes.in_box(&low, &high).filter(is_inside));
 }
 
-/// Points in neighbouring cubes together.
-fn pieces(points: &[Point], width: f64) -> Vec<LostPiece> {
-    let places: Vec<Vector> = points.iter().map(|point| point.at).collect();
-    let Clusters { of_place, count } = clusters(&places, width);
-    let mut of_cluster: Vec<Vec<Point>> = vec![Vec::new(); count];
-    points.iter().zip(of_place).for_each(|(point, cluster)| of_cluster[cluster].push(*point));
-    let mut pieces: Vec<LostPiece> = of_cluster.iter().filter_map(|points| piece(points)).collect();
-    pieces.sort_by(|one, other| other.volume.total_cmp(&one.volume));
-    pieces.truncate(TOLD);
-    pieces
-}
-
 fn piece(points: &[Point]) -> Option<LostPiece> {
+    let first = points.first()?.at;
     let volume: f64 = points.iter().map(|point| point.volume).sum();
     let mean = points.iter().map(|point| point.at * point.volume).sum::<Vector>() / volume;
     let off = |point: &&Point| (point.at - mean).norm();
     let nearest = points.iter().min_by(|one, other| off(one).total_cmp(&off(other)))?;
-    Some(LostPiece { volume, at: nearest.at })
+    let low = points.iter().fold(first, |low, point| low.inf(&point.at));
+    let high = points.iter().fold(first, |high, point| high.sup(&point.at));
+    Some(LostPiece { volume, at: nearest.at, low, high })
 }

@@ -45,12 +45,22 @@ pub(super) fn pieces(draft: &Draft) -> (Vec<Piece>, Vec<u32>) {
     (order.into_iter().map(|piece| found[piece]).collect(), of_tet)
 }
 
+/// What is left out of a mesh.
+#[derive(Default)]
+pub(super) struct Dropped {
+    pub pieces: Vec<Piece>,
+    /// The corners of its cells.
+    pub cells: Vec<[Vector; 4]>,
+}
+
 /// Leaves the largest piece; returns the others.
-pub(super) fn drop_small(draft: &mut Draft) -> Vec<Piece> {
+pub(super) fn drop_small(draft: &mut Draft) -> Dropped {
     let (mut all, of_tet) = pieces(draft);
     if all.len() < 2 {
-        return Vec::new();
+        return Dropped::default();
     }
+    let others = draft.tetrahedra.iter().zip(&of_tet).filter(|(_, piece)| **piece != 0);
+    let cells = others.map(|(tet, _)| draft.corners(tet)).collect();
     draft.retain(|tet| of_tet[tet] == 0);
-    all.split_off(1)
+    Dropped { pieces: all.split_off(1), cells }
 }

@@ -52,11 +52,9 @@ pub struct MeshingReport {
     pub dropped: Vec<Piece>,
     /// Gaps of air that are thinner than a cell and have been filled, the largest first.
     pub gaps_closed: Vec<Gap>,
-    /// Tissue that is thinner than a cell and has been lost, the largest first.
-    pub sheets_lost: Vec<Gap>,
-    /// Of all tissue that is thinner than cells and in none, about, in mm³.
+    /// Of all tissue that is thinner than cells and in none, in mm³.
     pub volume_lost: f64,
-    /// The largest connected pieces of it, by points in cells beside, the largest first.
+    /// The largest connected pieces of it, the largest first.
     pub pieces_lost: Vec<LostPiece>,
 }
 

@@ -6,10 +6,10 @@ use super::climb::Climb;
 use super::cuts::Cuts;
 use super::draft::Draft;
 use super::error::MeshingError;
-use super::gaps::{self, Thin};
+use super::gaps::{self, Gap};
 use super::grid::Grid;
 use super::lattice::Lattice;
-use super::lost::{self, LostPiece};
+use super::lost::{Cells, Lost};
 use super::octree::Leaves;
 use super::pieces::Piece;
 use super::pinches::Pinched;
@@ -25,9 +25,6 @@ use crate::domain::{Boundary, Domain};
 use crate::mesh::{CellShape, VolumeMesh};
 use crate::progress::{Phase, Progress};
 
-/// More tissue than so many times the sheets that edges of the lattice met is not lost: nodes alone count a body with flat faces along the
-/// lattice to several per cent, while edges meet a tenth and more of what is lost.
-const LOST_OF_MET: f64 = 12.0;
 /// Stages that progress tells of.
 const STAGES: usize = 8;
 /// A piece that is less than this share of all tissue is refused.
@@ -60,8 +57,7 @@ struct Counts {
     snapped: usize,
     undone: usize,
     pinched: Pinched,
-    thin: Thin,
-    lost: Vec<LostPiece>,
+    gaps: Vec<Gap>,
 }
 
 /// Meshes a body. The same body and settings give the same mesh, bit by bit, on any number of threads.
@@ -76,11 +72,12 @@ pub fn mesh(
     watch.stage()?;
     let (low, high) = domain.bounds();
     let size = target::size_field(domain, settings, &watch)?.bounded((high - low).max());
-    let (mut draft, counts) = fill_lattice(domain, settings, &size, &mut watch)?;
+    let (leaves, mut draft, counts) = fill_lattice(domain, settings, &size, &mut watch)?;
     watch.stage()?;
     let edges_cut = edge_copies::part(&mut draft);
-    let dropped = if settings.keep_pieces { Vec::new() } else { pieces::drop_small(&mut draft) };
-    refuse_remnant(&draft, &dropped)?;
+    let dropped = (!settings.keep_pieces).then(|| pieces::drop_small(&mut draft));
+    let dropped = dropped.unwrap_or_default();
+    refuse_remnant(&draft, &dropped.pieces)?;
     refuse_too_few(&draft, settings, size.finest)?;
     watch.stage()?;
     let raw_angles = Angles::of(&draft);
@@ -96,9 +93,10 @@ pub fn mesh(
     watch.stage()?;
     let faces = check(&draft, !settings.keep_pieces)?;
     clear_inner(&mut draft, &faces);
+    let cells = Cells { draft: &draft, faces: &faces, dropped: &dropped.cells };
+    let lost = settings.find_gaps.then(|| Lost::find(&leaves, &cells, domain, &watch));
+    let lost = lost.transpose()?.unwrap_or_default();
     let volume: f64 = draft.tetrahedra.iter().map(|tet| draft.volume(tet)).sum();
-    let apart: f64 = dropped.iter().map(|piece| piece.volume).sum();
-    let Thin { tissue, filled, met, .. } = counts.thin;
     let report = MeshingReport {
         nodes: draft.nodes.len(),
         tetrahedra: draft.tetrahedra.len(),
@@ -115,11 +113,10 @@ pub fn mesh(
         edges_cut,
         creased,
         fitted,
-        dropped,
-        gaps_closed: counts.thin.gaps,
-        sheets_lost: counts.thin.sheets,
-        volume_lost: (tissue + filled - volume - apart).clamp(0.0, LOST_OF_MET * met),
-        pieces_lost: counts.lost,
+        dropped: dropped.pieces,
+        gaps_closed: counts.gaps,
+        volume_lost: lost.volume,
+        pieces_lost: lost.pieces,
     };
     watch.end();
     Ok(finished(draft, &regions, report))
@@ -155,7 +152,7 @@ fn fill_lattice(
     settings: &MeshingSettings,
     size: &SizeField,
     watch: &mut Watch,
-) -> Result<(Draft, Counts), MeshingError> {
+) -> Result<(Leaves, Draft, Counts), MeshingError> {
     let (low, high) = domain.bounds();
     let grid = Grid::new(&low, &high, size)?;
     let refinement = Refinement { domain, size, most: settings.most_tetrahedra, keeps_thin: true };
@@ -165,10 +162,9 @@ fn fill_lattice(
     if lattice.tetrahedra.is_empty() {
         return Err(MeshingError::Empty { low, high, size: size.finest });
     }
-    let thin = if settings.find_gaps {
-        gaps::find(&lattice, &leaves, domain, watch)?
-    } else {
-        Thin::default()
+    let gaps = match settings.find_gaps {
+        true => gaps::find(&lattice, &leaves, domain, watch)?,
+        false => Vec::new(),
     };
     watch.stage()?;
     let cuts = Cuts::new(&lattice, domain, watch)?;
@@ -177,22 +173,17 @@ fn fill_lattice(
     let (fans, pinched) = pinches::part(&mut warp);
     watch.stage()?;
     let draft = stencils::fill(&warp, &fans, watch)?;
-    let lost = match settings.find_gaps {
-        true => lost::find(&leaves, &draft, domain, watch)?,
-        false => Vec::new(),
-    };
     let counts = Counts {
         leaves: leaves.list.len(),
         snapped: warp.snapped,
         undone: warp.undone,
         pinched,
-        thin,
-        lost,
+        gaps,
     };
     if draft.tetrahedra.is_empty() {
         return Err(MeshingError::Empty { low, high, size: size.finest });
     }
-    Ok((draft, counts))
+    Ok((leaves, draft, counts))
 }
 
 /// The array of cells that says their regions, where tissue is of several.

@@ -5,10 +5,12 @@
 //! u(x) = T(x) - x, so that |T(x) - T(b)| = |x - b|: every point keeps its distance to its bone.
 //!
 //! Bone is where faces of the tissue are held altogether: joined to a segment, fixed, or prescribed. A
-//! prescribed face has no rotation of its own: x takes the displacement of b, and keeps the vector to it. A
-//! triangle between two bones goes with that of most of its corners, and held nodes move as they are held.
+//! prescribed face has no rotation of its own: x takes the displacement of b, and keeps the vector to it. Of a
+//! face between two bones each has what is nearest to its corners: the part between them, the middles of the edges beside them and the
+//! middle of the face. Held nodes move as they are held.
 //!
-//! Between bones that move apart the warp jumps. With a blend radius r, each bone at a distance d up to
+//! Between bones that move apart the warp jumps. A point as near to several bones takes the mean of their movements, however space is
+//! turned, shifted or numbered. With a blend radius r, each bone at a distance d up to
 //! r above that of the nearest one, d_0, takes part with the weight (1 - (d - d_0) / r)^2; thickness is
 //! then kept only where one bone is in reach.
 
@@ -18,7 +20,8 @@ use rayon::prelude::*;
 
 use super::problem::{Equilibrium, ModelError};
 use crate::boundary::{Conditions, Constraint, NodeClass};
-use crate::mesh::{SurfaceSearch, TriangleSurface, Vector, VolumeMesh, Warning};
+use crate::mesh::volume::BoundaryFace;
+use crate::mesh::{ClosestPoint, SurfaceSearch, TriangleSurface, Vector, VolumeMesh, Warning};
 use crate::solver::SolveReport;
 
 /// Parameters of a warp.
@@ -27,6 +30,9 @@ pub struct ThicknessWarp {
     /// In mm; 0 follows the nearest bone alone.
     pub blend_radius: f64,
 }
+
+/// Distances to bones that differ by less than this share are the same.
+const AS_NEAR: f64 = 1e-9;
 
 /// A jump across an edge above this many mm is reported.
 const TOLD: f64 = 1e-6;
@@ -44,9 +50,25 @@ pub struct Warped<'a> {
 /// A rigid body of bone.
 struct Bone {
     mover: Mover,
-    /// Its points are the nodes of the mesh.
+    /// Its points are those of [`Bones`].
     surface: TriangleSurface,
     search: SurfaceSearch,
+}
+
+/// What the tissue lies on.
+struct Bones {
+    all: Vec<Bone>,
+    /// The displacement in mm of the nodes that are held, and after them of the points in faces between two bones.
+    held: Vec<Option<Vector>>,
+}
+
+/// The surfaces of bones while they are gathered.
+struct BoneFaces<'a> {
+    warped: &'a Warped<'a>,
+    /// The nodes of the mesh, and points in faces between two bones.
+    points: Vec<Vector>,
+    held: Vec<Option<Vector>>,
+    triangles: BTreeMap<Mover, Vec<[u32; 3]>>,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -66,19 +88,18 @@ struct Followed {
 impl Warped<'_> {
     /// The displacement of every node.
     pub fn solve(&self, warp: &ThicknessWarp) -> Result<Equilibrium, ModelError> {
-        let held = self.fully_constrained();
-        let bones = self.bones(&held);
-        if bones.is_empty() {
+        let bones = self.bones();
+        if bones.all.is_empty() {
             return Err(ModelError::NoBone);
         }
         let is_in_cell = self.mesh.is_in_cell();
         let follow = |node: usize| match is_in_cell[node] {
-            true => self.follow(&bones, &held, node, warp.blend_radius),
+            true => self.follow(&bones, node, warp.blend_radius),
             false => Followed { displacement: Vector::zeros(), bone: 0 },
         };
         let followed: Vec<Followed> =
             (0..self.mesh.nodes.len()).into_par_iter().map(follow).collect();
-        let warnings = [self.ignored(), self.off_bone(&bones, &held), self.jumps(&followed)];
+        let warnings = [self.ignored(), self.off_bone(&bones), self.jumps(&followed)];
         Ok(Equilibrium {
             displacement: followed.into_iter().map(|followed| followed.displacement).collect(),
             reactions: vec![Vector::zeros(); self.conditions.constraints.len()],
@@ -111,63 +132,55 @@ impl Warped<'_> {
         }
     }
 
-    /// The boundary triangles all of whose corners are held, by what moves them.
-    fn bones(&self, held: &[Option<Vector>]) -> Vec<Bone> {
-        let mut triangles: BTreeMap<Mover, Vec<[u32; 3]>> = BTreeMap::new();
+    /// The boundary faces all of whose corners are held, by what moves them.
+    fn bones(&self) -> Bones {
+        let (points, held) = (self.mesh.nodes.clone(), self.fully_constrained());
+        let mut faces = BoneFaces { warped: self, points, held, triangles: BTreeMap::new() };
         for face in self.mesh.boundary_faces() {
-            if face.nodes().iter().any(|&node| held[node as usize].is_none()) {
-                continue;
-            }
-            for triangle in face.triangles(&self.mesh.nodes) {
-                let [a, b, c] = triangle.map(|node| self.mover(node));
-                triangles.entry(if b == c { b } else { a }).or_default().push(triangle);
+            if face.nodes().iter().all(|&node| faces.held[node as usize].is_some()) {
+                faces.add(&face);
             }
         }
+        let BoneFaces { points, held, triangles, .. } = faces;
         let bone = |(mover, triangles)| {
-            let points = self.mesh.nodes.clone();
-            let surface = TriangleSurface { points, triangles, node_ids: None };
+            let surface = TriangleSurface { points: points.clone(), triangles, node_ids: None };
             let search = SurfaceSearch::new(&surface).ok()?;
             Some(Bone { mover, surface, search })
         };
-        triangles.into_iter().filter_map(bone).collect()
+        Bones { all: triangles.into_iter().filter_map(bone).collect(), held }
     }
 
-    fn follow(
-        &self,
-        bones: &[Bone],
-        held: &[Option<Vector>],
-        node: usize,
-        radius: f64,
-    ) -> Followed {
+    fn follow(&self, bones: &Bones, node: usize, radius: f64) -> Followed {
+        let Bones { all, held } = bones;
         let x = self.mesh.nodes[node];
-        let mut in_reach = Vec::with_capacity(bones.len());
-        let (mut nearest, mut bone) = (f64::INFINITY, 0);
-        for (number, candidate) in bones.iter().enumerate() {
-            let Some(closest) = candidate.search.closest_within(&x, nearest + radius) else {
-                continue;
-            };
-            if closest.distance < nearest {
-                (nearest, bone) = (closest.distance, number);
-            }
+        let mut in_reach = Vec::with_capacity(all.len());
+        let mut nearest = f64::INFINITY;
+        for (number, candidate) in all.iter().enumerate() {
+            let limit = nearest * (1.0 + AS_NEAR) + radius;
+            let Some(closest) = candidate.search.closest_within(&x, limit) else { continue };
+            nearest = nearest.min(closest.distance);
             in_reach.push((number, closest));
         }
+        let as_near = AS_NEAR * nearest;
+        let is_nearest =
+            |(_, closest): &&(usize, ClosestPoint)| closest.distance - nearest <= as_near;
+        let bone = in_reach.iter().find(is_nearest).map_or(0, |(number, _)| *number);
         if let Some(displacement) = held[node] {
             return Followed { displacement, bone };
         }
         let (mut sum, mut weights) = (Vector::zeros(), 0.0);
         for (number, closest) in in_reach {
-            let farther = closest.distance - nearest;
-            let weight = match number == bone {
-                true => 1.0,
-                false if farther < radius => (1.0 - farther / radius).powi(2),
-                false => continue,
+            let weight = match closest.distance - nearest {
+                farther if farther <= as_near => 1.0,
+                farther if farther < radius => (1.0 - farther / radius).powi(2),
+                _ => continue,
             };
-            let displacement = match bones[number].mover {
+            let displacement = match all[number].mover {
                 Mover::Segment(segment) => (self.movement)(segment, &x),
                 Mover::Nothing => Vector::zeros(),
                 Mover::Nodes => {
-                    let corners = bones[number].surface.triangles[closest.triangle];
-                    let of = |node: u32| held[node as usize].unwrap_or_default();
+                    let corners = all[number].surface.triangles[closest.triangle];
+                    let of = |point: u32| held[point as usize].unwrap_or_default();
                     corners
                         .iter()
                         .zip(closest.barycentric)
@@ -198,11 +211,11 @@ impl Warped<'_> {
     }
 
     /// Held nodes that bound no bone face: they move alone.
-    fn off_bone(&self, bones: &[Bone], held: &[Option<Vector>]) -> Option<Warning> {
-        let mut alone: Vec<bool> = held.iter().map(Option::is_some).collect();
-        let corners = bones.iter().flat_map(|bone| bone.surface.triangles.iter().flatten());
+    fn off_bone(&self, bones: &Bones) -> Option<Warning> {
+        let mut alone: Vec<bool> = bones.held.iter().map(Option::is_some).collect();
+        let corners = bones.all.iter().flat_map(|bone| bone.surface.triangles.iter().flatten());
         corners.for_each(|&corner| alone[corner as usize] = false);
-        let count = alone.into_iter().filter(|alone| *alone).count();
+        let count = alone[..self.mesh.nodes.len()].iter().filter(|alone| **alone).count();
         let detail = format!(
             "{count} moved or fixed nodes bound no face whose nodes are all moved or fixed: the tissue around does not follow them"
         );
@@ -240,5 +253,38 @@ impl Warped<'_> {
         );
         let warning = Warning::new("warp-jumps", detail).with("largest_mm", largest);
         (largest > TOLD).then(|| warning.with("torn_edges", torn.len() as f64))
+    }
+}
+
+impl BoneFaces<'_> {
+    /// A face whose nodes are all held.
+    fn add(&mut self, face: &BoundaryFace) {
+        let nodes = face.nodes();
+        let mover = self.warped.mover(nodes[0]);
+        if nodes.iter().all(|&node| self.warped.mover(node) == mover) {
+            let triangles = face.triangles(&self.warped.mesh.nodes);
+            self.triangles.entry(mover).or_default().extend(triangles);
+            return;
+        }
+        let count = nodes.len();
+        let middle = self.middle_of(nodes);
+        let of_edges: Vec<u32> =
+            (0..count).map(|i| self.middle_of(&[nodes[i], nodes[(i + 1) % count]])).collect();
+        for (i, &node) in nodes.iter().enumerate() {
+            let own = self.triangles.entry(self.warped.mover(node)).or_default();
+            own.push([node, of_edges[i], middle]);
+            own.push([node, middle, of_edges[(i + count - 1) % count]]);
+        }
+    }
+
+    /// A point that lies and moves as the mean of nodes that are held.
+    fn middle_of(&mut self, nodes: &[u32]) -> u32 {
+        let share = 1.0 / nodes.len() as f64;
+        let position = nodes.iter().map(|&node| self.points[node as usize]).sum::<Vector>() * share;
+        let moved =
+            nodes.iter().filter_map(|&node| self.held[node as usize]).sum::<Vector>() * share;
+        self.points.push(position);
+        self.held.push(Some(moved));
+        self.points.len() as u32 - 1
     }
 }

@@ -6,6 +6,7 @@ use crate::domain::{ClosedSurface, SurfaceDomainError, SurfaceName};
 use crate::image::SamplingRule;
 use crate::mesh::ball::Ball;
 use crate::mesh::{TriangleSurface, Vector, VolumeMesh};
+use crate::progress::StopQuery;
 
 /// No more sample points are looked at one by one also where the surface is far from the cell.
 const FEW: usize = 8;
@@ -20,15 +21,16 @@ pub fn shares_inside(
     samples: usize,
 ) -> Result<Vec<f64>, SurfaceDomainError> {
     let all: Vec<u32> = (0..mesh.cells.len() as u32).collect();
-    shares_of(mesh, &all, (surface, number), samples)
+    shares_of(mesh, &all, (surface, number), samples, &StopQuery::never())
 }
 
-/// The same of some cells.
+/// The same of some cells. After a stop shares are 0.
 pub fn shares_of(
     mesh: &VolumeMesh,
     cells: &[u32],
     (surface, number): (&TriangleSurface, usize),
     samples: usize,
+    stop: &StopQuery,
 ) -> Result<Vec<f64>, SurfaceDomainError> {
     let inside = ClosedSurface::new(surface, SurfaceName::Muscle(number))?;
     let rule = SamplingRule::new(samples);
@@ -55,5 +57,9 @@ pub fn shares_of(
         });
         count as f64 / rule.count as f64
     };
-    Ok(cells.par_iter().map(|&cell| of_cell(cell as usize)).collect())
+    let unless_stopped = |(place, &cell): (usize, &u32)| match stop.is_asked_at(place) {
+        true => 0.0,
+        false => of_cell(cell as usize),
+    };
+    Ok(cells.par_iter().enumerate().map(unless_stopped).collect())
 }

@@ -7,7 +7,8 @@
 //! segment's movement, which are smooth in its six parameters q, three translations and three angles
 //! (R = Rz Ry Rx about a pivot). On request u(q) has the second order too, sum_{k <= l} a_k a_l U_kl, and its products are as
 //! smooth. So the sum is reduced once to as many rows as there are columns (`reduction`), and minimised by Levenberg and
-//! Marquardt's method with steps that keep to the bounds (`minimum`, `bounded_step`). Growth of a region has a column too, and its change of volume is a parameter beside them where it
+//! Marquardt's method with steps that keep to the bounds (`minimum`, `bounded_step`), from several starts where segments may turn far
+//! (`starts`). Growth of a region has a column too, and its change of volume is a parameter beside them where it
 //! is not stated. Constants of the tissue are not linear: `search` solves the response anew for each step of Gauss and Newton.
 //!
 //! With errors of standard deviation sigma, independent for each component of each point, the
@@ -21,6 +22,7 @@ mod minimum;
 mod question;
 mod reduction;
 mod search;
+mod starts;
 mod unknowns;
 use crate::mesh::Vector;
 use crate::plan::RigidMovement;
@@ -28,13 +30,14 @@ use crate::response::{Amounts, BeyondLinear};
 pub use bounded_step::UNDETERMINED;
 pub use certainty::{Certainty, Weight};
 pub use constants::{ConstantBounds, ConstantError, ConstantKind};
-use minimum::minimise;
+use minimum::{LowestMinimum, lowest};
 pub use question::{
     Bound, ConstantColumn, Goal, InnerBounds, OptimisationError, PARAMETERS_PER_SEGMENT, Parameter,
     Question, SegmentBounds, SkinPoint, Target,
 };
 use reduction::Reduction;
 pub use search::{Search, SearchError, SearchResult, search};
+use starts::starts;
 use unknowns::Unknowns;
 
 /// The plan that comes nearest to the targets.
@@ -61,6 +64,11 @@ pub struct Optimum {
     /// Components that it sums over.
     pub components: usize,
     pub iterations: usize,
+    /// Starts of the search: more than one where segments may turn far.
+    pub starts: usize,
+    /// The sums of other minima that starts ended in, the lowest first: higher ones, and where the targets determine all parameters
+    /// others as low with other movements.
+    pub other_minima: Vec<f64>,
 }
 
 /// Residual of a target.
@@ -75,22 +83,35 @@ pub struct Residual {
 
 /// Finds the plan within the bounds that comes nearest to the targets.
 pub fn optimise(question: &Question) -> Result<Optimum, OptimisationError> {
+    minimum_beside(question, None)
+}
+
+/// The same; beside an optimum whose constants were held, the nearest minimum.
+fn minimum_beside(
+    question: &Question,
+    held: Option<&Optimum>,
+) -> Result<Optimum, OptimisationError> {
     match Unknowns::new(question).count() {
         0 => Err(OptimisationError::NothingFree),
-        _ => minimum_of(question),
+        _ => minimum_of(question, held),
     }
 }
 
 /// The same, also where nothing is free.
-fn minimum_of(question: &Question) -> Result<Optimum, OptimisationError> {
+fn minimum_of(question: &Question, held: Option<&Optimum>) -> Result<Optimum, OptimisationError> {
     // 1. What may move, and what is asked of it.
     let unknowns = Unknowns::new(question);
     let reduction = Reduction::new(question)?;
 
     // 2. The minimum, and how certain it is.
-    let minimum = minimise(&unknowns, &reduction)?;
+    let starts = starts(&unknowns, held);
+    let LowestMinimum { minimum, others } = lowest(&unknowns, &reduction, &starts)?;
     let at_bound = unknowns.at_bound(&minimum.unknowns);
     let certainty = Certainty::new(&unknowns, &minimum, &at_bound);
+    let is_unique = certainty.undetermined.is_empty();
+    let others = others.iter().filter(|other| other.is_higher || is_unique);
+    let mut other_minima: Vec<f64> = others.map(|other| other.square_sum).collect();
+    other_minima.sort_by(f64::total_cmp);
 
     // 3. What is left of each target.
     let values = unknowns.values(&minimum.unknowns);
@@ -118,6 +139,8 @@ fn minimum_of(question: &Question) -> Result<Optimum, OptimisationError> {
         weighted_square_sum: minimum.residual.norm_squared() + reduction.unreachable,
         components: reduction.components,
         iterations: minimum.iterations,
+        starts: starts.len(),
+        other_minima,
     })
 }
 

@@ -6,9 +6,10 @@
 //! J has the derivatives by all parameters, and its covariance is that of all of them together.
 
 use super::constants::ConstantFailure;
+use super::unknowns::Unknowns;
 use super::{
     ConstantBounds, ConstantColumn, ConstantError, InnerBounds, OptimisationError, Optimum,
-    Question, SegmentBounds, Target, minimum_of, optimise,
+    Question, SegmentBounds, Target, minimum_beside, minimum_of,
 };
 use crate::prediction::Scene;
 use crate::progress::Progress;
@@ -81,7 +82,10 @@ pub fn search(
     let mut iterate = search.solved_at(scene, start, progress)?;
     if search.constants.is_empty() {
         let question = search.question(&iterate.response, &iterate.columns, &[]);
-        let optimum = optimise(&question)?;
+        if Unknowns::new(&question).count() == 0 {
+            return Err(OptimisationError::NothingFree.into());
+        }
+        let optimum = iterate.held.clone();
         return Ok(iterate.found(optimum, 0));
     }
     let mut step = f64::INFINITY;
@@ -136,7 +140,7 @@ impl<'a> Search<'a> {
         }
         let columns = build_of(scene, &self.asked, progress)?;
         let response = columns.to_response();
-        let held = minimum_of(&self.question(&response, &columns, &[]))?;
+        let held = minimum_of(&self.question(&response, &columns, &[]), None)?;
         let sum = held.weighted_square_sum;
         Ok(Iterate { search: self, values, columns, response, held, sum })
     }
@@ -177,10 +181,14 @@ impl Iterate<'_> {
         for (constant, &value) in constants.iter().zip(&self.values) {
             columns.push(constant.column(scene, (asked, &amounts), value, progress)?);
         }
-        Ok(optimise(&self.search.question(&self.response, &self.columns, &columns))?)
+        let question = self.search.question(&self.response, &self.columns, &columns);
+        Ok(minimum_beside(&question, Some(&self.held))?)
     }
 
     fn found(self, optimum: Optimum, steps: usize) -> SearchResult {
+        // With constants, of the last search that held them.
+        let Optimum { starts, other_minima, .. } = self.held;
+        let optimum = Optimum { starts, other_minima, ..optimum };
         SearchResult { optimum, columns: self.columns, response: self.response, steps }
     }
 }

@@ -8,7 +8,9 @@
 
 use nalgebra::{DMatrix, DVector, Matrix3};
 
-use super::{Bound, InnerBounds, PARAMETERS_PER_SEGMENT, Parameter, Question, SegmentBounds};
+use super::{
+    Bound, InnerBounds, Optimum, PARAMETERS_PER_SEGMENT, Parameter, Question, SegmentBounds,
+};
 use crate::mesh::Vector;
 use crate::plan::RigidMovement;
 use crate::prediction::linear_strain;
@@ -73,6 +75,24 @@ impl<'a> Unknowns<'a> {
             Parameter::Constant(place) => self.question.constants[*place].value * free.scale(),
         };
         self.within(DVector::from_iterator(self.count(), self.free.iter().map(rest)))
+    }
+
+    /// The point of an optimum whose constants were held, and these as the response has them.
+    pub(super) fn beside(&self, optimum: &Optimum) -> DVector<f64> {
+        let value = |free: &Parameter| match *free {
+            Parameter::Movement { .. } | Parameter::Growth(_) => optimum.value(*free),
+            Parameter::Constant(place) => self.question.constants[place].value,
+        };
+        let values = self.free.iter().map(|free| value(free) * free.scale());
+        self.within(DVector::from_iterator(self.count(), values))
+    }
+
+    /// The twelve numbers of each segment.
+    pub(super) fn movement_numbers(&self, unknowns: &DVector<f64>) -> DVector<f64> {
+        let movements = self.movements(&self.values(unknowns));
+        let pairs = movements.iter().zip(&self.question.response.segments);
+        let numbers = pairs.flat_map(|(movement, segment)| coefficients(movement, &segment.centre));
+        DVector::from_vec(numbers.collect())
     }
 
     /// The nearest point within the bounds; at a bound where nothing but rounding parts it from there.

@@ -2,7 +2,7 @@
 //! planes of the cuts where it is cut.
 //!
 //! Each cube of eight voxels is six tetrahedra around its diagonal (Kuhn's), the same on shared faces. An edge between a
-//! voxel of the segment and another is crossed where the image passes the threshold or a cut of the segment lies,
+//! voxel of the segment and another is crossed where the image passes the threshold or the saw of a cut of the segment begins,
 //! whichever comes first, and in the middle where bone touches bone or the scan ends.
 //! Source: Doi, Koide, An efficient method of triangulating equi-valued surfaces by using tetrahedral cells, IEICE
 //! Transactions 74 (1991).
@@ -13,6 +13,7 @@ use nalgebra::Matrix3;
 
 use super::bone_image::BoneImage;
 use super::bone_labels::{BoneLabels, Owner};
+use super::cut::Cut;
 use super::rule::Osteotomy;
 use crate::mesh::{TriangleSurface, Vector};
 
@@ -132,9 +133,11 @@ impl Marching<'_> {
         let threshold = (outer <= 0.0).then(|| inner / (inner - outer));
         let sides = &self.osteotomy.segments()[self.segment].sides;
         let cuts = sides.iter().map(|side| &self.osteotomy.cuts()[side.cut]);
-        let cut = cuts.filter(|cut| cut.parts(&from, &to)).map(|cut| {
-            let [here, there] = [from, to].map(|end| cut.plane().height(&end).abs());
-            (here - cut.kerf() / 2.0).max(0.0) / (here + there)
+        let is_sawn = |cut: &&Cut| cut.parts(&from, &to) || cut.saws(&to);
+        let cut = cuts.filter(is_sawn).map(|cut| {
+            let [here, there] = [from, to].map(|end| cut.plane().height(&end));
+            let off_face = here.abs() - cut.kerf() / 2.0;
+            if off_face > 0.0 { off_face / (here - there).abs() } else { 0.0 }
         });
         cut.chain(threshold).reduce(f64::min).unwrap_or(0.5)
     }

@@ -1,7 +1,7 @@
 //! Adaptive refinement: solve, estimate, mark, refine, until the estimated error of the skin is accepted or a bound is met.
 //!
 //! The error that is estimated at the skin nodes of the case (`numerical_error`) is held against what is accepted, over the whole
-//! skin that moves and over parts of it that have a limit of their own. Where it is larger, the goal of the next refinement is that error
+//! skin that moves and over parts of it that have a limit of their own; with what linearity leaves out where `auto` asks (`refinement_verdict`). Where it is larger, the goal of the next refinement is that error
 //! itself, made linear: the mean over that skin of the displacement along the direction in which each place is estimated to
 //! be off, J(v) = int w . v dA with w = sum_g e / (|e| tol_g A_g) over the limits g that are not met; at a landmark the displacement
 //! of that point alone. Cells with half of what
@@ -11,16 +11,14 @@
 use std::collections::BTreeMap;
 
 use super::answer::Answer;
-use super::at_points::points_refined;
-use super::muscle_field::MuscleField;
-use super::nonlinearity;
+use super::nonlinearity::{self, Estimated};
 use super::numerical_error::{self, NotEstimated, NumericalError};
 use super::refined_scene::NotRefined;
 use super::refinement_goal::{Limit, LimitError, RefinementGoal, SkinPart};
+use super::refinement_verdict::left_out;
 use super::scene::Scene;
 use super::{Prediction, described};
 use crate::mesh::bisection::{Bisection, HALVES_EVERY_EDGE, NotTetrahedra};
-use crate::mesh::ignored::listed;
 use crate::mesh::{Vector, Warning};
 use crate::model::fem::discretisation_error::{Estimate, Goal, marked};
 use crate::model::fem::linear_system::{LinearSystem, Solved};
@@ -36,40 +34,6 @@ const MEMORY_MARGIN: f64 = 1.15;
 
 /// Time for a mesh of more cells grows by this power of their number.
 const TIME_GROWTH: f64 = 1.1;
-
-/// The warning where what linearity leaves out is above what is accepted of the mesh.
-fn linearisation_error_warning(
-    scene: &Scene,
-    prediction: &Prediction,
-    wanted: &RefinementGoal,
-) -> Option<Warning> {
-    let moving = scene.skin.moving_points(&prediction.displacement);
-    let mean = scene.skin.mean_length(&moving, &prediction.nonlinearity.as_ref().ok()?.left_out);
-    let accepted = wanted.skin_mm;
-    let detail = format!(
-        "{accepted:.3} mm are accepted, and the linearisation error alone is {mean:.3} mm in the mean over the skin that moves: a finer mesh \
-         does not reduce it"
-    );
-    let warning = Warning::new("tolerance-not-met", detail).with("accepted_mm", accepted);
-    (mean > accepted).then(|| warning.with("expected_mm", mean))
-}
-
-/// The warning where muscles around lines or in surfaces count on a mesh that is refined.
-fn muscles_stay(scene: &Scene) -> Option<Warning> {
-    let counts = |own: &&MuscleField| {
-        let is_drawn = own.has_lines || own.body.is_some();
-        let is_tissue = own.body.is_some() && scene.muscle_tissue.is_some();
-        is_drawn && (is_tissue || own.is_active(&scene.distributed.inner))
-    };
-    let counting: Vec<&String> =
-        scene.muscles.iter().filter(counts).map(|muscle| &muscle.name).collect();
-    let detail = format!(
-        "finer cells have the muscles of the first mesh, from which they are cut: no estimate includes the error of muscles around lines \
-         and in surfaces ({}) on coarse cells; use a finer mesh of the case",
-        listed(&counting)
-    );
-    (!counting.is_empty()).then(|| Warning::new("muscles-not-refined", detail))
-}
 
 /// A mesh that was solved on.
 #[derive(Clone, Debug, PartialEq)]
@@ -91,7 +55,8 @@ pub struct Level {
 pub enum Stop {
     /// The estimate is within what is accepted.
     Met,
-    /// It is, but leaves something out that a warning names: muscles, points, or more than is accepted of what linearity leaves out.
+    /// It is, but a warning speaks against the answer or names what no estimate has: muscles, points, or what linearity leaves out, where
+    /// that is unknown or above what is accepted.
     Incomplete,
     Cells,
     Time,
@@ -153,6 +118,8 @@ struct Step<'a> {
     system: LinearSystem<'a>,
     solved: Solved,
     error: NumericalError,
+    /// Once it is asked for.
+    linearity: Option<Estimated>,
 }
 
 impl<'a> Step<'a> {
@@ -160,15 +127,12 @@ impl<'a> Step<'a> {
         let system = scene.assemble(progress)?.ok_or(NotEstimated::Quadratic)?;
         let solved = system.solve(&[scene.load_case()], progress)?.remove(0);
         let error = numerical_error::estimate(scene, &system, &solved, progress)??;
-        Ok(Step { scene, system, solved, error })
+        Ok(Step { scene, system, solved, error, linearity: None })
     }
 
-    fn answer(self, progress: &dyn Progress) -> Result<Answer, ModelError> {
-        let Step { scene, system, solved, error } = self;
-        let nonlinearity = match nonlinearity::reason_for_none(scene) {
-            Some(reason) => Err(reason),
-            None => nonlinearity::estimate(scene, &system, &solved, progress)?,
-        };
+    fn answer(mut self, progress: &dyn Progress) -> Result<Answer, ModelError> {
+        let nonlinearity = self.linearity(progress)?.clone();
+        let Step { scene, solved, error, .. } = self;
         let answer = Answer {
             equilibrium: solved.equilibrium,
             numerical_error: Ok(error),
@@ -176,6 +140,47 @@ impl<'a> Step<'a> {
             contact: None,
         };
         Ok(answer.corrected(scene.settings.corrected))
+    }
+
+    /// What linearity leaves out.
+    fn linearity(&mut self, progress: &dyn Progress) -> Result<&Estimated, ModelError> {
+        let found = match (self.linearity.take(), nonlinearity::reason_for_none(self.scene)) {
+            (Some(known), _) => known,
+            (None, Some(reason)) => Err(reason),
+            (None, None) => {
+                nonlinearity::estimate(self.scene, &self.system, &self.solved, progress)?
+            }
+        };
+        Ok(self.linearity.insert(found))
+    }
+
+    /// The limits that a finer mesh may meet and this one does not.
+    fn open<'b>(
+        &mut self,
+        first: &Scene,
+        limits: &'b [Limit<'b>],
+        is_of_answer: bool,
+        progress: &dyn Progress,
+    ) -> Result<Vec<&'b Limit<'b>>, ModelError> {
+        let scenes = [first, self.scene];
+        if !is_of_answer {
+            let missing = &self.error.missing;
+            let is_open = |own: &&Limit| own.error(scenes, missing) > own.accepted_mm;
+            return Ok(limits.iter().filter(is_open).collect());
+        }
+        let missing = self.error.missing.clone();
+        let of_mesh = |own: &Limit| own.expected_of_mesh(scenes, &missing);
+        let is_open = |own: &&Limit| of_mesh(own) > own.accepted_mm;
+        let open: Vec<&Limit> = limits.iter().filter(is_open).collect();
+        if !open.is_empty() {
+            return Ok(open);
+        }
+        let Ok(left) = self.linearity(progress)? else { return Ok(open) };
+        let is_open = |own: &&Limit| {
+            let of_linearity = own.error(scenes, &left.left_out);
+            of_linearity < own.accepted_mm && of_linearity + of_mesh(own) > own.accepted_mm
+        };
+        Ok(limits.iter().filter(is_open).collect())
     }
 
     /// The cells from which most of the error comes that is not accepted.
@@ -266,13 +271,12 @@ pub fn predict_adaptively(
     let mut levels: Vec<Level> = Vec::new();
     let (answer, stop) = loop {
         let level_begun = stopwatch();
-        let step = Step::solve(finest.as_ref().unwrap_or(scene), progress)?;
+        let mut step = Step::solve(finest.as_ref().unwrap_or(scene), progress)?;
         if levels.is_empty() {
             let moving = scene.skin.moving_points(&step.solved.equilibrium.displacement);
             limits[0].part = SkinPart::Moving(moving);
         }
-        let error = |limit: &Limit| limit.error([scene, step.scene], &step.error.missing);
-        let open: Vec<&Limit> = limits.iter().filter(|own| error(own) > own.accepted_mm).collect();
+        let open = step.open(scene, &limits, wanted.is_of_answer, progress)?;
         let next = match open.is_empty() {
             true => Err(Stop::Met),
             false => step.finer(&bisection, &open, wanted.cells, progress)?,
@@ -294,18 +298,14 @@ pub fn predict_adaptively(
             }
         }
     };
-    let mut prediction = described(finest.as_ref().unwrap_or(scene), answer, progress);
+    let on = finest.as_ref().unwrap_or(scene);
+    let left_out = left_out(wanted, &limits, [scene, on], &answer)?;
+    let mut prediction = described(on, answer, progress);
     let finest = finest.map(|on_it| {
         let displacement = at_first_nodes(&mut prediction, scene);
         Finest { bisection, scene: on_it, displacement }
     });
     prediction.warnings.extend((stop != Stop::Met).then(|| not_met(&limits, &levels, stop)));
-    let mut left_out: Vec<Warning> = Vec::new();
-    left_out.extend(linearisation_error_warning(scene, &prediction, wanted));
-    if finest.is_some() {
-        left_out.extend(muscles_stay(scene));
-        left_out.extend(points_refined(scene).map_err(NotRefined::from)?);
-    }
     let is_incomplete = stop == Stop::Met && !left_out.is_empty();
     let stop = if is_incomplete { Stop::Incomplete } else { stop };
     prediction.warnings.extend(left_out);
@@ -339,7 +339,8 @@ fn not_met(limits: &[Limit], levels: &[Level], stop: Stop) -> Warning {
     let cells = levels.last().map_or(0, |level| level.cells);
     let detail = format!(
         "the mesh of {cells} cells leaves out an estimated {mean:.3} mm in the mean over the skin that moves, where {wanted:.3} mm were to be \
-         met there, or more over a part of it or at a landmark with a limit of its own: {bound} allows no finer one"
+         met there, or more over a part of it, at a landmark with a limit of its own or with what linearity leaves out: {bound} allows no finer \
+         one"
     );
     let warning = Warning::new("tolerance-not-met", detail).with("accepted_mm", wanted);
     warning.with("expected_mm", mean)

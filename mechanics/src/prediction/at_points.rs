@@ -8,6 +8,7 @@ use super::scene::Scene;
 use crate::boundary::NodeSelection;
 use crate::mesh::Warning;
 use crate::model::problem::InvertedCell;
+use crate::progress::StopQuery;
 
 /// The warning where conditions or forces act at points, which a refined mesh feels less and less, or without end.
 pub fn points_refined(scene: &Scene) -> Result<Option<Warning>, InvertedCell> {
@@ -45,7 +46,8 @@ impl Plan {
             return plan;
         }
         let boundary = case.volume.boundary_faces();
-        let mut check = Check::new(case, &boundary);
+        let stop = StopQuery::never();
+        let mut check = Check::new(case, &boundary, &stop);
         for load in &mut plan.loads {
             if let Load::Force { nodes, .. } = load {
                 let selected = check.select(nodes, "/plan/loads");

@@ -8,7 +8,7 @@ use super::fibres::Tissues;
 use super::hounsfield::TissueOfCells;
 use super::muscle_field::{MuscleField, MuscleTissue};
 use super::pressure_kind::{part_cells_of_bone, pressure_kinds};
-use super::problem::SceneErrors;
+use super::problem::{NoScene, SceneErrors};
 use super::scene::Scene;
 use super::skin_check::suspect_skin;
 use super::stiff_layer;
@@ -22,6 +22,7 @@ use crate::mesh::{Vector, Warning};
 use crate::model::fem::discretisation_error::DistributedLoads;
 use crate::plan::PlannedSegment;
 use crate::plan::doubt::nothing_moves;
+use crate::progress::StopQuery;
 
 /// Materials and fibres of cells.
 struct InCells {
@@ -32,6 +33,11 @@ struct InCells {
 }
 
 impl Check<'_> {
+    /// Fails after a stop, with nothing to tell.
+    fn go_on(&self) -> Result<(), SceneErrors> {
+        if self.stop.is_asked() { Err(SceneErrors(Vec::new())) } else { Ok(()) }
+    }
+
     /// The tissue of cells in regions with these names: their materials and fibres, what an image shows of them, and muscles.
     fn in_cells(
         &mut self,
@@ -55,9 +61,33 @@ impl Check<'_> {
 impl Scene {
     /// Checks a case and a plan together; says everything that is wrong, not the first thing only.
     pub fn new(case: &Case, plan: &Plan, settings: &Settings) -> Result<Scene, SceneErrors> {
+        Scene::built(case, plan, settings, &StopQuery::never())
+    }
+
+    /// The same where it may be stopped: then there is no scene, whatever was found before.
+    pub fn unless_stopped(
+        case: &Case,
+        plan: &Plan,
+        settings: &Settings,
+        stop: &StopQuery,
+    ) -> Result<Scene, NoScene> {
+        let built = Scene::built(case, plan, settings, stop);
+        if stop.is_asked() {
+            return Err(NoScene::Stopped);
+        }
+        Ok(built?)
+    }
+
+    /// After a stop what is built is not whole, or is nothing without an error.
+    fn built(
+        case: &Case,
+        plan: &Plan,
+        settings: &Settings,
+        stop: &StopQuery,
+    ) -> Result<Scene, SceneErrors> {
         let faces = Faces::new(&case.volume);
         let boundary = case.volume.boundary_of(&faces);
-        let mut check = Check::new(case, &boundary);
+        let mut check = Check::new(case, &boundary, stop);
 
         // 1. Tissue.
         let (regions, region_of_cell) = check.regions();
@@ -65,6 +95,7 @@ impl Scene {
         let InCells { mut tissue, fibres, muscles, muscle_tissue } =
             check.in_cells(of_cells, settings, plan);
         let element = check.element(settings);
+        check.go_on()?;
 
         // 2. What every node is held to.
         let sound = check.problems.count();
@@ -74,6 +105,7 @@ impl Scene {
         part_cells_of_bone(&mut tissue.pressure_of_cell, &case.volume, &conditions.constraints);
         check.plan_size(plan, &segments, &held);
         let far = far_segments(case, &held);
+        check.go_on()?;
 
         // 3. The skin and what acts on the tissue.
         let skin = check.skin(&conditions);
@@ -112,24 +144,29 @@ impl Scene {
         };
         check.method(settings, plan);
         check.problems.fail_on_problems()?;
+        check.go_on()?;
         check.add_loads_growth_and_muscles(plan, &mut scene);
 
         // 4. What cannot be solved, and what a reader must know.
         check.support(&scene, &part_of_cell);
         check.problems.fail_on_problems()?;
+        check.go_on()?;
         scene.warnings = scene.conditions.warnings.clone();
         scene.warnings.extend(check.warnings.into_iter().chain(far));
         scene.warnings.extend(suspect_skin(&scene, case.skin.is_some()));
         scene.warnings.extend(cut::duplicate_nodes(&scene.mesh, &check.boundary_nodes));
-        scene.warnings.extend(scene.doubts(case, plan));
+        scene.warnings.extend(scene.doubts(case, plan, stop));
         Ok(scene)
     }
 
     /// What in a scene without mistakes is rarely meant.
-    fn doubts(&self, case: &Case, plan: &Plan) -> Vec<Warning> {
+    fn doubts(&self, case: &Case, plan: &Plan, stop: &StopQuery) -> Vec<Warning> {
         let mut warnings: Vec<Warning> = Vec::new();
         let name = |class| self.class_name(class);
         warnings.extend(cells_do_not_match(&self.mesh, &self.boundary));
+        if stop.is_asked() {
+            return warnings;
+        }
         warnings.extend(tearing::tearing(&self.mesh, &self.conditions, name));
         warnings.extend(walls::warn_of_rotated_walls(self));
         warnings.extend(states_rest(plan, self));

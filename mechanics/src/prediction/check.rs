@@ -12,7 +12,7 @@ use super::skin::{self, Skin};
 use super::stated::StatedCondition;
 use crate::boundary::conditions::combine;
 use crate::boundary::support::loose_parts;
-use crate::boundary::{Conditions, Constraint, HeldNodes, NodeClass, NodeSelection, Selector};
+use crate::boundary::{Conditions, Constraint, HeldNodes, NodeClass, NodeSelection};
 use crate::material::LinearElastic;
 use crate::mesh::ignored::missing_region;
 use crate::mesh::volume::BoundaryFace;
@@ -20,6 +20,7 @@ use crate::mesh::{ArrayUse, CellShape, Vector, Warning};
 use crate::model::fem::edge_nodes::EdgeNodes;
 use crate::model::fem::loads::{FaceLoad, add_face_load, add_gravity};
 use crate::model::fem::mass_tensor::{Iterations, MassTensorSettings};
+use crate::progress::StopQuery;
 
 /// Regions and the tissues of an image are numbered together with 16 bits.
 const MOST_REGIONS: usize = 1 << 15;
@@ -29,39 +30,40 @@ pub(super) struct Check<'a> {
     pub(super) case: &'a Case,
     pub(super) boundary: &'a [BoundaryFace],
     pub(super) boundary_nodes: Vec<u32>,
-    is_in_cell: Vec<bool>,
+    pub(super) is_in_cell: Vec<bool>,
     /// As `Selector` keeps them.
-    distances: BTreeMap<String, Vec<f64>>,
+    pub(super) distances: BTreeMap<String, Vec<f64>>,
     pub(super) problems: Problems,
     pub(super) warnings: Vec<Warning>,
     /// The conditions so far.
     pub(super) stated: Vec<StatedCondition>,
+    /// What is found after a stop is not whole.
+    pub(super) stop: &'a StopQuery<'a>,
 }
 
 impl<'a> Check<'a> {
-    pub(super) fn new(case: &'a Case, boundary: &'a [BoundaryFace]) -> Self {
+    pub(super) fn new(
+        case: &'a Case,
+        boundary: &'a [BoundaryFace],
+        stop: &'a StopQuery<'a>,
+    ) -> Self {
         let mut boundary_nodes: Vec<u32> =
             boundary.iter().flat_map(|face| face.nodes()).copied().collect();
         boundary_nodes.sort_unstable();
         boundary_nodes.dedup();
         let (problems, warnings, stated) = (Problems::default(), Vec::new(), Vec::new());
         let (is_in_cell, distances) = (case.volume.is_in_cell(), BTreeMap::new());
-        Check { case, boundary, boundary_nodes, is_in_cell, distances, problems, warnings, stated }
-    }
-
-    pub(super) fn select(&mut self, selection: &NodeSelection, pointer: &str) -> Vec<u32> {
-        let mut selector = Selector {
-            mesh: &self.case.volume,
-            surfaces: &self.case.surfaces,
-            boundary_nodes: &self.boundary_nodes,
-            is_in_cell: &self.is_in_cell,
-            distances: &mut self.distances,
-        };
-        let selected = selector.select(selection);
-        selected.unwrap_or_else(|error| {
-            self.problems.selection(pointer, &error);
-            Vec::new()
-        })
+        Check {
+            case,
+            boundary,
+            boundary_nodes,
+            is_in_cell,
+            distances,
+            problems,
+            warnings,
+            stated,
+            stop,
+        }
     }
 
     pub(super) fn regions(&mut self) -> (Vec<String>, Vec<u16>) {
@@ -168,12 +170,6 @@ impl<'a> Check<'a> {
             regions.insert(name.clone(), points);
         }
         Skin { surface, regions, off }
-    }
-
-    /// The boundary faces all of whose nodes are listed.
-    fn faces_within(&self, nodes: &[u32]) -> Vec<BoundaryFace> {
-        let listed = |node: &u32| nodes.binary_search(node).is_ok();
-        self.boundary.iter().filter(|face| face.nodes().iter().all(listed)).copied().collect()
     }
 
     /// The element that the method uses. Refuses one that it does not have or that some cell of the mesh

@@ -142,20 +142,23 @@ impl Check<'_> {
         let stated = settings.membrane.as_ref()?;
         let method = settings.method.kind();
         let is_quadratic = settings.element == ElementChoice::Quadratic;
-        let detail = if !method.properties().knows_membrane {
-            Some("this method has no skin of its own: leave the membrane out")
+        const AT: &str = "/spec/membrane";
+        let refused = if !method.properties().knows_membrane {
+            Some((AT, "this method has no skin of its own: leave the membrane out"))
         } else if method == MethodKind::FemNonlinear && is_quadratic {
-            Some("quadratic elements have no membrane at finite strain: choose another element")
+            Some((
+                AT,
+                "quadratic elements have no membrane at finite strain: choose another element",
+            ))
         } else if method != MethodKind::FemNonlinear && !stated.sheet.bears_compression() {
-            Some(
-                "a membrane that bears no compression is not linear: request `fem_nonlinear`, or a membrane that bears it",
-            )
+            let detail = "a membrane that bears no compression is not linear: request `fem_nonlinear`, or a membrane that bears it";
+            Some(("/spec/membrane/compression", detail))
         } else {
             None
         };
-        if let Some(detail) = detail {
+        if let Some((pointer, detail)) = refused {
             let code = SceneErrorCode::MethodNotAvailable;
-            self.problems.add("/spec/membrane", code, detail.to_owned());
+            self.problems.add(pointer, code, detail.to_owned());
             return None;
         }
         let nodes = skin.nodes();

@@ -1,16 +1,43 @@
-//! Boundary conditions of a scene: checks of segments, fixed, sliding and prescribed nodes.
+//! Boundary conditions of a scene: selections of nodes, checks of segments, fixed, sliding and prescribed nodes.
 
 use super::case::{Plan, Prescribed, Settings};
 use super::check::Check;
 use super::error_code::SceneErrorCode;
 use super::stated::{StatedCondition, StatedHold};
-use crate::boundary::{HeldNodes, NodeSelection};
+use crate::boundary::{HeldNodes, NodeSelection, Selector};
 use crate::mesh::ignored::listed;
+use crate::mesh::volume::BoundaryFace;
 use crate::mesh::{ArrayUse, bounds_of};
 use crate::plan::doubt::{MovedSegment, beyond_face, suspect_units};
 use crate::plan::{PlannedSegment, RigidMovement};
 
 impl Check<'_> {
+    /// The selected nodes, ascending; none where they cannot be selected, which is noted as a problem, or after a stop.
+    pub(super) fn select(&mut self, selection: &NodeSelection, pointer: &str) -> Vec<u32> {
+        if self.stop.is_asked() {
+            return Vec::new();
+        }
+        let mut selector = Selector {
+            mesh: &self.case.volume,
+            surfaces: &self.case.surfaces,
+            boundary_nodes: &self.boundary_nodes,
+            is_in_cell: &self.is_in_cell,
+            distances: &mut self.distances,
+            stop: self.stop,
+        };
+        let selected = selector.select(selection);
+        selected.unwrap_or_else(|error| {
+            self.problems.selection(pointer, &error);
+            Vec::new()
+        })
+    }
+
+    /// The boundary faces all of whose nodes are listed.
+    pub(super) fn faces_within(&self, nodes: &[u32]) -> Vec<BoundaryFace> {
+        let listed = |node: &u32| nodes.binary_search(node).is_ok();
+        self.boundary.iter().filter(|face| face.nodes().iter().all(listed)).copied().collect()
+    }
+
     pub(super) fn held_nodes(
         &mut self,
         plan: &Plan,

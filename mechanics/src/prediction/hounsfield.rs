@@ -14,6 +14,7 @@ use crate::image::{SampledCells, SamplingRule, Windows, sample_cells};
 use crate::material::LinearElastic;
 use crate::material::mixture::{MixingRule, mixture};
 use crate::mesh::{VolumeMesh, Warning, place};
+use crate::progress::StopQuery;
 use std::collections::BTreeMap;
 
 /// Cells name their material in 16 bits.
@@ -21,6 +22,9 @@ pub(super) const MOST_MATERIALS: usize = u16::MAX as usize;
 
 /// Where windows and images are told to be wrong.
 const PLACE: &str = "/case/hounsfield";
+
+/// Sample points in all cells of a mesh, at which an image is interpolated: 512 in each of two million cells, or 250 in four million.
+pub const MOST_SAMPLE_POINTS: u64 = 1_000_000_000;
 
 /// The materials of a scene.
 pub(super) struct TissueOfCells {
@@ -46,8 +50,8 @@ impl Check<'_> {
             && self.can_mix(hounsfield, &materials)
             && let Some(sampled) = self.sampled(hounsfield)
         {
-            let tissue =
-                imaged(&self.case.volume, hounsfield, &sampled, (region_of_cell, materials));
+            let own = (region_of_cell, materials);
+            let tissue = imaged(&self.case.volume, hounsfield, &sampled, own, self.stop);
             self.warnings.extend(tissue.imaged.iter().flat_map(ImagedTissue::warnings));
             self.warnings.extend(tissue.replaced_fibres(region_of_cell));
             return tissue;
@@ -87,7 +91,12 @@ impl Check<'_> {
             return None;
         };
         let rule = SamplingRule::new(hounsfield.samples);
-        let sampled = sample_cells(&self.case.volume, &hounsfield.image, &rule, &windows);
+        if let Some(detail) = too_many_points(self.case.volume.cells.len(), rule.count) {
+            self.problems.add(format!("{PLACE}/samples"), SceneErrorCode::TooMany, detail);
+            return None;
+        }
+        let (mesh, image) = (&self.case.volume, &hounsfield.image);
+        let sampled = sample_cells(mesh, image, &rule, &windows, self.stop);
         if sampled.mean.iter().any(Option::is_some) {
             return Some(sampled);
         }
@@ -100,6 +109,20 @@ impl Check<'_> {
         self.problems.add(format!("{PLACE}/image"), SceneErrorCode::OutsideImage, detail);
         None
     }
+}
+
+/// The refusal of more points than are taken, told before the first.
+fn too_many_points(cells: usize, samples: usize) -> Option<String> {
+    let (cells, samples) = (cells as u64, samples as u64);
+    let all = cells * samples;
+    let detail = || {
+        format!(
+            "{all} sample points would be taken, at most {MOST_SAMPLE_POINTS} are: {samples} in each of {cells} cells; state at most {} \
+             `samples`, or fewer cells",
+            MOST_SAMPLE_POINTS / cells
+        )
+    };
+    (all > MOST_SAMPLE_POINTS).then(detail)
 }
 
 impl TissueOfCells {
@@ -147,12 +170,13 @@ fn imaged(
     hounsfield: &Hounsfield,
     sampled: &SampledCells,
     (region_of_cell, mut materials): (&[u16], Vec<LinearElastic>),
+    stop: &StopQuery,
 ) -> TissueOfCells {
     let first_tissue = materials.len();
     materials.extend(hounsfield.tissues.iter().map(|tissue| tissue.material));
     let parts = match hounsfield.mixing {
         Mixing::Mean => labels(hounsfield, sampled),
-        Mixing::Fraction => shares(hounsfield, sampled, region_of_cell, materials.len()),
+        Mixing::Fraction => shares(hounsfield, sampled, (region_of_cell, materials.len()), stop),
     };
     let largest: Vec<Option<u16>> = parts.iter().map(largest_tissue).collect();
     let own = |cell: usize, tissue: Option<u16>| {
@@ -199,12 +223,12 @@ fn labels(hounsfield: &Hounsfield, sampled: &SampledCells) -> Vec<TissueShares> 
 }
 
 /// The share of points in each window, in steps of one point or as much coarser as it takes for all materials
-/// to be numbered.
+/// to be numbered. After a stop they are the coarsest.
 fn shares(
     hounsfield: &Hounsfield,
     sampled: &SampledCells,
-    region_of_cell: &[u16],
-    pure: usize,
+    (region_of_cell, pure): (&[u16], usize),
+    stop: &StopQuery,
 ) -> Vec<TissueShares> {
     let samples = sampled.samples as u16;
     let counted = |cell: usize| -> TissueShares {
@@ -225,7 +249,7 @@ fn shares(
         if pure + mixtures.len() <= MOST_MATERIALS || steps == 1 || hounsfield.tissues.is_empty() {
             return rounded;
         }
-        steps /= 2;
+        steps = if stop.is_asked() { 1 } else { steps / 2 };
     }
 }
 
@@ -279,6 +303,41 @@ fn describe(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::image::{ImageVolume, Placement, Voxels};
+    use crate::mesh::sample::block;
+    use crate::mesh::{CellShape, Vector};
+    use crate::prediction::case::{Case, TissueWindow};
+
+    #[test]
+    fn more_sample_points_than_are_taken_are_refused_before_the_first() {
+        let one = block(Vector::repeat(1.0), [1; 3], CellShape::Hex8);
+        let nodes = one.cells.nodes(0).to_vec();
+        let mut volume = one;
+        // As many cells at one place, so that the mesh is made in no time.
+        (0..1_999_999).for_each(|_| volume.cells.push(CellShape::Hex8, &nodes));
+        let steps = [Vector::x(), Vector::y(), Vector::z()];
+        let placement = Placement { origin: Vector::zeros(), steps };
+        let image = ImageVolume::new([2; 3], placement, Voxels::I16(vec![-100; 8])).unwrap();
+        let material = LinearElastic::new(1.0, 0.3, 1.0).unwrap();
+        let tissue = TissueWindow { name: "fat".to_owned(), from_hu: -200.0, to_hu: 0.0, material };
+        let hounsfield = Hounsfield {
+            image: image.into(),
+            samples: 501,
+            tissues: vec![tissue],
+            mixing: Mixing::Mean,
+        };
+        let case = Case { volume: volume.into(), ..Case::default() };
+        let stop = StopQuery::never();
+        let mut check = Check::new(&case, &[], &stop);
+        assert!(check.sampled(&hounsfield).is_none());
+        let refused = check.problems.fail_on_problems().unwrap_err().0.remove(0);
+        assert_eq!(refused.code, SceneErrorCode::TooMany);
+        assert_eq!(refused.pointer, "/case/hounsfield/samples");
+        for number in ["1002000000", "1000000000", "501", "2000000", "at most 500 `samples`"] {
+            assert!(refused.detail.contains(number), "{number} is in {}", refused.detail);
+        }
+        assert_eq!(too_many_points(2_000_000, 500), None);
+    }
 
     #[test]
     fn coarser_steps_keep_the_sum_and_the_largest_parts() {

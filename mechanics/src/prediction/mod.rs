@@ -6,6 +6,8 @@ mod answer;
 mod at_points;
 mod bone_in_tissue;
 mod build;
+#[cfg(test)]
+mod build_tests;
 pub mod case;
 mod check;
 mod contact;
@@ -40,6 +42,7 @@ mod problem;
 mod reaction;
 mod refined_scene;
 mod refinement_goal;
+mod refinement_verdict;
 pub mod scene;
 mod skin;
 mod skin_check;
@@ -66,6 +69,7 @@ pub use contact::{ContactPair, StepTouch, Touch};
 pub use element_choice::ElementChoice;
 pub use error_code::SceneErrorCode;
 pub use growth::{VOLUME_CHANGE, linear_strain, nothing_left};
+pub use hounsfield::MOST_SAMPLE_POINTS;
 pub use imaged_tissue::{ImagedTissue, TissueShare};
 pub use method::{Laws, Method, MethodKind, MethodProperties, Unknowns};
 pub use muscle::PULL;
@@ -74,7 +78,7 @@ pub use muscle_work::MOST_MUSCLE_WORK;
 pub use nonlinearity::{Estimated, Nonlinearity, NonlinearityUnknown, without_second_order};
 pub use numerical_error::{NUMERICAL_ERROR_LARGE, NotEstimated, NumericalError};
 pub use numerics_revision::NUMERICS_REVISION;
-pub use problem::{SceneError, SceneErrors};
+pub use problem::{NoScene, SceneError, SceneErrors};
 pub use reaction::ConditionReaction;
 pub use refined_scene::NotRefined;
 pub use scene::Scene;
@@ -150,6 +154,10 @@ pub struct PredictedStep {
     pub rest: RestOnTheWay,
     pub relative_residual: f64,
     pub is_stable: Option<bool>,
+    /// As those of a [`crate::solver::LoadStep`].
+    pub bulk_in_cells: f64,
+    pub cells_with_bulk: usize,
+    pub is_bulk_in_all: bool,
     /// As those of a prediction.
     pub reactions: BTreeMap<String, Vector>,
     /// Where anything presses.
@@ -169,10 +177,17 @@ fn load_steps(
         (!step.pressed.is_empty()).then_some((*touch, &*step.pressed))
     };
     let predicted = |(step, own): (usize, LoadStep)| {
-        let LoadStep { rest, relative_residual, is_stable, reactions } = own;
         let (contact, pressed) = at(step).unzip();
-        let reactions = reaction::by_class(scene, &reactions, pressed.unwrap_or_default());
-        PredictedStep { rest, relative_residual, is_stable, reactions, contact }
+        PredictedStep {
+            reactions: reaction::by_class(scene, &own.reactions, pressed.unwrap_or_default()),
+            rest: own.rest,
+            relative_residual: own.relative_residual,
+            is_stable: own.is_stable,
+            bulk_in_cells: own.bulk_in_cells,
+            cells_with_bulk: own.cells_with_bulk,
+            is_bulk_in_all: own.is_bulk_in_all,
+            contact,
+        }
     };
     steps.enumerate().map(predicted).collect()
 }

@@ -82,6 +82,9 @@ impl<'a> Check<'a> {
         let mut names = BTreeSet::new();
         let mut fields = Vec::new();
         for (index, muscle) in self.case.muscles.iter().enumerate() {
+            if self.stop.is_asked() {
+                return Vec::new();
+            }
             let near = &near.cells(index)[..];
             let pointer = format!("/case/muscles/{index}");
             if !names.insert(&muscle.name) {
@@ -202,11 +205,11 @@ impl<'a> Check<'a> {
         near: &[u32],
         (name, pointer): (&str, &str),
     ) -> Vec<CellStress> {
-        let course = Lines::new(lines, within);
-        let cells = course.as_ref().map_or_else(Vec::new, |own| own.cells(&self.case.volume, near));
+        let (course, mesh) = (Lines::new(lines, within), &self.case.volume);
+        let cells = course.as_ref().map_or_else(Vec::new, |own| own.cells(mesh, near, self.stop));
         match &course {
             Some(course) if !cells.is_empty() => {
-                let pull = PullShare::new(course, &self.case.volume, (near, &cells));
+                let pull = PullShare::new(course, mesh, (near, &cells), self.stop);
                 self.warnings.extend(pull.warnings(name));
             }
             _ => {
@@ -233,7 +236,8 @@ impl<'a> Check<'a> {
         pointer: &str,
     ) -> (Vec<CellStress>, Option<MuscleBody>) {
         let samples = self.case.muscle_mixing.samples;
-        let shares = match shares_of(&self.case.volume, near, (surface, number), samples) {
+        let of = (surface, number);
+        let shares = match shares_of(&self.case.volume, near, of, samples, self.stop) {
             Ok(shares) => shares,
             Err(error) => {
                 let at = format!("{pointer}/surface");

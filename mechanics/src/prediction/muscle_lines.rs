@@ -13,6 +13,7 @@ use crate::mesh::{Vector, VolumeMesh, Warning, bounds_of, boxes_meet};
 use crate::model::fem::inner_stress::CellStress;
 use crate::model::reference_cell;
 use crate::muscle::lines::FEW_CELLS;
+use crate::progress::StopQuery;
 
 /// A muscle that pulls by more than this share otherwise than its lines say is told.
 const PULL_OFF: f64 = 0.1;
@@ -37,13 +38,14 @@ pub(super) struct PullShare {
 }
 
 impl PullShare {
-    /// Of a muscle that has `cells` of those that are `near` it.
+    /// Of a muscle that has `cells` of those that are `near` it; to be dropped after a stop.
     pub(super) fn new(
         lines: &Lines,
         mesh: &VolumeMesh,
         (near, cells): (&[u32], &[CellStress]),
+        stop: &StopQuery,
     ) -> Self {
-        let near = lines.tissue_near(mesh, near);
+        let near = lines.tissue_near(mesh, near, stop);
         if cells.len() > ENOUGH_CELLS {
             let inside = lines.share_inside(&near);
             return PullShare { cells: cells.len(), share: Some(1.0), inside };
@@ -51,7 +53,7 @@ impl PullShare {
         let halved = refine(&near);
         let pull_in = |mesh: &VolumeMesh| {
             let all: Vec<u32> = (0..mesh.cells.len() as u32).collect();
-            pull_of(mesh, &lines.cells(mesh, &all))
+            pull_of(mesh, &lines.cells(mesh, &all, stop))
         };
         let exact = match cells.len() > MANY_CELLS {
             true => pull_in(&halved),
@@ -120,9 +122,17 @@ impl Lines {
         Some(Lines { pieces, within, reach })
     }
 
-    /// w f (x) f of all cells near them where it is not zero.
-    pub(super) fn cells(&self, mesh: &VolumeMesh, near: &[u32]) -> Vec<CellStress> {
+    /// w f (x) f of all cells near them where it is not zero; after a stop cells are left out.
+    pub(super) fn cells(
+        &self,
+        mesh: &VolumeMesh,
+        near: &[u32],
+        stop: &StopQuery,
+    ) -> Vec<CellStress> {
         let made = |cell: usize, near: &[&Piece]| {
+            if stop.is_asked() {
+                return None;
+            }
             let stress = self.mean(mesh, cell, near)?;
             Some(CellStress { cell: cell as u32, stress })
         };
@@ -169,10 +179,13 @@ impl Lines {
     }
 
     /// The cells that may have tissue within reach, of those near.
-    fn tissue_near(&self, mesh: &VolumeMesh, cells: &[u32]) -> VolumeMesh {
+    fn tissue_near(&self, mesh: &VolumeMesh, cells: &[u32], stop: &StopQuery) -> VolumeMesh {
         let mut near = VolumeMesh::default();
         let mut number_of = BTreeMap::new();
-        for cell in cells.iter().map(|&cell| cell as usize) {
+        for (place, cell) in cells.iter().map(|&cell| cell as usize).enumerate() {
+            if stop.is_asked_at(place) {
+                break;
+            }
             let (shape, nodes) = (mesh.cells.shape(cell), mesh.cells.nodes(cell));
             let corners: Vec<Vector> = mesh.corners(cell).collect();
             if !self.may_reach(&corners, self.pieces.iter()) {

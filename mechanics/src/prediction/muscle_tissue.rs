@@ -21,6 +21,7 @@ use crate::material::mixture::MixingRule;
 use crate::mesh::{Vector, Warning};
 use crate::muscle::axis::MeanAxis;
 use crate::muscle::equivalent::{EquivalentTissue, rule_dependent_share};
+use crate::progress::StopQuery;
 
 /// Shares of cells are whole numbers of this at the finest.
 const STEPS: u16 = 512;
@@ -54,9 +55,12 @@ impl Check<'_> {
         }
         let rule = self.case.muscle_mixing.rule;
         let mut mixer = Mixer::new(&own, rule, tissue);
-        let steps = mixer.steps(&parts);
+        let steps = mixer.steps(&parts, self.stop);
         let (mut told, mut volumes) = (Counts::default(), Vec::new());
         for (cell, parts) in parts.iter().enumerate() {
+            if self.stop.is_asked_at(cell) {
+                break;
+            }
             let recipe = (mixer.tissue.material_of_cell[cell], in_steps(parts, steps));
             let volume = self.case.volume.cell_volume(cell);
             if recipe.1.is_empty() {
@@ -186,8 +190,8 @@ impl<'a> Mixer<'a> {
         Mixer { tissue, rule, pure, made: BTreeMap::new() }
     }
 
-    /// Steps of shares that leave every mixture a number; with one step cells are of one part.
-    fn steps(&self, parts: &[Vec<Part>]) -> u16 {
+    /// Steps of shares that leave every mixture a number; with one step, as after a stop, cells are of one part.
+    fn steps(&self, parts: &[Vec<Part>], stop: &StopQuery) -> u16 {
         let mut steps = STEPS;
         loop {
             let recipes = self.tissue.material_of_cell.iter().zip(parts);
@@ -196,7 +200,7 @@ impl<'a> Mixer<'a> {
             if self.tissue.materials.len() + mixed.len() <= MOST_MATERIALS || steps == 1 {
                 return steps;
             }
-            steps /= 2;
+            steps = if stop.is_asked() { 1 } else { steps / 2 };
         }
     }
 

@@ -11,6 +11,15 @@ const MOST_PROBLEMS: usize = 50;
 #[error("{}", in_words(.0))]
 pub struct SceneErrors(pub Vec<SceneError>);
 
+/// Why there is no scene.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum NoScene {
+    #[error(transparent)]
+    Refused(#[from] SceneErrors),
+    #[error("stopped on request")]
+    Stopped,
+}
+
 /// The only one, or how many there are and the first.
 fn in_words(problems: &[SceneError]) -> String {
     match problems {

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::LANDMARK_FAR;
+use super::adequate::error_over_estimate;
 use super::scene::Scene;
 use super::skin::Skin;
 use crate::mesh::{SurfaceSearch, Vector};
@@ -16,6 +17,8 @@ pub struct RefinementGoal {
     pub regions_mm: BTreeMap<String, f64>,
     /// The error at landmarks of the case, within [`LANDMARK_FAR`] of its skin.
     pub landmarks_mm: BTreeMap<String, f64>,
+    /// Whether these are errors of the answer, of mesh and linearity together, as `auto` accepts them, and not of the mesh alone.
+    pub is_of_answer: bool,
     /// The most cells of a mesh.
     pub cells: usize,
     /// For all meshes together, in s.
@@ -74,7 +77,23 @@ impl RefinementGoal {
     }
 }
 
+impl SkinPart<'_> {
+    /// Where it is, in a sentence.
+    pub fn words(&self) -> String {
+        match self {
+            SkinPart::Moving(_) => "in the mean over the skin that moves".to_owned(),
+            SkinPart::Region(name, _) => format!("in the mean over {name:?}"),
+            SkinPart::Landmark(name, _) => format!("at the landmark {name:?}"),
+        }
+    }
+}
+
 impl Limit<'_> {
+    /// The error in mm that is expected of the mesh, from what its nodes lack.
+    pub fn expected_of_mesh(&self, scenes: [&Scene; 2], missing: &[Vector]) -> f64 {
+        error_over_estimate(scenes[0]) * self.error(scenes, missing)
+    }
+
     /// The estimated error in mm, from what nodes of a mesh lack; the first scene is that of the case.
     pub fn error(&self, [first, finest]: [&Scene; 2], missing: &[Vector]) -> f64 {
         match &self.part {

@@ -57,8 +57,12 @@ pub struct NewtonReport {
 pub struct LoadStep {
     pub rest: RestOnTheWay,
     pub relative_residual: f64,
-    /// As that of a [`NewtonReport`].
+    /// As those of a [`NewtonReport`].
     pub is_stable: Option<bool>,
+    pub bulk_in_cells: f64,
+    pub cells_with_bulk: usize,
+    /// Whether all cells keep bulk modulus, because strained tissue jams where only pressed ones do.
+    pub is_bulk_in_all: bool,
     /// What each hold exerts on the tissue, in mN.
     pub reactions: Vec<Vector3<f64>>,
 }

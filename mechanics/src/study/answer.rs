@@ -13,10 +13,10 @@ use crate::mesh::{CellShape, Vector, Warning, bounds_of};
 use crate::model::fem::strain::{determinants, inverted_cells};
 use crate::model::problem::{Equilibrium, ModelError};
 use crate::prediction::{
-    Accepted, Adequate, Case, ElementChoice, Plan, Scene, SceneErrorCode, SceneErrors, Settings,
-    TimedProgress, equilibrium, estimates, predict_adequately,
+    Accepted, Adequate, Case, ElementChoice, NoScene, Plan, Scene, SceneErrorCode, SceneErrors,
+    Settings, TimedProgress, equilibrium, estimates, predict_adequately,
 };
-use crate::progress::Progress;
+use crate::progress::{Progress, StopQuery};
 use crate::solver::SolverError;
 
 /// A row is not solved again once its solves took this long together, in s.
@@ -114,6 +114,15 @@ impl From<SceneErrors> for NoAnswer {
     }
 }
 
+impl From<NoScene> for NoAnswer {
+    fn from(none: NoScene) -> Self {
+        match none {
+            NoScene::Refused(errors) => errors.into(),
+            NoScene::Stopped => NoAnswer::Cancelled,
+        }
+    }
+}
+
 impl From<ModelError> for NoAnswer {
     fn from(error: ModelError) -> Self {
         match error {
@@ -130,7 +139,7 @@ pub(super) fn solve(
     settings: &Settings,
     progress: &dyn Progress,
 ) -> Result<(Scene, Equilibrium), NoAnswer> {
-    let scene = Scene::new(case, plan, settings)?;
+    let scene = Scene::unless_stopped(case, plan, settings, &StopQuery::of(progress))?;
     let (equilibrium, _) = equilibrium(&scene, progress)?;
     Ok((scene, equilibrium))
 }
@@ -195,7 +204,8 @@ impl Bench<'_> {
         let accepted = Accepted { time_s: self.row_s, ..accepted.clone() };
         let stopwatch = || self.stopwatch.seconds();
         let ((linear, adequate), time) = self.timed(|progress| {
-            let scene = Scene::new(case, plan, &variant.settings)?;
+            let stop = StopQuery::of(progress);
+            let scene = Scene::unless_stopped(case, plan, &variant.settings, &stop)?;
             let watched = TimedProgress { stopwatch: &stopwatch, progress };
             let adequate = predict_adequately(case, plan, &scene, &accepted, watched)?;
             Ok((scene, adequate))

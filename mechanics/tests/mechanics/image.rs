@@ -12,6 +12,7 @@ use mechanics::prediction::{
     Case, ElementChoice, FibreDirection, Hounsfield, Mixing, Plan, RegionNames, Scene, Settings,
     TissueWindow,
 };
+use mechanics::progress::StopQuery;
 
 use crate::material::anisotropy::{MUSCLE, fibred};
 use crate::scenes::{SHAPES, case_of, constraint, exact, material, solve};
@@ -61,7 +62,13 @@ fn the_mean_of_a_linear_field_is_its_value_at_the_centroid_at_every_count() {
     for shape in SHAPES {
         let mesh = sheared(shape);
         for count in 1..=MOST_SAMPLES {
-            let found = sample_cells(&mesh, &image, &SamplingRule::new(count), &everything());
+            let found = sample_cells(
+                &mesh,
+                &image,
+                &SamplingRule::new(count),
+                &everything(),
+                &StopQuery::never(),
+            );
             for cell in 0..mesh.cells.len() {
                 let corners: Vec<Vector> = mesh.corners(cell).collect();
                 let centroid = corners.iter().sum::<Vector>() / corners.len() as f64;
@@ -99,7 +106,13 @@ fn the_share_beyond_a_plane_converges_faster_than_the_root_of_the_count() {
             for part in 1..20 {
                 let c = low + (high - low) * f64::from(part) / 20.0;
                 let windows = Windows::new(&[(-1e6, c)]).unwrap();
-                let found = sample_cells(&alone, &image, &SamplingRule::new(count), &windows);
+                let found = sample_cells(
+                    &alone,
+                    &image,
+                    &SamplingRule::new(count),
+                    &windows,
+                    &StopQuery::never(),
+                );
                 let share = f64::from(found.counts(0)[0]) / count as f64;
                 let error = share - share_below(c, h);
                 assert!(

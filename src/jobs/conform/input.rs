@@ -15,6 +15,7 @@ use crate::schema::{
 };
 use mechanics::conformation::{Landmark, spline_of};
 use mechanics::mesh::{Frame, TriangleSurface, VolumeMesh};
+use mechanics::progress::StopQuery;
 
 /// A conformation.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -49,6 +50,7 @@ impl ConformInput {
         &self,
         sources: &dyn MeshSource,
         limits: &Limits,
+        stop: &StopQuery,
     ) -> Result<PreparedConformation, JobError> {
         let mut faults = Faults::default();
         self.spec.check(limits, &mut faults);
@@ -72,7 +74,7 @@ impl ConformInput {
         let frame = one_frame(&meshes[1..], &at)?;
         let muscle_surfaces = self.muscle_surfaces(sources, &mut meshes)?;
         let (skin_nodes, bone_nodes) = self.nodes(&template)?;
-        self.check_template(&meshes[0].1, sources, limits)?;
+        self.check_template(&meshes[0].1, sources, limits, stop)?;
         let landmarks = self.spec.landmarks.iter().map(|(name, pair)| Landmark {
             name: name.clone(),
             template: pair.template_mm.into(),
@@ -144,6 +146,7 @@ impl ConformInput {
         mesh: &StoredMesh,
         sources: &dyn MeshSource,
         limits: &Limits,
+        stop: &StopQuery,
     ) -> Result<(), JobError> {
         let spec = &self.spec.template;
         if !spec.has_tissue() {
@@ -158,7 +161,7 @@ impl ConformInput {
             plan: PlanDocument::default(),
             spec: PredictDocument::default(),
         };
-        let problem = match own.prepare(sources, limits) {
+        let problem = match own.prepare(sources, limits, stop) {
             Ok(_) => return Ok(()),
             Err(JobError::Refused(problem)) => problem,
             Err(error) => return Err(error),

@@ -43,7 +43,7 @@ pub fn conform_job(
     let clock = Observed::start(progress, WALL_S);
 
     // 1. Documents and meshes.
-    let prepared = input.prepare(place.sources, place.limits)?;
+    let prepared = clock.prepared(|stop| input.prepare(place.sources, place.limits, stop))?;
     clock.check()?;
 
     // 2. The template onto the patient, its cells repaired.
@@ -52,7 +52,7 @@ pub fn conform_job(
     clock.check()?;
 
     // 3. Its muscles and fibres, and the case.
-    let mut brought = prepared.brought(&mut found, &input.spec, place)?;
+    let mut brought = prepared.brought(&mut found, &input.spec, (place, &clock))?;
     let surfaces = std::mem::take(&mut brought.muscles.surfaces);
     clock.check()?;
 
@@ -195,7 +195,7 @@ impl PreparedConformation {
         &self,
         found: &mut Conformed,
         spec: &ConformDocument,
-        place: &JobContext,
+        (place, clock): (&JobContext, &Observed),
     ) -> Result<ConformedCase, JobError> {
         let volume = OutputName::VolumeVtu.file_name();
         let conformation = &found.conformation;
@@ -208,7 +208,7 @@ impl PreparedConformation {
         let surfaces =
             muscles.surfaces.iter().map(|own| (own.file.clone(), own.stored(self.frame)));
         let made = surfaces.chain([volume]).collect();
-        let (check, refused) = match check_made(&case, made, place) {
+        let (check, refused) = match check_made(&case, made, place, clock) {
             Ok(_) if found.after.inverted > 0 => (None, Some(with_inverted_cells(&found.after))),
             Ok(check) => (check, None),
             Err(JobError::Refused(problem)) => (None, Some(refused_case(&problem))),

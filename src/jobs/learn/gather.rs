@@ -22,7 +22,7 @@ use mechanics::learning::virtual_cohort::{Making, VirtualCohort, supposed, virtu
 use mechanics::learning::{Cohort, LearningCase, measures};
 use mechanics::mesh::{Frame, TriangleSurface, Vector, Warning};
 use mechanics::prediction::{Scene, Skin, displacement};
-use mechanics::progress::Progress;
+use mechanics::progress::{Progress, StopQuery};
 use mechanics::validation::operated::{OperatedSkin, suspicions, unlike_skins};
 
 /// What is learned from, and the columns of the table that are not learned.
@@ -103,7 +103,9 @@ fn of_cases(
     for (index, learned_from) in input.cases.iter().enumerate() {
         let at = Pointer::root().key("spec").key("cases").index(index);
         learned_from.check_settings(&at.key("prediction"))?;
-        let prepared = learned_from.prediction.prepare(place.sources, place.limits)?;
+        let prediction = &learned_from.prediction;
+        let prepare = |stop: &StopQuery| prediction.prepare(place.sources, place.limits, stop);
+        let prepared = clock.prepared(prepare)?;
         prepared.admit(0, place.limits)?;
         corresponds(first.as_ref().unwrap_or(&prepared), &prepared, &at)?;
         let stated = input.spec.cases.get(index);

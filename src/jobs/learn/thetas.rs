@@ -26,8 +26,8 @@ pub fn at_thetas(
             estimate: false,
             ..Settings::default()
         };
-        let scene = Scene::new(&case, &prepared.plan, &settings);
-        let scene = scene.map_err(|errors| JobError::Refused(errors.into()))?;
+        let scene = clock
+            .prepared(|stop| Ok(Scene::unless_stopped(&case, &prepared.plan, &settings, stop)?))?;
         let (solved, _) = equilibrium(&scene, clock).map_err(|error| clock.judge(error))?;
         clock.check()?;
         Ok::<_, JobError>(measures::skin(&scene, &solved.displacement))

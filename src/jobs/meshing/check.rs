@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::case::bone_file;
+use crate::jobs::clock::Observed;
 use crate::jobs::failure::JobError;
 use crate::jobs::output::JobContext;
 use crate::jobs::predict::check_made;
@@ -24,6 +25,7 @@ pub(super) fn check_anatomy(
     case: &CaseDocument,
     made: &MadeAnatomy,
     place: &JobContext,
+    clock: &Observed,
 ) -> Result<Option<CheckDocument>, JobError> {
     let MadeAnatomy { anatomy, frame, told } = made;
     let volume = StoredShape::Volume(Arc::new(anatomy.volume.clone()));
@@ -32,5 +34,5 @@ pub(super) fn check_anatomy(
         let shape = StoredShape::Surface(Arc::new(bone.clone()));
         (bone_file(number), StoredMesh::made(shape, *frame))
     });
-    check_made(case, bones.chain([(case.volume.clone(), volume)]).collect(), place)
+    check_made(case, bones.chain([(case.volume.clone(), volume)]).collect(), place, clock)
 }

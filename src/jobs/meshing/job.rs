@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::body::Body;
 use super::case::{bone_file, case_of};
 use super::check::{MadeAnatomy, check_anatomy};
 use super::cuts::{CUT_PATHS_FILE, CUT_PATHS_MEDIA_TYPE, cut_paths, cut_paths_csv};
@@ -75,6 +76,7 @@ pub fn meshing_job(
             &found.case,
             &MadeAnatomy { anatomy: &anatomy, frame: prepared.frame, told },
             place,
+            &clock,
         )?;
     }
     clock.check()?;
@@ -112,7 +114,18 @@ impl PreparedMeshing {
     /// The warnings on the scan or the surfaces, and on the mesh.
     fn told(&self, anatomy: &Anatomy) -> Vec<WarningDocument> {
         let of_meshes = self.meshes.iter().flat_map(|(_, mesh)| &mesh.warnings);
-        warning_documents(of_meshes.chain(&anatomy.warnings))
+        let unmarked = self.unmarked_image();
+        warning_documents(of_meshes.chain(&unmarked).chain(&anatomy.warnings))
+    }
+
+    /// An image whose axes may be any of the patient's.
+    fn unmarked_image(&self) -> Option<Warning> {
+        let is_image = matches!(self.body, Body::Scan(_) | Body::Labels(_));
+        let detail = "the image does not state which axes of the patient its own are: the mesh and the plan are in those of the file, and if \
+                      the plan was made in others, what moves is turned or mirrored; state them (`--frame LPS` on the command line, \
+                      `frame` of the upload)";
+        let warning = || Warning::new("image-place-doubtful", detail);
+        (is_image && self.frame == Frame::Unspecified).then(warning)
     }
 }
 

@@ -25,7 +25,7 @@ use mechanics::mesh::{Vector, Warning};
 use mechanics::optimisation::{ConstantBounds, Optimum, Search, SearchError, SearchResult, search};
 use mechanics::plan::doubt::PLAN_UNITS_SUSPECT;
 use mechanics::prediction::{MethodKind, Prediction, predict, solved_loosely};
-use mechanics::progress::{Phase, Progress};
+use mechanics::progress::{Phase, Progress, StopQuery};
 use mechanics::response::linearity::LINEAR_RANGE_MM;
 use mechanics::response::{
     BeyondLinear, COLUMNS_PER_SEGMENT, ColumnRequest, ResponseError, ResponseOrder, chosen,
@@ -56,7 +56,7 @@ pub fn optimise_job(
     let clock = Observed::start(progress, input.spec.budget.wall_s);
 
     // 1. Documents and meshes, checked together.
-    let mut prepared = input.prepare(place.sources, place.limits)?;
+    let mut prepared = clock.prepared(|stop| input.prepare(place.sources, place.limits, stop))?;
     let columns = COLUMNS_PER_SEGMENT * prepared.moving + prepared.inner.len();
     prepared.rest.admit(columns, place.limits)?;
     clock.check()?;
@@ -67,7 +67,8 @@ pub fn optimise_job(
 
     // 3. The plan as any other.
     let prediction = input.prediction(&found.document);
-    let mut planned = prediction.prepare(place.sources, place.limits)?;
+    let planned = |stop: &StopQuery| prediction.prepare(place.sources, place.limits, stop);
+    let mut planned = clock.prepared(planned)?;
     planned.spec_hash = prepared.spec_hash;
     planned.inputs = prepared.rest.inputs;
     planned.warnings.extend(prepared.warnings);

@@ -14,6 +14,7 @@ use crate::schema::{Faults, Limits, Pointer, Problem, Triple};
 use mechanics::mesh::{SurfaceSearch, Vector, Warning};
 use mechanics::optimisation::{Goal, InnerBounds, SkinPoint, Target};
 use mechanics::prediction::{LANDMARK_FAR, Skin};
+use mechanics::progress::StopQuery;
 use mechanics::response::{InnerLoad, ResponseError, chosen};
 
 /// Inverse planning with valid documents.
@@ -45,11 +46,13 @@ impl OptimiseInput {
         &self,
         sources: &dyn MeshSource,
         limits: &Limits,
+        stop: &StopQuery,
     ) -> Result<PreparedOptimisation, JobError> {
         let mut faults = Faults::default();
         self.spec.check(&self.case, limits, &mut faults);
         faults.into_result()?;
-        let rest = self.at_rest().prepare(sources, limits).map_err(|error| self.in_spec(error))?;
+        let rest = self.at_rest().prepare(sources, limits, stop);
+        let rest = rest.map_err(|error| self.in_spec(error))?;
         let moving = chosen(&rest.scene, &self.spec.moving());
         let moving = moving.map_err(|error| self.judge(error))?.len();
         let inner = self.spec.to_response().inner_loads(&rest.scene);

@@ -15,6 +15,7 @@ use crate::schema::methods::{WHY_ESTIMATED, WHY_NOT_FORESEEN, WHY_REFINED};
 use crate::schema::predict::check::{CheckDocument, ClassCounts, SkinSummary};
 use mechanics::mesh::Warning;
 use mechanics::prediction::{NodeClass, Scene, landmarks_far};
+use mechanics::progress::StopQuery;
 
 /// The counts of a check, and the picture on request: drawing takes longer than counting.
 pub struct CheckReport {
@@ -29,27 +30,32 @@ impl CheckReport {
     }
 }
 
-/// Checks a case and a plan without solving; an empty plan checks the case alone.
+/// Checks a case and a plan without solving; an empty plan checks the case alone. After a stop it is cancelled.
 pub fn check(
     input: &PredictInput,
     sources: &dyn MeshSource,
     limits: &Limits,
+    stop: &StopQuery,
 ) -> Result<CheckReport, JobError> {
-    let prepared = input.prepare(sources, limits)?;
+    let prepared = input.prepare(sources, limits, stop)?;
     let refine = input.spec.refine.as_ref();
     let refine = refine.map(|own| cost::refined_bound(&prepared.scene, own.cells, limits));
-    Ok(CheckReport { document: CheckDocument { refine, ..prepared.summary(input) }, prepared })
+    let document = CheckDocument { refine, ..prepared.summary(input, stop) };
+    match stop.is_asked() {
+        true => Err(JobError::Cancelled),
+        false => Ok(CheckReport { document, prepared }),
+    }
 }
 
 impl Prepared {
-    /// The counts of constrained nodes, and the expected cost of solving.
-    pub fn summary(&self, input: &PredictInput) -> CheckDocument {
+    /// The counts of constrained nodes, and the expected cost of solving; to be dropped after a stop.
+    fn summary(&self, input: &PredictInput, stop: &StopQuery) -> CheckDocument {
         let scene = &self.scene;
         let skin = &scene.skin;
         let nodes = scene.mesh.nodes.len();
         let held: usize =
             scene.conditions.constraints.iter().map(|constraint| constraint.count()).sum();
-        let collisions = collisions(&self.case, scene);
+        let collisions = collisions(&self.case, scene, stop);
         let mut of_plan: Vec<Warning> = collisions.iter().filter_map(Collision::warning).collect();
         of_plan.extend(landmarks_far(scene));
         of_plan.extend(suspect_landmarks(&input.case, &self.case));
@@ -82,7 +88,7 @@ impl Prepared {
             auto: self.expectation(input),
             movements: movements(scene, self.case.frame),
             collisions: collisions.iter().map(Collision::document).collect(),
-            contacts: contacts(&self.case, scene),
+            contacts: contacts(&self.case, scene, stop),
             cephalometry: head.measures,
             symmetry: head.symmetry,
             warnings: warnings_after(&self.told, warnings),

@@ -29,8 +29,9 @@ use crate::schema::{
 };
 use mechanics::mesh::Warning;
 use mechanics::mesh::ignored::listed;
-use mechanics::mesh::quality::{QualityReport, quality};
+use mechanics::mesh::quality::{QualityReport, quality_unless_stopped};
 use mechanics::prediction::{Case, Plan, Scene, Settings};
+use mechanics::progress::StopQuery;
 use mechanics::repair::RepairReport;
 
 /// A prediction: the case and the plan in full beside the spec.
@@ -78,17 +79,27 @@ struct Converted {
 
 impl PredictInput {
     /// Fetches the meshes, converts the documents and checks them together. All faults are reported;
-    /// pointers start at `/case`, `/plan` and `/spec`.
-    pub fn prepare(&self, sources: &dyn MeshSource, limits: &Limits) -> Result<Prepared, JobError> {
+    /// pointers start at `/case`, `/plan` and `/spec`. After a stop it is cancelled.
+    pub fn prepare(
+        &self,
+        sources: &dyn MeshSource,
+        limits: &Limits,
+        stop: &StopQuery,
+    ) -> Result<Prepared, JobError> {
         let stored = self.fetch(sources)?;
         let compared = self.fetch_compared(sources)?;
         let model = self.fetch_model(sources)?;
         let meshes = self.case_meshes(&stored)?;
         let converted = self.convert(&meshes, limits)?;
         let Converted { case, plan, settings, .. } = &converted;
-        let (scene, quality) =
-            rayon::join(|| Scene::new(case, plan, settings), || quality(&case.volume));
-        let scene = scene.map_err(|errors| JobError::Refused(errors.into()))?;
+        let (scene, quality) = rayon::join(
+            || Scene::unless_stopped(case, plan, settings, stop),
+            || quality_unless_stopped(&case.volume, stop),
+        );
+        let scene = scene?;
+        if stop.is_asked() {
+            return Err(JobError::Cancelled);
+        }
         if let Some(model) = &model {
             self.check_model(&model.document, case, plan, &scene)?;
         }

@@ -23,13 +23,15 @@ pub fn predict_job(
     let clock = Observed::start(progress, input.spec.budget.wall_s);
 
     // 1. Documents and meshes, checked together.
-    let prepared = input.prepare(place.sources, place.limits)?;
+    let prepared = clock.prepared(|stop| input.prepare(place.sources, place.limits, stop))?;
     prepared.admit(0, place.limits)?;
     clock.check()?;
 
     // 2. The displacement of the tissue.
     let predicted = match (&input.spec.refine, input.spec.accepted()) {
-        (Some(refine), _) => refined(prepared, refine, &clock, place.limits)?,
+        (Some(refine), accepted) => {
+            refined(prepared, (refine, accepted.is_some()), &clock, place.limits)?
+        }
         (None, Some(accepted)) => {
             let time_s = clock.left_s();
             let no_finite_strain = prepared.too_large_at_finite_strain(place.limits);
@@ -63,12 +65,12 @@ fn adequately(
 /// Predicts on meshes refined until the estimated error of the skin is accepted.
 fn refined(
     prepared: Prepared,
-    refine: &RefineDocument,
+    (refine, is_of_answer): (&RefineDocument, bool),
     clock: &Observed,
     limits: &Limits,
 ) -> Result<Predicted, JobError> {
     let bound = refined_bound(&prepared.scene, refine.cells, limits);
-    let wanted = refine.wanted(bound.cells as usize, clock.left_s());
+    let wanted = refine.wanted(bound.cells as usize, clock.left_s(), is_of_answer);
     let stopwatch = || clock.elapsed_s();
     let adapted = match predict_adaptively(&prepared.scene, &wanted, &stopwatch, clock) {
         Ok(adapted) => adapted,

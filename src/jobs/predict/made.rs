@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use super::check::check;
 use super::input::PredictInput;
+use crate::jobs::clock::Observed;
 use crate::jobs::failure::JobError;
 use crate::jobs::output::JobContext;
 use crate::jobs::source::{MeshSource, SourceError, StoredMesh, StoredShape};
@@ -58,6 +59,7 @@ pub fn check_made(
     case: &CaseDocument,
     made: BTreeMap<String, StoredMesh>,
     place: &JobContext,
+    clock: &Observed,
 ) -> Result<Option<CheckDocument>, JobError> {
     let sources = MadeBeside { made, stored: place.sources };
     let input = PredictInput {
@@ -67,7 +69,7 @@ pub fn check_made(
         plan: PlanDocument::default(),
         spec: PredictDocument::default(),
     };
-    match check(&input, &sources, place.limits) {
+    match clock.prepared(|stop| check(&input, &sources, place.limits, stop)) {
         Ok(report) => Ok(Some(report.document)),
         Err(JobError::Refused(problem)) if problem.is_only(ErrorCode::Underconstrained) => Ok(None),
         Err(error) => Err(error),

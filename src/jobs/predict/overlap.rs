@@ -8,6 +8,7 @@ use mechanics::format::WriteError;
 use mechanics::mesh::{SurfaceSearch, TriangleSurface, Vector, Warning};
 use mechanics::plan::RigidMovement;
 use mechanics::prediction::{Bone, Case, Prediction, Scene};
+use mechanics::progress::StopQuery;
 use mechanics::validation::contact_map::{contact_regions, gaps};
 use mechanics::validation::penetration::{Side, overlap, probes, reach};
 
@@ -37,16 +38,18 @@ struct Depth {
     after: f64,
 }
 
-/// The bones that overlap, of those that the plan moves relative to each other.
-pub fn collisions(case: &Case, scene: &Scene) -> Vec<Collision> {
+/// The bones that overlap, of those that the plan moves relative to each other; after a stop pairs are left out.
+pub fn collisions(case: &Case, scene: &Scene, stop: &StopQuery) -> Vec<Collision> {
     let bones = planned_bones(case, scene);
-    moved_pairs(&bones).filter_map(|(bone, other)| bone.collision(other)).collect()
+    let pairs = moved_pairs(&bones).take_while(|_| !stop.is_asked());
+    pairs.filter_map(|(bone, other)| bone.collision(other)).collect()
 }
 
-/// Contact of bones that the plan moves relative to each other; pairs without contact are omitted.
-pub fn contacts(case: &Case, scene: &Scene) -> Vec<BoneContactDocument> {
+/// Contact of bones that the plan moves relative to each other; pairs without contact are omitted, and after a stop pairs are left out.
+pub fn contacts(case: &Case, scene: &Scene, stop: &StopQuery) -> Vec<BoneContactDocument> {
     let bones = planned_bones(case, scene);
-    moved_pairs(&bones).filter_map(|(bone, other)| bone.contact(other)).collect()
+    let pairs = moved_pairs(&bones).take_while(|_| !stop.is_asked());
+    pairs.filter_map(|(bone, other)| bone.contact(other)).collect()
 }
 
 /// `bones.vtp`, with the gaps between bones.

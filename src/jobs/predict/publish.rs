@@ -40,7 +40,7 @@ use crate::schema::predict::result::{
 use crate::schema::predict::stress::StressDocument;
 use mechanics::mesh::{Vector, VolumeMesh, Warning};
 use mechanics::prediction::{PredictedStep, Prediction, Skin};
-use mechanics::progress::{Phase, Progress};
+use mechanics::progress::{Phase, Progress, StopQuery};
 use mechanics::validation::{Statistics, StatisticsError};
 
 /// A prediction to be measured, compared and written.
@@ -143,7 +143,8 @@ fn warnings_of(input: &PredictInput, prepared: &Prepared, prediction: &Predictio
     let (case, scene) = (&prepared.case, &prepared.scene);
     let mut warnings = prepared.warnings.clone();
     warnings.extend(prediction.warnings.iter().cloned());
-    warnings.extend(collisions(case, scene).iter().filter_map(Collision::warning));
+    let collisions = collisions(case, scene, &StopQuery::never());
+    warnings.extend(collisions.iter().filter_map(Collision::warning));
     warnings.extend(through_skin(case, scene, prediction));
     warnings.extend(suspect_landmarks(&input.case, case));
     warnings.extend(default_density(input));
@@ -352,6 +353,9 @@ fn load_step(step: &PredictedStep) -> LoadStepDocument {
         rest: rest_on_the_way(&step.rest),
         relative_residual: step.relative_residual,
         is_stable: step.is_stable,
+        bulk_in_cells: step.bulk_in_cells,
+        cells_with_bulk: step.cells_with_bulk as u64,
+        warnings: step.is_bulk_in_all.then(|| "bulk-in-all-cells".to_owned()).into_iter().collect(),
         reaction_millinewton: triples(&step.reactions),
         contact: step.contact.as_ref().map(Into::into),
     }

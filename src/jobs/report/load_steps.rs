@@ -5,9 +5,10 @@ use super::tables::{mm, texts};
 use super::words::Words;
 use crate::schema::predict::newton::LoadStepDocument;
 
-/// None where no load steps were asked for; contact has columns where anything presses.
+/// None where no load steps were asked for; contact has columns where anything presses, and warnings where there are any.
 pub fn load_steps(steps: &[LoadStepDocument], words: &Words) -> Option<Section> {
     let presses = steps.iter().any(|step| step.contact.is_some());
+    let warns = steps.iter().any(|step| !step.warnings.is_empty());
     let row = |step: &LoadStepDocument| {
         let LoadStepDocument { rest, contact, .. } = step;
         let stable =
@@ -25,12 +26,18 @@ pub fn load_steps(steps: &[LoadStepDocument], words: &Words) -> Option<Section> 
                 .map_or((0.0, 0.0), |contact| (contact.area_mm2, contact.largest_pressure_kpa));
             row.extend([mm(area), mm(pressure)]);
         }
+        if warns {
+            row.push(step.warnings.join(", "));
+        }
         row
     };
-    let [columns @ .., area, pressure] = words.step_columns;
+    let [columns @ .., area, pressure, warnings] = words.step_columns;
     let mut columns = texts(columns);
     if presses {
         columns.extend(texts([area, pressure]));
+    }
+    if warns {
+        columns.extend(texts([warnings]));
     }
     let table = Table::new(columns, steps.iter().map(row).collect());
     (!steps.is_empty()).then(|| Section::new(words.load_steps, vec![Block::Table(table)]))
@@ -51,6 +58,9 @@ mod tests {
             rest,
             relative_residual: 1e-9,
             is_stable: Some(true),
+            bulk_in_cells: 0.0,
+            cells_with_bulk: 0,
+            warnings: Vec::new(),
             reaction_millinewton: Default::default(),
             contact,
         }
@@ -74,5 +84,15 @@ mod tests {
         assert_eq!(pressed.columns.len(), 7);
         assert_eq!(pressed.rows[0][5..], ["0.00", "0.00"]);
         assert_eq!(pressed.rows[1][4..], ["ja", "100.00", "0.60"]);
+    }
+
+    #[test]
+    fn a_load_step_whose_answer_is_doubtful_says_why() {
+        let warnings = vec!["bulk-in-all-cells".to_owned()];
+        let doubtful = LoadStepDocument { warnings, ..step(1.0, None) };
+        let found = table(&[step(0.5, None), doubtful], Language::En);
+        assert_eq!(found.columns[4..], ["stable", "warnings"]);
+        assert_eq!(found.rows[0][4..], ["yes", ""]);
+        assert_eq!(found.rows[1][4..], ["yes", "bulk-in-all-cells"]);
     }
 }

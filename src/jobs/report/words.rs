@@ -51,8 +51,8 @@ pub struct Words {
     pub change: &'static str,
     pub planned: &'static str,
     pub load_steps: &'static str,
-    /// Share, steps, energy, det F and stability; area and pressure of contact.
-    pub step_columns: [&'static str; 7],
+    /// Share, steps, energy, det F and stability; area and pressure of contact; codes of warnings.
+    pub step_columns: [&'static str; 8],
     pub yes_or_no: [&'static str; 2],
     pub how_sure: &'static str,
     pub mesh_error: &'static str,
@@ -176,6 +176,7 @@ const EN: Words = Words {
         "stable",
         "contact, mm²",
         "pressure, kPa",
+        "warnings",
     ],
     yes_or_no: ["yes", "no"],
     how_sure: "Reliability of the numbers",
@@ -289,6 +290,7 @@ const DE: Words = Words {
         "stabil",
         "Kontakt, mm²",
         "Druck, kPa",
+        "Warnungen",
     ],
     yes_or_no: ["ja", "nein"],
     how_sure: "Wie sicher die Zahlen sind",

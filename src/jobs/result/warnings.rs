@@ -5,7 +5,7 @@ use mechanics::mesh::Warning;
 
 /// Codes that precede all others, in this order: those of doubtful input or measurements, those of a result that
 /// has larger errors than reported elsewhere, and those of an impossible one.
-const GRAVE: [&str; 65] = [
+const GRAVE: [&str; 66] = [
     "nothing-moves",
     "nothing-performed",
     "units-suspect",
@@ -54,6 +54,7 @@ const GRAVE: [&str; 65] = [
     "outside-second-order-range",
     "nonlinearity-unknown",
     "another-equilibrium",
+    "another-minimum",
     "membrane-wrinkles",
     "bulk-in-all-cells",
     "skin-outruns-plan",

@@ -14,6 +14,7 @@ use crate::schema::study::truth::TruthMethodName;
 use crate::schema::wire::canonical;
 use crate::schema::{CaseDocument, Limits, PlanDocument, Pointer, Problem};
 use mechanics::mesh::Warning;
+use mechanics::progress::StopQuery;
 use mechanics::study::StudyScene;
 
 /// The places of the documents of a study.
@@ -25,6 +26,7 @@ pub(super) struct Documents<'a> {
     pub truth_method: Option<TruthMethodName>,
     pub sources: &'a dyn MeshSource,
     pub limits: &'a Limits,
+    pub stop: &'a StopQuery<'a>,
 }
 
 /// Scenes, and their origins.

@@ -92,7 +92,7 @@ pub fn study_job(
     let clock = Observed::start(progress, whole_budget(input.spec.budget.wall_s));
 
     // 1. Documents and meshes, checked together.
-    let prepared = input.prepare(place.sources, place.limits)?;
+    let prepared = clock.prepared(|stop| input.prepare(place.sources, place.limits, stop))?;
     clock.check()?;
 
     // 2. Rows and truths, unless an earlier study has them.

@@ -14,6 +14,7 @@ use crate::schema::study::document::StudyKind;
 use crate::schema::wire::canonical;
 use crate::schema::{CaseDocument, Faults, Limits, Pointer, Problem};
 use mechanics::mesh::Warning;
+use mechanics::progress::StopQuery;
 use mechanics::study::{Study, StudyScene, truth_cost};
 
 /// The code of the warning of a study that names no method.
@@ -35,12 +36,21 @@ pub struct PreparedStudy {
 impl StudyInput {
     /// Adds what is wrong with the spec itself, whatever its cases are.
     pub fn check_spec(&self, sources: &dyn MeshSource, limits: &Limits, faults: &mut Faults) {
-        let StudyInput { spec, cases, truth_method, .. } = self;
-        let documents = Documents { spec, cases, truth_method: *truth_method, sources, limits };
-        spec.check(limits, faults);
-        if spec.kind == StudyKind::Study {
-            documents.variants(faults);
+        let stop = StopQuery::never();
+        self.spec.check(limits, faults);
+        if self.spec.kind == StudyKind::Study {
+            self.documents(sources, limits, &stop).variants(faults);
         }
+    }
+
+    fn documents<'a>(
+        &'a self,
+        sources: &'a dyn MeshSource,
+        limits: &'a Limits,
+        stop: &'a StopQuery,
+    ) -> Documents<'a> {
+        let StudyInput { spec, cases, truth_method, .. } = self;
+        Documents { spec, cases, truth_method: *truth_method, sources, limits, stop }
     }
 
     /// Makes the scenes, fetches the meshes and checks the documents. Pointers start at `/case` and `/spec`.
@@ -48,9 +58,9 @@ impl StudyInput {
         &self,
         sources: &dyn MeshSource,
         limits: &Limits,
+        stop: &StopQuery,
     ) -> Result<PreparedStudy, JobError> {
-        let StudyInput { spec, cases, truth_method, .. } = self;
-        let documents = Documents { spec, cases, truth_method: *truth_method, sources, limits };
+        let documents = self.documents(sources, limits, stop);
         let StudyItems { scenes, variants, pairs } = documents.checked()?;
         let study = Study {
             scenes: scenes.scenes,

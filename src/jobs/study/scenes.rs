@@ -282,7 +282,7 @@ impl Documents<'_> {
         let mut first: Option<Prepared> = None;
         for (number, (at, document)) in (1..).zip(documents) {
             let input = input(case, (*document).clone(), of_the_first.clone());
-            let prepared = input.prepare(self.sources, self.limits);
+            let prepared = input.prepare(self.sources, self.limits, self.stop);
             let prepared = prepared.map_err(|error| self.moved(error, reference, [at, &place(0)]));
             let Some(prepared) = found.found(prepared)? else { continue };
             plans.push((format!("plan {number}"), prepared.plan.clone()));
@@ -298,7 +298,7 @@ impl Documents<'_> {
         for (place, document) in given.iter().skip(1) {
             let Some((at, plan)) = documents.first() else { break };
             let input = input(case, (*plan).clone(), Some((*document).clone()));
-            let prepared = input.prepare(self.sources, self.limits);
+            let prepared = input.prepare(self.sources, self.limits, self.stop);
             let prepared = prepared.map_err(|error| self.moved(error, reference, [at, place]));
             let Some(Prepared { case, .. }) = found.found(prepared)? else { continue };
             materials.push(Materials {

@@ -177,6 +177,7 @@ impl MeshingDocument {
         self.check_skin_scan(&at, limits, faults);
         self.check_labels(&at, limits, faults);
         self.check_surfaces(&at, limits, faults);
+        self.check_frame(&at, scan, faults);
         let planned = self.to_osteotomy(&at, scan, limits, faults);
         let osteotomy = planned.as_ref().map(|planned| &planned.osteotomy);
         let closing = self.closing(&at, osteotomy, (scan, limits), faults);
@@ -212,6 +213,20 @@ impl MeshingDocument {
             teeth_slide: self.teeth_slide,
             frame: scan,
             landmarks,
+        }
+    }
+
+    /// Refuses places in a frame that is not known to be that of the body; those of an osteotomy are checked with it.
+    fn check_frame(&self, at: &Pointer, scan: Frame, faults: &mut Faults) {
+        let Some(frame) = self.frame.map(Frame::from).filter(|_| self.osteotomy.is_none()) else {
+            return;
+        };
+        if frame != scan && [frame, scan].contains(&Frame::Unspecified) {
+            let detail = format!(
+                "the document is in frame {frame}, what is meshed in {scan}: state the `frame` of the one without (for a scan on the \
+                 command line, `--frame LPS`; else that of its upload)"
+            );
+            faults.add(&at.key("frame"), ErrorCode::FrameConflict, detail);
         }
     }
 

@@ -12,7 +12,8 @@ use crate::schema::Triple;
 use crate::schema::case::document::CaseDocument;
 use crate::schema::predict::check::CheckDocument;
 use mechanics::anatomy::Anatomy;
-use mechanics::meshing::{Angles, Gap};
+use mechanics::meshing::{Angles, Gap, LostPiece};
+use mechanics::osteotomy::enclosed::Enclosed;
 use mechanics::osteotomy::labelling::FoundSegment;
 
 /// A mesh made from a scan, and a case of it.
@@ -42,8 +43,8 @@ pub struct MeshingResultDocument {
     pub free_beside_cuts: u64,
     /// Gaps thinner than a cell that were filled with tissue, such as closed lips; the largest first.
     pub gaps_closed: Vec<GapDocument>,
-    /// Tissue thinner than a cell that the mesh lacks; the largest first.
-    pub sheets_lost: Vec<GapDocument>,
+    /// Tissue thinner than a cell that the mesh lacks, in connected pieces; the largest first.
+    pub sheets_lost: Vec<LostSheetDocument>,
     /// Landmarks of the skin, detected or stated, in mm: `pogonion`, `sublabiale`, `subnasale`, `pronasale`. Empty where none were
     /// found.
     #[serde(default)]
@@ -73,13 +74,26 @@ pub struct AnglesDocument {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct FoundSegmentDocument {
     pub name: String,
+    /// What its surface encloses, that of its file of bone; of a bone that was given as a surface by voxels.
     pub volume_ml: f64,
+    /// The centre of mass of what `volume_ml` counts.
     pub centre_mm: Triple,
-    /// Bone on its sides of the cuts that is not connected with it.
+    /// Bone on its sides of the cuts that is not connected with it, by voxels.
     pub left_ml: f64,
 }
 
-/// A difference of the mesh from the scan because cells are too large there.
+/// Tissue in no cell, because cells are too large there.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct LostSheetDocument {
+    /// The place of it that is nearest to its middle.
+    pub centre_mm: Triple,
+    /// Along x, y and z.
+    pub extent_mm: Triple,
+    #[serde(default)]
+    pub volume_ml: f64,
+}
+
+/// Air that is tissue in the mesh, because cells are too large there.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct GapDocument {
     pub centre_mm: Triple,
@@ -96,10 +110,10 @@ impl MeshingResultDocument {
         let report = &anatomy.meshing;
         let [x, y, z] = anatomy.bone.labels.placement().steps;
         let voxel = x.dot(&y.cross(&z)).abs();
-        let segment = |found: &FoundSegment| FoundSegmentDocument {
+        let segment = |(found, solid): (&FoundSegment, &Enclosed)| FoundSegmentDocument {
             name: found.name.clone(),
-            volume_ml: found.volume_mm3 / MM3_IN_ML,
-            centre_mm: found.centre.into(),
+            volume_ml: solid.volume_mm3 / MM3_IN_ML,
+            centre_mm: solid.centre.into(),
             left_ml: found.left.voxels as f64 * voxel / MM3_IN_ML,
         };
         let sets = anatomy.volume.node_sets.iter();
@@ -109,14 +123,14 @@ impl MeshingResultDocument {
             volume_ml: report.volume / MM3_IN_ML,
             finest_mm: report.finest,
             dihedral_angles_deg: (&report.angles).into(),
-            segments: anatomy.bone.segments.iter().map(segment).collect(),
+            segments: anatomy.bone.segments.iter().zip(&anatomy.solids).map(segment).collect(),
             thresholds_hu: None,
             cuts: Vec::new(),
             skin_scan: None,
             node_sets: sets.map(|(name, nodes)| (name.clone(), nodes.len() as u64)).collect(),
             free_beside_cuts: anatomy.classes.in_band as u64,
             gaps_closed: report.gaps_closed.iter().map(GapDocument::from).collect(),
-            sheets_lost: report.sheets_lost.iter().map(GapDocument::from).collect(),
+            sheets_lost: report.pieces_lost.iter().map(LostSheetDocument::from).collect(),
             landmarks_mm: (anatomy.landmarks.iter())
                 .map(|(name, &place)| (name.clone(), place.into()))
                 .collect(),
@@ -134,6 +148,16 @@ impl From<&Angles> for AnglesDocument {
             thousandth: angles.thousandth,
             hundredth: angles.hundredth,
             largest: angles.largest,
+        }
+    }
+}
+
+impl From<&LostPiece> for LostSheetDocument {
+    fn from(piece: &LostPiece) -> Self {
+        LostSheetDocument {
+            centre_mm: piece.at.into(),
+            extent_mm: (piece.high - piece.low).into(),
+            volume_ml: piece.volume / MM3_IN_ML,
         }
     }
 }

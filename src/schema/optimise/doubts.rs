@@ -1,4 +1,4 @@
-//! Plausibility of estimated growth and constants.
+//! Plausibility of plans that were found, and of estimated growth and constants.
 
 use super::document::OptimiseDocument;
 use super::result::{OptimisationDocument, ParameterName};
@@ -14,9 +14,9 @@ impl OptimiseDocument {
         own.map(|(_, own)| *own).unwrap_or_default()
     }
 
-    /// Warnings on estimated growth and constants.
+    /// Warnings on the plan, and on estimated growth and constants.
     pub fn doubts(&self, found: &OptimisationDocument) -> Vec<Warning> {
-        let mut doubts = Vec::new();
+        let mut doubts: Vec<Warning> = found.another_minimum().into_iter().collect();
         let is_free = |own: Option<Interval>| own.is_some_and(|Interval([low, high])| low < high);
         let all = || self.tissue_bounds.values();
         if all().any(|own| is_free(own.poisson_ratio))
@@ -62,6 +62,22 @@ impl OptimiseDocument {
     }
 }
 
+impl OptimisationDocument {
+    /// The warning where another plan explains the targets nearly as well: its chi squared is higher by at most 1, that of one standard
+    /// error, or by what one degree of freedom has left.
+    pub fn another_minimum(&self) -> Option<Warning> {
+        let next = *self.other_chi_squared.first()?;
+        let own = self.chi_squared;
+        let as_good = own + self.residual_factor.map_or(1.0, |factor| factor.powi(2).max(1.0));
+        let detail = format!(
+            "a search from another start ended in another plan that is nearly as good, of chi squared {next:.3} beside {own:.3}: narrow the \
+             bounds to the one that is meant, or state more targets"
+        );
+        let warning = Warning::new("another-minimum", detail).with("chi_squared", own);
+        (next <= as_good).then(|| warning.with("other_chi_squared", next))
+    }
+}
+
 /// The bounds of a parameter of tissue.
 fn interval_of(own: &TissueBoundsDocument, name: ParameterName) -> Option<Interval> {
     match name {
@@ -74,5 +90,29 @@ fn interval_of(own: &TissueBoundsDocument, name: ParameterName) -> Option<Interv
         | ParameterName::RotationX
         | ParameterName::RotationY
         | ParameterName::RotationZ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn told(chi_squared: f64, degrees_of_freedom: u64, others: &[f64]) -> bool {
+        let document = serde_json::json!({
+            "plan": {}, "targets": [], "parameters": [], "standard_error": [], "covariance": [], "correlation": [],
+            "at_bound": [], "undetermined": [], "iterations": 5, "starts": 13, "chi_squared": chi_squared,
+            "degrees_of_freedom": degrees_of_freedom, "other_chi_squared": others,
+            "residual_factor": (chi_squared / degrees_of_freedom as f64).sqrt(),
+        });
+        let found: OptimisationDocument = serde_json::from_value(document).unwrap();
+        found.another_minimum().is_some()
+    }
+
+    #[test]
+    fn another_plan_is_told_where_it_is_as_good_within_a_standard_error() {
+        assert!(!told(10.0, 10, &[]) && !told(10.0, 10, &[11.1, 10.5e3]));
+        assert!(told(10.0, 10, &[10.9, 50.0]) && told(1e-9, 10, &[0.9]));
+        // Of errors four times as large as stated.
+        assert!(told(160.0, 10, &[175.0]) && !told(160.0, 10, &[177.0]));
     }
 }

@@ -50,6 +50,15 @@ pub struct OptimisationDocument {
     #[schema(nullable = false)]
     pub residual_factor: Option<f64>,
     pub iterations: u64,
+    /// Starts of the search: 1, or 13 where an angle may be more than 20 degrees from rest.
+    #[serde(default = "one_start")]
+    #[schema(required)]
+    pub starts: u64,
+    /// `chi_squared` of the other minima that starts ended in, ascending: higher ones, and if the targets determine all parameters others
+    /// as low with another movement.
+    #[serde(default)]
+    #[schema(required)]
+    pub other_chi_squared: Vec<f64>,
     /// Of order 2: means over the skin that moves of the second-order term, and of the third-order term that is left out, estimated
     /// from samples.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -63,6 +72,11 @@ pub struct OptimisationDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub verified_difference_mm: Option<f64>,
+}
+
+/// Of a result that does not state it.
+fn one_start() -> u64 {
+    1
 }
 
 /// The residual of a target.
@@ -209,6 +223,8 @@ impl OptimisationDocument {
             degrees_of_freedom: degrees_of_freedom as u64,
             residual_factor: (degrees_of_freedom > 0).then(|| spread.sqrt()),
             iterations: optimum.iterations as u64,
+            starts: optimum.starts as u64,
+            other_chi_squared: optimum.other_minima.clone(),
             second_order_mm: optimum.beyond.map(|beyond| beyond.second),
             nonlinearity_estimate_mm: optimum.beyond.map(|beyond| beyond.third),
             verified_difference_mm: None,

@@ -202,8 +202,8 @@ impl PlanDocument {
         }
         if plan_frame == Frame::Unspecified || case_frame == Frame::Unspecified {
             let detail = format!(
-                "the plan is in frame {plan_frame}, the case in {case_frame}: state the `frame` of the one without (for a mesh on \
-                 the command line, `--frame LPS`)"
+                "the plan is in frame {plan_frame}, the case in {case_frame}: state the `frame` of the one without (for a mesh or a \
+                 scan on the command line, `--frame LPS`; else that of its upload)"
             );
             faults.add(&at.key("frame"), ErrorCode::FrameConflict, detail);
         }

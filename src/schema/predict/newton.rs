@@ -57,6 +57,15 @@ pub struct LoadStepDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub is_stable: Option<bool>,
+    /// As that of `provenance.solver.newton`.
+    #[serde(default)]
+    pub bulk_in_cells: f64,
+    /// As that of `provenance.solver.newton`.
+    #[serde(default)]
+    pub cells_with_bulk: u64,
+    /// Codes of warnings about this equilibrium; absent if there are none.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub warnings: Vec<String>,
     /// As that of the result.
     pub reaction_millinewton: BTreeMap<String, Triple>,
     /// Where anything presses.

@@ -54,10 +54,12 @@ pub struct RefinementDocument {
     pub accepted_regions_mm: BTreeMap<String, f64>,
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub accepted_landmarks_mm: BTreeMap<String, f64>,
-    /// Whether the estimates on the last mesh are accepted and leave nothing out that a warning names.
+    /// Whether the estimates on the last mesh are accepted, leave nothing out that a warning names, and nothing speaks against the
+    /// answer. With `auto` they are of mesh and linearity together, with `fem_linear` of each alone; an unknown one is not accepted.
     pub met: bool,
-    /// Why refinement stopped: `met`; `incomplete` if the estimates are accepted and leave out what a warning names
-    /// (`muscles-not-refined`, `points-refined`, or `tolerance-not-met` for linearity); or the bound `cells`, `time` or `memory`.
+    /// Why refinement stopped: `met`; `incomplete` if the estimate of the mesh is accepted, and warnings name what it leaves out
+    /// (`muscles-not-refined`, `points-refined`) or what speaks against the answer (`tolerance-not-met`: linearity unknown or above
+    /// what is accepted, or one of the objections of `auto`); or the bound `cells`, `time` or `memory`.
     pub stopped: String,
     /// The meshes, beginning with that of the case.
     pub levels: Vec<RefinementLevelDocument>,
@@ -101,11 +103,12 @@ impl RefineDocument {
     }
 
     /// The settings of the numerics, with the effective bounds.
-    pub fn wanted(&self, cells: usize, time_s: f64) -> RefinementGoal {
+    pub fn wanted(&self, cells: usize, time_s: f64, is_of_answer: bool) -> RefinementGoal {
         RefinementGoal {
             skin_mm: self.accept_mm,
             regions_mm: self.regions.clone(),
             landmarks_mm: self.landmarks.clone(),
+            is_of_answer,
             cells,
             time_s,
         }
@@ -129,7 +132,10 @@ impl RefinementDocument {
         let Some(last) = self.levels.last() else { return "no mesh was solved".to_owned() };
         let verdict = match self.stopped.as_str() {
             _ if self.met => "within".to_owned(),
-            "incomplete" => "with more that it leaves out (see the warnings), within".to_owned(),
+            "incomplete" => {
+                "with more that it leaves out or that speaks against it (see the warnings), within"
+                    .to_owned()
+            }
             bound => format!("short of (bound: {bound})"),
         };
         format!(

@@ -5,7 +5,7 @@ use utoipa::ToSchema;
 
 use mechanics::format::ReadLimits;
 use mechanics::image::MOST_SAMPLES;
-use mechanics::prediction::MOST_MUSCLE_WORK;
+use mechanics::prediction::{MOST_MUSCLE_WORK, MOST_SAMPLE_POINTS};
 
 /// Bounds of requests. Defaults are those of the API's first version.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
@@ -61,6 +61,10 @@ pub struct Limits {
     pub muscle_work: u64,
     /// `samples` of `muscle_mixing`.
     pub muscle_samples: u32,
+    /// Sample points of an image in all cells of a case: its cells times `samples` of `hounsfield`.
+    pub hounsfield_points: u64,
+    /// Longest check of a case or a job before it is accepted; also of a picture or report drawn on request.
+    pub check_s: f64,
     /// Requests of one client per minute; 0 for no limit.
     pub requests_per_minute: u32,
     /// Streams of events that one client may have open.
@@ -104,6 +108,8 @@ impl Default for Limits {
             study_rows: 2000,
             muscle_work: MOST_MUSCLE_WORK,
             muscle_samples: MOST_SAMPLES as u32,
+            hounsfield_points: MOST_SAMPLE_POINTS,
+            check_s: 30.0,
             requests_per_minute: 60_000,
             event_streams: 8,
             keys: 100,

@@ -10,9 +10,10 @@ use facies::schema::Limits;
 use mechanics::image::{ImageVolume, Placement, Voxels};
 use mechanics::mesh::sample::block;
 use mechanics::mesh::{CellShape, Frame, Vector};
-use mechanics::progress::Unobserved;
+use mechanics::progress::{Phase, Progress as _, StopQuery, Unobserved};
 use serde_json::{Value, json};
 
+use super::stop_at::StopAt;
 use crate::samples::{read_default, surface};
 use crate::sources::{Meshes, stored};
 
@@ -77,10 +78,22 @@ fn run(sources: &Meshes, case: &Value, out: &Path) -> JobOutput {
 fn refused(change: impl Fn(&mut Value)) -> (String, String) {
     let mut case = case();
     change(&mut case);
-    let found = check(&input(&case, &json!({})), &meshes(), &Limits::default());
+    let found =
+        check(&input(&case, &json!({})), &meshes(), &Limits::default(), &StopQuery::never());
     let Some(JobError::Refused(problem)) = found.err() else { panic!("{case} is refused") };
     assert_eq!(problem.errors.len(), 1, "{:?}", problem.errors);
     (problem.errors[0].code.name().to_owned(), problem.errors[0].pointer.clone())
+}
+
+#[test]
+fn a_check_that_is_stopped_is_cancelled_and_reports_nothing() {
+    let impatient = StopAt::phase(Phase::Validate);
+    let found =
+        |stop: &StopQuery| check(&input(&case(), &json!({})), &meshes(), &Limits::default(), stop);
+    assert!(found(&StopQuery::of(&impatient)).is_ok());
+    impatient.phase(Phase::Validate);
+    let stopped = found(&StopQuery::of(&impatient));
+    assert!(matches!(stopped.err(), Some(JobError::Cancelled)));
 }
 
 #[test]
@@ -117,7 +130,8 @@ fn a_region_with_fibres_is_labelled_and_mixed_and_one_with_a_law_is_labelled_onl
     let is_sound = |change: &dyn Fn(&mut Value)| {
         let mut changed = case();
         change(&mut changed);
-        check(&input(&changed, &json!({})), &meshes(), &Limits::default()).is_ok()
+        check(&input(&changed, &json!({})), &meshes(), &Limits::default(), &StopQuery::never())
+            .is_ok()
     };
     for mixing in ["mean", "fraction"] {
         assert!(is_sound(&with(mixing, "fibre", fibre.clone())), "{mixing}");
@@ -142,7 +156,7 @@ fn an_image_is_no_mesh_and_a_mesh_no_image() {
     let unknown = refused(|case| case["hounsfield"]["image"] = json!("mri"));
     assert_eq!(unknown, ("unknown-mesh".to_owned(), image.to_owned()));
     let spec = json!({"compare_to": {"actual": {"mesh": "ct"}}});
-    let found = check(&input(&case(), &spec), &meshes(), &Limits::default());
+    let found = check(&input(&case(), &spec), &meshes(), &Limits::default(), &StopQuery::never());
     let Some(JobError::Refused(problem)) = found.err() else { panic!("an image has no surface") };
     assert_eq!(problem.code.name(), "validation-failed");
     assert_eq!(problem.errors[0].code.name(), "wrong-mesh");
@@ -166,7 +180,8 @@ fn an_image_in_the_other_frame_shows_the_same_tissue() {
     other["frame"] = json!("unspecified");
     let mut unmarked = meshes();
     unmarked.0.get_mut("ct in RAS").unwrap().frame = None;
-    let found = check(&input(&other, &json!({})), &unmarked, &Limits::default());
+    let found =
+        check(&input(&other, &json!({})), &unmarked, &Limits::default(), &StopQuery::never());
     assert!(found.err().unwrap().to_string().contains("no cell lies inside the image"));
 }
 
@@ -175,7 +190,9 @@ fn an_image_without_a_frame_is_doubtful_beside_meshes_with_one() {
     let codes = |case: &Value| {
         let mut unmarked = meshes();
         unmarked.0.get_mut("ct").unwrap().frame = None;
-        let found = check(&input(case, &json!({})), &unmarked, &Limits::default()).unwrap();
+        let found =
+            check(&input(case, &json!({})), &unmarked, &Limits::default(), &StopQuery::never())
+                .unwrap();
         found.document.warnings.into_iter().map(|warning| warning.code).collect::<Vec<_>>()
     };
     let doubtful = "image-place-doubtful";

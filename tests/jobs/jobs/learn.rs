@@ -10,7 +10,7 @@ use facies::schema::Limits;
 use mechanics::mesh::half_head::{LAYERS, half_head};
 use mechanics::mesh::{CellShape, TriangleSurface, Vector, VolumeMesh, sample};
 use mechanics::prediction::{equilibrium, predict};
-use mechanics::progress::{Phase, Unobserved};
+use mechanics::progress::{Phase, StopQuery, Unobserved};
 use serde_json::{Value, json};
 
 use super::stop_at::StopAt;
@@ -75,7 +75,8 @@ fn operated_beside(missed: &dyn Fn(usize, usize) -> Vector) -> (Sources, LearnIn
     for number in 1..=4 {
         let prediction = prediction(number as f64, linear());
         let sources = Sources { meshes: meshes.clone(), model: Vec::new() };
-        let scene = prediction.prepare(&sources, &Limits::default()).unwrap().scene;
+        let scene =
+            prediction.prepare(&sources, &Limits::default(), &StopQuery::never()).unwrap().scene;
         let (solved, _) = equilibrium(&scene, &Unobserved).unwrap();
         let mut after = block([4, 4, 2]);
         let moved = after.nodes.iter_mut().zip(&solved.displacement).enumerate();
@@ -355,7 +356,8 @@ fn operated_with_theta(truth: f64) -> (Sources, LearnInput) {
     for number in 1..=4 {
         let x = 2.0 * f64::from(number);
         let sources = Sources { meshes: meshes.clone(), model: Vec::new() };
-        let scene = of(x, truth).prepare(&sources, &Limits::default()).unwrap().scene;
+        let scene =
+            of(x, truth).prepare(&sources, &Limits::default(), &StopQuery::never()).unwrap().scene;
         let (solved, _) = equilibrium(&scene, &Unobserved).unwrap();
         let mut after = block([4, 4, 2]);
         after.nodes.iter_mut().zip(&solved.displacement).for_each(|(node, u)| *node += u);
@@ -396,7 +398,10 @@ fn shuffled(count: usize) -> Vec<usize> {
 
 /// The skin of the block as it was measured, its points in another order.
 fn measured_skin(sources: &Sources, number: usize, with_ids: bool) -> TriangleSurface {
-    let scene = prediction(1.0, linear()).prepare(sources, &Limits::default()).unwrap().scene;
+    let scene = prediction(1.0, linear())
+        .prepare(sources, &Limits::default(), &StopQuery::never())
+        .unwrap()
+        .scene;
     let StoredShape::Volume(after) = &sources.meshes[&format!("after {number}")].shape else {
         panic!("it is a volume")
     };
@@ -451,7 +456,11 @@ fn cases_are_predicted_as_their_jobs_were_asked_or_refused() {
     for (number, case) in (1..).zip(&mut input.cases) {
         let spec = json!({"method": "fem_linear", "corrected": true});
         case.prediction.spec = serde_json::from_value(spec).unwrap();
-        let scene = case.prediction.prepare(&sources, &Limits::default()).unwrap().scene;
+        let scene = case
+            .prediction
+            .prepare(&sources, &Limits::default(), &StopQuery::never())
+            .unwrap()
+            .scene;
         let asked = predict(&scene, &Unobserved).unwrap().displacement;
         let (plain, _) = equilibrium(&scene, &Unobserved).unwrap();
         let differs = asked.iter().zip(&plain.displacement).map(|(a, b)| (a - b).norm());

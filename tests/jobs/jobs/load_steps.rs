@@ -7,7 +7,7 @@ use facies::schema::Limits;
 use facies::schema::predict::result::ResultDocument;
 use mechanics::mesh::sample::block;
 use mechanics::mesh::{CellShape, Vector};
-use mechanics::progress::Unobserved;
+use mechanics::progress::{StopQuery, Unobserved};
 use serde_json::{Value, json};
 
 use crate::sources::{Meshes, stored};
@@ -58,6 +58,11 @@ fn a_result_has_a_row_for_each_load_step_and_the_answer_without_them() {
         (last.rest.energy_mn_mm, last.rest.least_det_f),
         (newton.energy_mn_mm, newton.least_det_f)
     );
+    assert_eq!(
+        (last.bulk_in_cells, last.cells_with_bulk),
+        (newton.bulk_in_cells, newton.cells_with_bulk)
+    );
+    assert!(stepped.load_steps.iter().all(|step| step.warnings.is_empty()));
     assert!(
         stepped
             .load_steps
@@ -97,7 +102,8 @@ fn load_steps_that_are_too_many_or_of_another_method_are_refused_with_their_plac
             "method-mismatch",
         ),
     ] {
-        let ended = check(&asked(spec.clone()), &sources(), &Limits::default());
+        let ended =
+            check(&asked(spec.clone()), &sources(), &Limits::default(), &StopQuery::never());
         let refused = ended.err().expect("it is refused");
         let facies::jobs::JobError::Refused(problem) = refused else { panic!("{spec}: {refused}") };
         let told = &problem.errors[0];
@@ -136,7 +142,8 @@ fn load_steps_are_made_with_contact_and_are_a_table_of_the_report() {
 fn each_load_step_is_expected_to_take_its_time() {
     let expected = |own: Value| {
         let input = asked(json!({"method": "fem_nonlinear", "fem_nonlinear": own}));
-        let told = check(&input, &sources(), &Limits::default()).unwrap().document;
+        let told =
+            check(&input, &sources(), &Limits::default(), &StopQuery::never()).unwrap().document;
         told.time_s.unwrap()
     };
     let (one, ten) = (expected(json!({})), expected(json!({"load_steps": 10})));

@@ -15,7 +15,7 @@ use facies::schema::{Faults, Limits, Matrix4x4, Pointer};
 use mechanics::mesh::sample::block;
 use mechanics::mesh::{CellShape, Frame, TriangleSurface, Vector};
 use mechanics::plan::RigidMovement;
-use mechanics::progress::Unobserved;
+use mechanics::progress::{StopQuery, Unobserved};
 use serde_json::{Value, json};
 
 use crate::sources::{Meshes, stored};
@@ -181,7 +181,7 @@ fn cubes(case: Value, plan: Value, spec: Value) -> (Meshes, PredictInput) {
 
 fn checked(case: Value, plan: Value) -> CheckDocument {
     let (sources, input) = cubes(case, plan, json!({}));
-    check(&input, &sources, &Limits::default()).unwrap().document
+    check(&input, &sources, &Limits::default(), &StopQuery::never()).unwrap().document
 }
 
 /// The colours of an image within an SVG, by its place among them.

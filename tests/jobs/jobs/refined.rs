@@ -2,6 +2,7 @@
 
 use facies::jobs::check;
 use facies::schema::{Limits, Problem};
+use mechanics::progress::StopQuery;
 
 use super::results::{meshes, predict, predict_input};
 
@@ -55,7 +56,8 @@ fn a_bound_that_comes_first_is_reported() {
     assert!(!told.levels.is_empty() && told.levels.iter().all(|level| level.cells <= 1000));
     assert!(result.warnings.iter().any(|warning| warning.code == "tolerance-not-met"));
     let input = predict_input(CASE, PULL, spec);
-    let checked = check(&input, &meshes(), &Limits::default()).unwrap().document;
+    let checked =
+        check(&input, &meshes(), &Limits::default(), &StopQuery::never()).unwrap().document;
     let bound = checked.refine.unwrap();
     assert!(bound.cells == 1000 && bound.memory_mb > 30.0);
     // No other model is chosen, before and after.

@@ -9,6 +9,7 @@ use facies::schema::predict::check::CheckDocument;
 use mechanics::mesh::sample::block;
 use mechanics::mesh::{CellShape, TriangleSurface, Vector};
 use mechanics::muscle::strap::box_surface;
+use mechanics::progress::StopQuery;
 use serde_json::{Value, json};
 
 use crate::sources::{Meshes, stored};
@@ -47,13 +48,15 @@ fn input(case: &Value, spec: Value) -> (PredictInput, Meshes) {
 
 fn checked(case: &Value) -> CheckDocument {
     let (input, meshes) = input(case, json!({}));
-    check(&input, &meshes, &Limits::default()).unwrap().document
+    check(&input, &meshes, &Limits::default(), &StopQuery::never()).unwrap().document
 }
 
 /// The place, the code and the words of the first thing that is wrong.
 fn refused(muscle: &Value) -> (String, String, String) {
     let (input, meshes) = input(&json!({"muscles": [muscle]}), json!({}));
-    let Err(error) = check(&input, &meshes, &Limits::default()) else { panic!("taken: {muscle}") };
+    let Err(error) = check(&input, &meshes, &Limits::default(), &StopQuery::never()) else {
+        panic!("taken: {muscle}")
+    };
     let JobError::Refused(problem) = error else { panic!("{error:?}") };
     let first = &problem.errors[0];
     (first.pointer.to_string(), first.code.name().to_owned(), first.detail.clone())

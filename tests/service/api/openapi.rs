@@ -79,6 +79,8 @@ async fn limits_and_methods_are_reported() {
     assert_eq!((&limits["upload_bytes"], &limits["wait_s"]), (&(256 << 20).into(), &30.into()));
     let muscles = (&limits["muscle_work"], &limits["muscle_samples"]);
     assert_eq!(muscles, (&1_000_000_000.into(), &512.into()));
+    assert_eq!(limits["hounsfield_points"], 1_000_000_000);
+    assert_eq!(limits["check_s"], 30.0);
     let methods = ask(server.get("/v1/methods")).await.expect(StatusCode::OK);
     assert_eq!(methods["methods"][0]["name"], "fem_linear");
     let response = &methods["response"];

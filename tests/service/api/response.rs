@@ -717,8 +717,12 @@ async fn a_response_of_fibres_that_only_pull_says_as_a_prediction_that_its_error
         built(&server, json!({"kind": "response", "case": case})).await;
         let applied = apply(&server, &case, &plan, "application/json").await;
         let told = applied.expect(StatusCode::OK);
-        assert_eq!(told.get("nonlinearity_estimate_mm").is_some(), is_known, "{told}");
-        assert_eq!(told["within_linear_range"], is_known, "{told}");
+        assert_eq!(told.get("nonlinearity_estimate_mm").unwrap().is_null(), !is_known, "{told}");
+        let within = told.get("within_linear_range").unwrap();
+        assert_eq!(within, &if is_known { json!(true) } else { json!(null) }, "{told}");
+        let octets = apply(&server, &case, &plan, OCTETS).await;
+        assert_eq!(octets.header("facies-within-linear-range") == "true", is_known);
+        assert_eq!(octets.header("facies-within-linear-range").is_empty(), !is_known);
         let is_told = warnings_of(&told).any(|told| told["code"] == "nonlinearity-unknown");
         assert_eq!(is_told, !is_known, "{told}");
         let spec = json!({"kind": "predict", "method": "fem_linear", "case": case, "plan": plan});

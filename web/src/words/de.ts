@@ -223,7 +223,7 @@ export const de: Words = {
   documentBroken: "Das Dokument oben ist kein JSON mehr: Schnitte werden nicht hineingeschrieben, bis es das wieder ist.",
 
   warningNames: {
-    "all-methods": "jedes Modell wurde gelöst, da keines genannt war", "another-equilibrium": "das Gewebe kann auch anders zur Ruhe kommen", "membrane-wrinkles": "die Haut wird gestaucht, bis sie Falten wirft",
+    "all-methods": "jedes Modell wurde gelöst, da keines genannt war", "another-equilibrium": "das Gewebe kann auch anders zur Ruhe kommen", "another-minimum": "ein anderer Plan erklärt die Ziele ebenso gut", "membrane-wrinkles": "die Haut wird gestaucht, bis sie Falten wirft",
     "another-person-suspect": "die Flächen sind vielleicht von zwei Personen", "array-nonfinite": "Zahlen der Datei sind nicht endlich",
     "base-unmasked": "bewegter Knochen bringt die Aufnahmen mit zusammen",
     "before-operation-suspect": "die Aufnahme ist vielleicht von vor der Operation", "bone-loose": "loser Knochen ist als Gewebe vernetzt",

@@ -222,7 +222,7 @@ export const en = {
 
   /** By their codes; the sentence of the service stands beside. */
   warningNames: {
-    "all-methods": "every model was solved, as none was named", "another-equilibrium": "the tissue may rest in another way too", "membrane-wrinkles": "the skin is pressed until it wrinkles",
+    "all-methods": "every model was solved, as none was named", "another-equilibrium": "the tissue may rest in another way too", "another-minimum": "another plan explains the targets as well", "membrane-wrinkles": "the skin is pressed until it wrinkles",
     "another-person-suspect": "the surfaces may be of two persons", "array-nonfinite": "numbers of the file are not finite",
     "base-unmasked": "bone that was moved helps to bring the scans together", "before-operation-suspect": "the scan may be one before the operation",
     "nodes-off-bone": "nodes beside bone lie on none, and are free",

@@ -61,6 +61,7 @@ impl Stack {
     /// Every slice stands where an even stack has it.
     fn check_places(&self, slices: &[Slice], normal: &Vector) -> Result<(), FormatError> {
         let spacing = self.step.dot(normal);
+        let mut farthest = (0, 0.0);
         for (number, layer) in self.layers.iter().enumerate() {
             let Layer::Slice(slice) = *layer else { continue };
             let off = slices[slice].position - (self.origin + self.step * number as f64);
@@ -73,12 +74,16 @@ impl Stack {
                 return Err(bad(0, detail));
             }
             let aside = (off - normal * along).norm();
-            if aside > OFF_LINE_MM {
-                let detail = format!(
-                    "the slices do not stand in a row: layer {number} is displaced by {aside:.2} mm within its plane"
-                );
-                return Err(bad(0, detail));
+            if aside > farthest.1 {
+                farthest = (number, aside);
             }
+        }
+        let (number, aside) = farthest;
+        if aside > OFF_LINE_MM {
+            let detail = format!(
+                "the slices do not stand in a row: farthest, layer {number} is displaced by {aside:.2} mm within its plane"
+            );
+            return Err(bad(0, detail));
         }
         Ok(())
     }

@@ -6,22 +6,18 @@ use super::accepted::{Accepted, MeanErrors, not_met};
 use super::duration::{SECOND_ORDER_TAKES, newton_relative_time};
 use super::finite_strain::{self, NoAnswer};
 use super::objection::{CandidateAnswer, Objection};
-use super::rung::{Considered, Errors, Rung};
+use super::rung::{
+    Considered, Errors, Rung, WORTHWHILE, cheapest, error_over_estimate,
+    error_over_estimate_at_rest,
+};
 use crate::mesh::Vector;
 use crate::model::fem::strain::determinants;
-use crate::model::problem::{LoadCase, ModelError};
+use crate::model::problem::ModelError;
 use crate::prediction::answer::{self, Answer, Linear};
 use crate::prediction::case::{Case, Plan};
 use crate::prediction::scene::Scene;
 use crate::prediction::{Prediction, described};
 use crate::progress::Progress;
-
-/// A rung that is not adequate is tried if it is expected to leave at most this share of the error so far, and one is as good as
-/// the best if its error is at most so many times as large.
-const WORTHWHILE: f64 = 0.8;
-
-/// Where forces act or tissue grows, what coarse meshes leave out was up to three times its estimate: so much of it is expected.
-const LOADED: f64 = 2.0;
 
 /// The third order of a plan is about this much times the square of the second over the first.
 const THIRD: f64 = 1.5;
@@ -169,7 +165,9 @@ impl Climb<'_> {
                 if self.moving.is_empty() {
                     self.moving = scene.skin.moving_points(&own.equilibrium.displacement);
                 }
-                self.errors.mesh_at_rest = own.missing.map(|missing| self.mesh_means(missing));
+                let times = error_over_estimate_at_rest(&scene, own.equilibrium);
+                self.errors.mesh_at_rest =
+                    own.missing.map(|missing| self.means(missing).map(|error| times * error));
                 self.note(Rung::FiniteStrain, self.elapsed() - begun, &own);
                 Ok(Some((scene, found)))
             }
@@ -248,10 +246,7 @@ impl Climb<'_> {
 
     /// Of what a mesh leaves out.
     fn mesh_means(&self, missing: &[Vector]) -> MeanErrors {
-        let LoadCase { forces, grown, .. } = self.scene.load_case();
-        let acts = forces.iter().any(|force| *force != Vector::zeros());
-        let grows = grown.iter().any(|by| *by != 0.0);
-        let times = if acts || grows { LOADED } else { 1.0 };
+        let times = error_over_estimate(self.scene);
         self.means(missing).map(|error| times * error)
     }
 
@@ -371,15 +366,12 @@ impl Climb<'_> {
     /// speaks against every answer, the dearest that was found: linear elements turn cells inside out, and in contact hold nodes
     /// against faces that small strain makes too large.
     fn chosen(&self) -> Rung {
-        let least = self.least_share();
-        if least.is_infinite() {
+        if self.least_share().is_infinite() {
             let is_there = |one: &&Considered| one.spent_s.is_some() && !one.rung.is_corrected();
             let found = self.considered.iter().rfind(is_there);
             return found.map_or(Rung::Linear, |found| found.rung);
         }
-        let enough = if least <= 1.0 { 1.0 } else { least / WORTHWHILE };
-        let found = self.shares().find(|(_, share)| *share <= enough);
-        found.map_or(Rung::Linear, |(rung, _)| rung)
+        cheapest(&self.shares().collect::<Vec<_>>()).unwrap_or(Rung::Linear)
     }
 }
 

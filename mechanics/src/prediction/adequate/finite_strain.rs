@@ -6,8 +6,9 @@ use crate::prediction::answer::{self, Answer};
 use crate::prediction::case::{Case, Plan, Settings};
 use crate::prediction::fibres::FIBRES_IGNORED;
 use crate::prediction::method::Method;
+use crate::prediction::problem::NoScene;
 use crate::prediction::scene::Scene;
-use crate::progress::Progress;
+use crate::progress::{Progress, StopQuery};
 use crate::solver::SolverError;
 
 /// Why there is none.
@@ -27,8 +28,11 @@ pub(super) fn solved(
     // What is expected to take some steps is not to take hundreds: whoever wants that asks for the method by its name.
     let method = Method::FemNonlinear;
     let settings = Settings { method, advance: Advance::AtOnce, ..settings.clone() };
-    let scene = Scene::new(case, plan, &settings)
-        .map_err(|errors| NoAnswer::Refused(errors.to_string()))?;
+    let scene = Scene::unless_stopped(case, plan, &settings, &StopQuery::of(progress));
+    let scene = scene.map_err(|none| match none {
+        NoScene::Refused(errors) => NoAnswer::Refused(errors.to_string()),
+        NoScene::Stopped => NoAnswer::Stopped(ModelError::Solver(SolverError::Stopped)),
+    })?;
     if scene.warnings.iter().any(|warning| warning.code == FIBRES_IGNORED) {
         let why = "at finite strain fibres only pull, and those of this tissue also push";
         return Err(NoAnswer::Refused(why.to_owned()));

@@ -18,5 +18,7 @@ mod rung;
 pub use accepted::{Accepted, MeanErrors, USUALLY_ACCEPTED_MM};
 pub use climb::{Adequate, TimedProgress, predict_adequately};
 pub use duration::{NEWTON_MAY_TAKE, SECOND_ORDER_TAKES};
+pub(super) use objection::CandidateAnswer;
 pub use objection::Objection;
+pub(super) use rung::error_over_estimate;
 pub use rung::{Considered, Errors, Rung};

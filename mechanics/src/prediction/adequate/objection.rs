@@ -28,7 +28,7 @@ use crate::prediction::wrinkles::wrinkles;
 
 /// An answer that may be adequate.
 #[derive(Clone, Copy)]
-pub(super) struct CandidateAnswer<'a> {
+pub(in crate::prediction) struct CandidateAnswer<'a> {
     pub scene: &'a Scene,
     pub equilibrium: &'a Equilibrium,
     /// What its mesh leaves out, where that is known.

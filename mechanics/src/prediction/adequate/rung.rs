@@ -1,9 +1,54 @@
 //! Models in the order of their cost, and the error that is expected of each.
 
 use super::accepted::MeanErrors;
+use crate::mesh::{CellShape, Vector};
+use crate::model::fem::finite_strain::COLLAPSED;
+use crate::model::problem::{Equilibrium, LoadCase};
+use crate::prediction::scene::Scene;
 
 /// What is left of the error of a mesh where its estimate is added, as a share of the estimate.
 const LEFT_BY_CORRECTION: f64 = 0.8;
+
+/// Where forces act or tissue grows, what coarse meshes leave out was up to three times its estimate: so much of it is expected.
+const LOADED: f64 = 2.0;
+
+/// Where cells all but collapse, so many times.
+const LEFT_OUT: f64 = 2.0;
+
+/// A rung that is not adequate is tried if it is expected to leave at most this share of the error so far, and one is as good as
+/// the best if its error is at most so many times as large.
+pub(super) const WORTHWHILE: f64 = 0.8;
+
+/// Differences of an error below this share of it are rounding: what a correction leaves is as good as the best by the same share that
+/// it leaves, and the uncorrected answer is exactly at that limit.
+const ROUNDING: f64 = 1e-9;
+
+/// How many times its estimate the error of the mesh of a scene is expected to be.
+pub fn error_over_estimate(scene: &Scene) -> f64 {
+    let LoadCase { forces, grown, .. } = scene.load_case();
+    let acts = forces.iter().any(|force| *force != Vector::zeros());
+    let grows = grown.iter().any(|by| *by != 0.0);
+    if acts || grows { LOADED } else { 1.0 }
+}
+
+/// The same of an answer at finite strain: estimates leave out the inner modes of cells that all but collapse, and were .4 to .8 of the
+/// error there.
+pub(super) fn error_over_estimate_at_rest(scene: &Scene, answer: &Equilibrium) -> f64 {
+    let mut shapes = scene.mesh.cells.iter().map(|(shape, _)| shape);
+    let has_modes = shapes.any(|shape| shape != CellShape::Tet4);
+    let newton = answer.solver.newton.as_ref();
+    let collapses = has_modes && newton.is_some_and(|newton| newton.least_det_f < COLLAPSED);
+    error_over_estimate(scene) * if collapses { LEFT_OUT } else { 1.0 }
+}
+
+/// The first of rungs that is adequate, or else the first that is nearly as good as the best; each with its error as a share of the
+/// accepted one.
+pub(super) fn cheapest(shares: &[(Rung, f64)]) -> Option<Rung> {
+    let least = shares.iter().map(|(_, share)| *share).fold(f64::INFINITY, f64::min);
+    let enough = if least <= 1.0 { 1.0 } else { least / WORTHWHILE * (1.0 + ROUNDING) };
+    let mut shares = shares.iter();
+    shares.find(|(_, share)| *share <= enough).map(|(rung, _)| *rung)
+}
 
 /// A way to predict, of rising cost.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -108,12 +153,33 @@ impl Errors {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::prediction::adequate::Accepted;
+
+    fn none() -> MeanErrors {
+        MeanErrors { skin_mm: 0.0, regions_mm: Default::default() }
+    }
 
     #[test]
     fn an_answer_of_finite_strain_has_its_own_error_or_none() {
-        let mesh = MeanErrors { skin_mm: 0.2, regions_mm: Default::default() };
+        let mesh = MeanErrors { skin_mm: 0.2, ..none() };
         let errors = Errors { mesh: Some(mesh.clone()), ..Errors::default() };
         assert_eq!(errors.expected(Rung::FiniteStrain), Some(mesh));
         assert_eq!(errors.on(Rung::FiniteStrain), None);
+    }
+
+    #[test]
+    fn of_an_answer_and_its_correction_that_leaves_four_fifths_the_answer_is_taken() {
+        for number in 1..=1000 {
+            let mesh = MeanErrors { skin_mm: 0.1 + 1e-3 / f64::from(number), ..none() };
+            let errors = Errors { mesh_at_rest: Some(mesh), ..Errors::default() };
+            for skin_mm in [0.01, 0.03, 0.05, 0.07, 0.08] {
+                let accepted = Accepted { skin_mm, ..Accepted::default() };
+                let rungs = [Rung::FiniteStrain, Rung::FiniteStrainCorrected];
+                let shares = rungs.map(|rung| (rung, accepted.share(errors.on(rung).as_ref())));
+                assert_eq!(cheapest(&shares), Some(Rung::FiniteStrain), "{shares:?}");
+            }
+        }
+        let shares = [(Rung::FiniteStrain, 1.3), (Rung::FiniteStrainCorrected, 1.03)];
+        assert_eq!(cheapest(&shares), Some(Rung::FiniteStrainCorrected));
     }
 }

@@ -162,7 +162,12 @@ fn slices_that_do_not_fit_are_refused_with_their_numbers() {
         "{uneven}"
     );
     let aside = refused(|slices| slices[3].position[0] += 1.0);
-    assert!(aside.contains("displaced by 1.00 mm within its plane"), "{aside}");
+    assert!(aside.contains("layer 3 is displaced by 1.00 mm within its plane"), "{aside}");
+    let two = refused(|slices| {
+        slices[2].position[0] += 0.3;
+        slices[4].position[0] += 1.0;
+    });
+    assert!(two.contains("layer 4 is displaced by 1.00 mm within its plane"), "{two}");
     let size = refused(|slices| slices[3].size = [4, 5]);
     assert!(size.contains("slices of 5 x 4 and of 4 x 5 pixels are no one image"), "{size}");
     let spacing = refused(|slices| slices[3].spacing = [2.0, 1.4]);

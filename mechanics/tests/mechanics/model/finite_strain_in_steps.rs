@@ -56,12 +56,42 @@ fn each_load_step_is_rest_of_its_share_and_the_last_one_is_the_answer() {
             assert!((energy / wanted - 1.0).abs() < 1e-9, "{}: {energy} {wanted}", step.rest.share);
             assert!((step.rest.least_det_f - alone_newton.least_det_f).abs() < 1e-5);
             assert!(step.relative_residual <= 1e-7 && step.is_stable == Some(true));
+            assert!(step.bulk_in_cells == 0.0 && !step.is_bulk_in_all);
             let largest = alone.reactions.iter().map(Vector::norm).fold(0.0, f64::max);
             assert!(farthest(&step.reactions, &alone.reactions) < 1e-5 * largest);
         }
         let at_once = rest(Advance::AtOnce, elements, &mesh, &held);
         let apart = farthest(&stepped.displacement, &at_once.displacement);
         assert!(apart < 1e-4, "{apart:e}");
+    }
+}
+
+/// A movement after which all cells keep bulk modulus, and one after which a few pressed ones do.
+#[test]
+fn a_load_step_at_which_all_cells_keep_bulk_modulus_says_so_and_the_first_one_is_named() {
+    for (count, ring, all_keep_it) in [(1, 0.0, true), (2, 0.0, true), (1, RING, false)] {
+        let (mesh, held) = hard_block([20, 20, 4], 1.5, ring);
+        let moved = rest(in_steps(count), Elements::STABLE, &mesh, &held);
+        let newton = moved.solver.newton.unwrap();
+        for step in &newton.load_steps {
+            let keeps = step.bulk_in_cells > 0.0 && step.cells_with_bulk == mesh.cells.len();
+            assert_eq!(step.is_bulk_in_all, keeps, "{step:?}");
+        }
+        let last = newton.load_steps.last().unwrap();
+        let (bulk, cells) = (newton.bulk_in_cells, newton.cells_with_bulk);
+        assert_eq!((last.bulk_in_cells, last.cells_with_bulk), (bulk, cells));
+        let first = newton.load_steps.iter().position(|step| step.is_bulk_in_all);
+        assert_eq!(first.is_some(), all_keep_it, "{count} {ring}");
+        let told: Vec<f64> = moved
+            .warnings
+            .iter()
+            .filter(|warning| warning.code == "bulk-in-all-cells")
+            .flat_map(|warning| warning.numbers.iter())
+            .filter(|(name, _)| *name == "load_step")
+            .map(|(_, step)| *step)
+            .collect();
+        let named: Vec<f64> = first.map(|first| (first + 1) as f64).into_iter().collect();
+        assert_eq!(told, named, "{count} {ring}");
     }
 }
 

@@ -20,13 +20,18 @@ fn with(blend_radius: f64) -> Settings {
 
 /// A slab on two bones: `left` up to x = 20 mm, `right` from 30 mm on, its right end fixed nowhere.
 fn two_bones(shape: CellShape) -> Case {
+    two_bones_from(shape, 30.0)
+}
+
+/// The same with `right` from another place on.
+fn two_bones_from(shape: CellShape, right: f64) -> Case {
     let mut mesh = sample::block(Vector::new(60.0, 30.0, 12.0), [12, 6, 4], shape);
     let bottom = mesh.node_sets["z_min"].clone();
     let within = |mesh: &VolumeMesh, low: f64, high: f64| -> Vec<u32> {
         let inside = |node: &&u32| (low..=high).contains(&mesh.nodes[**node as usize].x);
         bottom.iter().filter(inside).copied().collect()
     };
-    for (name, low, high) in [("left", -0.1, 20.1), ("right", 29.9, 60.1)] {
+    for (name, low, high) in [("left", -0.1, 20.1), ("right", right - 0.1, 60.1)] {
         let nodes = within(&mesh, low, high);
         mesh.node_sets.insert(name.to_owned(), nodes);
     }
@@ -104,6 +109,49 @@ fn tissue_moves_exactly_with_the_bone_it_lies_on_and_keeps_its_thickness() {
 }
 
 #[test]
+fn a_point_as_near_to_two_bones_takes_the_mean_of_their_movements_wherever_the_scene_lies() {
+    for shift in [Vector::zeros(), Vector::new(500.1, -300.7, 200.3)] {
+        for shape in SHAPES {
+            let mut case = two_bones(shape);
+            let mesh = std::sync::Arc::make_mut(&mut case.volume);
+            let between: Vec<bool> = mesh.nodes.iter().map(|x| (x.x - 25.0).abs() < 1e-9).collect();
+            mesh.nodes.iter_mut().for_each(|x| *x += shift);
+            let lifted = solve(&case, &plan(by(Vector::z() * 8.0)), &with(0.0)).displacement;
+            let taken: Vec<Vector> =
+                lifted.into_iter().zip(between).filter(|own| own.1).map(|own| own.0).collect();
+            assert_eq!(taken.len(), 35);
+            assert!(taken.iter().all(|u| (u - Vector::z() * 4.0).norm() < 1e-12), "{taken:?}");
+        }
+    }
+}
+
+/// A floor that moves beside a wall that does not: of the lowest faces of the wall two nodes belong to the floor.
+#[test]
+fn tissue_before_a_face_between_two_bones_goes_with_the_bone_whose_nodes_are_nearest() {
+    for shape in SHAPES {
+        let mut mesh = sample::block(Vector::new(40.0, 40.0, 40.0), [4, 4, 4], shape);
+        let floor = &mesh.node_sets["z_min"];
+        let wall = mesh.node_sets["y_min"].iter().filter(|node| !floor.contains(node)).copied();
+        let wall = wall.collect();
+        let inner = mesh.nodes.iter().position(|x| *x == Vector::new(20.0, 10.0, 10.0)).unwrap();
+        mesh.node_sets.insert("wall".to_owned(), wall);
+        for (y, z, follows_floor) in
+            [(3.0, 10.0, false), (3.0, 9.0, false), (3.0, 7.0, false), (9.0, 6.0, true)]
+        {
+            let mut mesh = mesh.clone();
+            mesh.nodes[inner] = Vector::new(20.0, y, z);
+            let segments = vec![CaseSegment { name: "left".to_owned(), nodes: set("z_min") }];
+            let fixed = vec![set("wall")];
+            let case = Case { segments, fixed, ..case_of(mesh, material(15.0, 0.46)) };
+            let answer = solve(&case, &plan(by(Vector::x() * 5.0)), &with(0.0));
+            let wanted = if follows_floor { 5.0 } else { 0.0 };
+            let taken = answer.displacement[inner];
+            assert!((taken - Vector::x() * wanted).norm() < 1e-12, "{shape:?} {y} {z}: {taken}");
+        }
+    }
+}
+
+#[test]
 fn nothing_moves_where_the_plan_moves_nothing() {
     let answer = solve(&two_bones(CellShape::Tet4), &plan(RigidMovement::default()), &with(10.0));
     assert!(answer.displacement.iter().all(|u| *u == Vector::zeros()));
@@ -127,13 +175,14 @@ fn prescribed_bone_carries_tissue_by_its_own_displacement() {
 
 #[test]
 fn a_blend_radius_softens_the_jump_between_bones() {
-    let case = two_bones(CellShape::Hex8);
+    // Half way between the bones there is no node.
+    let case = two_bones_from(CellShape::Hex8, 35.0);
     let lifted = plan(by(Vector::z() * 8.0));
     let jump = |radius| told(&solve(&case, &lifted, &with(radius)), "warp-jumps", "largest_mm");
     let (sharp, soft) = (jump(0.0), jump(20.0));
     assert!((sharp - 8.0).abs() < 1e-12, "{sharp}");
-    // Half way between the bones both weigh the same, and the next nodes are 5 mm on.
-    assert!(soft < 4.0 + 1e-12, "{soft}");
+    // 5 mm from one bone and 10 mm from the other the farther one weighs 9/16 of the nearer one.
+    assert!((soft - 8.0 * (1.0 - 0.5625) / 1.5625).abs() < 1e-12, "{soft}");
     // What touches bone goes with it, whatever the radius.
     let answer = solve(&case, &lifted, &with(20.0));
     for &node in &case.volume.node_sets["left"] {

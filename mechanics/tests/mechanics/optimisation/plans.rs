@@ -191,6 +191,60 @@ fn within_bounds_that_stop_it_nothing_nearby_is_better() {
     }
 }
 
+/// Bounds whose angles are halves of others, one for each choice of halves of the first segment.
+fn halves(whole: &[SegmentBounds]) -> Vec<Vec<SegmentBounds>> {
+    let half = |choice: usize| {
+        let mut own = whole.to_vec();
+        for axis in 0..3 {
+            let (low, high) = own[0].intervals[3 + axis];
+            let middle = 0.5 * (low + high);
+            let is_upper = choice >> axis & 1 == 1;
+            own[0].intervals[3 + axis] = if is_upper { (middle, high) } else { (low, middle) };
+        }
+        own
+    };
+    (0..8).map(half).collect()
+}
+
+#[test]
+fn no_part_of_wide_bounds_has_a_better_plan() {
+    let response = response(&skin());
+    let mut random = Random(21);
+    let (mut with_others, mut from_rest_alone) = (0, 0);
+    for draw in 0..60 {
+        let mut number = |k: usize| random.between(-1.0, 1.0) * if k < 3 { 4.0 } else { 60.0 };
+        let plan = planted([std::array::from_fn(&mut number), [0.0; 6]]);
+        let wanted: Vec<Vector> = moved_skin(&response, &plan)
+            .iter()
+            .map(|u| u + Vector::from_fn(|_, _| 0.3 * random.normal()))
+            .collect();
+        let mut target = every_node(&wanted, 0.3);
+        while target.goals.len() > 6 {
+            let place = random.between(0.0, target.goals.len() as f64) as usize;
+            target.goals.swap_remove(place);
+        }
+        let mut wide = bounds(2.0, 80.0);
+        wide[1].intervals = [(0.0, 0.0); 6];
+        let found = found(&response, &wide, std::slice::from_ref(&target));
+        assert_eq!(found.starts, 13);
+        let sums = halves(&wide).into_iter().map(|part| {
+            let question = asked(&response, &part, std::slice::from_ref(&target));
+            optimise(&question).unwrap().weighted_square_sum
+        });
+        let least = sums.fold(f64::INFINITY, f64::min);
+        let own = found.weighted_square_sum;
+        assert!(own <= least * (1.0 + 1e-5) + 1e-9, "draw {draw}: {own}, in a part {least}");
+        with_others += usize::from(!found.other_minima.is_empty());
+        assert!(found.other_minima.iter().all(|other| *other >= own * (1.0 - 1e-5)));
+        // Bounds of surgery have one start.
+        let mut narrow = bounds(2.0, 20.0);
+        narrow[1].intervals = [(0.0, 0.0); 6];
+        let question = asked(&response, &narrow, std::slice::from_ref(&target));
+        from_rest_alone += usize::from(optimise(&question).unwrap().starts == 1);
+    }
+    assert!(with_others > 0 && from_rest_alone == 60, "{with_others} {from_rest_alone}");
+}
+
 #[test]
 fn a_parameter_with_equal_bounds_stays_there_and_the_others_make_up_for_it() {
     let response = response(&skin());

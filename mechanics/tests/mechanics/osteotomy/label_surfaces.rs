@@ -1,8 +1,11 @@
 //! Labelled voxels as closed surfaces.
 
+use mechanics::anatomy::{AnatomyRules, part_bone};
+use mechanics::domain::ImageOptions;
 use mechanics::image::{ImageVolume, Placement, Voxels};
 use mechanics::mesh::surface_edges::count_edges;
 use mechanics::mesh::{TriangleSurface, Vector};
+use mechanics::osteotomy::cut_face::cut_faces;
 use mechanics::osteotomy::label_surface::label_surface;
 use mechanics::osteotomy::{BoneImage, Cut, Osteotomy, Side, label};
 
@@ -73,4 +76,51 @@ fn bone_that_leaves_the_scan_is_closed_half_a_voxel_beyond_it() {
     assert_eq!((edges.open, edges.inconsistent, edges.nonmanifold), (0, 0, 0));
     let (low, high) = surface.bounds();
     assert_eq!((low, high), (Vector::new(-0.5, -0.5, -1.0), Vector::new(3.5, 3.5, 7.0)));
+}
+
+#[test]
+fn a_saw_of_any_width_across_a_box_leaves_one_outline_with_the_area_of_the_box() {
+    // A box of 30 by 14 by 30 mm, cut by a plane that is tilted by twenty degrees.
+    let half = Vector::new(15.0, 7.0, 15.0);
+    let middle = Vector::new(20.2, 12.3, 20.1);
+    let image = scan([41, 25, 21], |x| 200.0 - 100.0 * ((x - middle).abs() - half).max());
+    let tilt = 20.0_f64.to_radians();
+    let normal = [0.0, -tilt.sin(), tilt.cos()];
+    for kerf in [0.0, 0.3, 0.6, 1.0, 2.0] {
+        let cut = Cut::new("cut", plane(middle.into(), normal), None, kerf).unwrap();
+        let osteotomy =
+            Osteotomy::new(vec![cut], vec![segment("lower", &[(0, Side::Below)], &[])]).unwrap();
+        let bone = BoneImage { image: &image, threshold: 200.0 };
+        let labels = label(&bone, &osteotomy).unwrap().labels;
+        let surface = label_surface(&bone, &osteotomy, &labels, 0);
+        // Voxels of 1 by 1 by 2 mm.
+        let faces = cut_faces(&osteotomy, &[surface], 2.0_f64.cbrt());
+        let [face] = &faces[..] else { panic!("{} faces", faces.len()) };
+        let wanted = 30.0 * 14.0 / tilt.cos();
+        println!("kerf {kerf}: {} outlines, {} of {wanted} mm2", face.paths.len(), face.area);
+        assert_eq!(face.paths.len(), 1, "kerf {kerf}");
+        assert!((face.area / wanted - 1.0).abs() < 0.05, "kerf {kerf}: {} of {wanted}", face.area);
+    }
+}
+
+#[test]
+fn the_volume_of_a_segment_is_that_within_its_surface_and_not_of_its_voxels() {
+    // A box whose faces lie between voxels: 19 by 19 by 9 of them have their centres in it.
+    let (half, middle) = (9.9, Vector::repeat(12.0));
+    let image = scan([25, 25, 13], |x| 200.0 - 100.0 * ((x - middle).amax() - half));
+    let rules = AnatomyRules {
+        image: ImageOptions { bone_threshold: 200.0, ..ImageOptions::default() },
+        osteotomy: Osteotomy::new(vec![], vec![segment("all", &[], &[])]).unwrap(),
+        ..AnatomyRules::default()
+    };
+    let parted = part_bone(&image, &rules).unwrap();
+    let [solid] = parted.solids()[..] else { panic!("one segment") };
+    let wanted = (2.0 * half).powi(3);
+    println!(
+        "{} of {wanted} mm3, {} by voxels",
+        solid.volume_mm3, parted.labelled.segments[0].volume_mm3
+    );
+    assert!((solid.volume_mm3 / wanted - 1.0).abs() < 0.03, "{solid:?}");
+    assert!((solid.centre - middle).norm() < 0.05, "{solid:?}");
+    assert!(parted.labelled.segments[0].volume_mm3 < 0.9 * wanted);
 }

@@ -8,10 +8,11 @@ use mechanics::mesh::Vector;
 use mechanics::mesh::refinement::refine;
 use mechanics::mesh::sample::block;
 use mechanics::muscle::strap::box_surface;
+use mechanics::plan::{PlannedSegment, RigidMovement};
 use mechanics::prediction::{
-    Activation, AdaptiveError, AdaptivePrediction, BodyFibres, Case, ElementChoice, FibreDirection,
-    LimitError, Load, Muscle, MuscleCourse, Plan, RefinementGoal, Scene, Settings, Stop, predict,
-    predict_adaptively,
+    Activation, AdaptiveError, AdaptivePrediction, BodyFibres, Case, CaseSegment, ElementChoice,
+    FibreDirection, LimitError, Load, Muscle, MuscleCourse, Plan, RefinementGoal, Scene, Settings,
+    Sliding, SlidingNormal, Stop, predict, predict_adaptively,
 };
 use mechanics::progress::Unobserved;
 use mechanics::study::scenes::slab;
@@ -29,6 +30,7 @@ fn wanted(skin_mm: f64, cells: usize) -> RefinementGoal {
         skin_mm,
         regions_mm: BTreeMap::new(),
         landmarks_mm: BTreeMap::new(),
+        is_of_answer: false,
         cells,
         time_s: f64::INFINITY,
     }
@@ -129,11 +131,12 @@ fn slab_moved_at_both_ends() -> (Case, Plan) {
         fixed: vec![set("rest")],
         ..case_of(mesh, material(15.0, 0.45))
     };
-    let plan = Plan {
-        prescribed: vec![constraint("ends", [Some(0.0), Some(0.0), Some(4.0)])],
-        ..Plan::default()
-    };
-    (case, plan)
+    (case, lifted_at_both_ends(4.0))
+}
+
+fn lifted_at_both_ends(mm: f64) -> Plan {
+    let prescribed = vec![constraint("ends", [Some(0.0), Some(0.0), Some(mm)])];
+    Plan { prescribed, ..Plan::default() }
 }
 
 /// New nodes of the left half, and of both.
@@ -160,7 +163,9 @@ fn a_part_of_the_skin_with_a_limit_of_its_own_is_refined_for() {
 
 #[test]
 fn a_landmark_with_a_limit_of_its_own_is_refined_for_until_its_error_is_met() {
-    let (case, plan) = slab_moved_at_both_ends();
+    let (case, _) = slab_moved_at_both_ends();
+    // So little that linearity leaves out less.
+    let plan = lifted_at_both_ends(0.04);
     let at = |name: &str, accepted: f64| RefinementGoal {
         landmarks_mm: BTreeMap::from([(name.to_owned(), accepted)]),
         ..wanted(100.0, 100_000)
@@ -187,6 +192,95 @@ fn a_landmark_with_a_limit_of_its_own_is_refined_for_until_its_error_is_met() {
         let ended = predict_adaptively(&scene, &at(name, 1.0), &|| 0.0, &Unobserved);
         assert_eq!(ended.err(), Some(AdaptiveError::Limit(error)));
     }
+}
+
+/// Why an answer on the first mesh is not called met though the mesh is.
+fn objections(case: &Case, plan: &Plan, settings: &Settings, is_of_answer: bool) -> Vec<String> {
+    let scene = Scene::new(case, plan, settings).unwrap();
+    let wanted = RefinementGoal { is_of_answer, ..wanted(1e3, 1_000_000) };
+    let adapted = predict_adaptively(&scene, &wanted, &|| 0.0, &Unobserved).unwrap();
+    let warnings = adapted.prediction.warnings.into_iter();
+    let told: Vec<String> = warnings
+        .filter(|warning| warning.code == "tolerance-not-met")
+        .map(|warning| warning.detail)
+        .collect();
+    let stop = if told.is_empty() { Stop::Met } else { Stop::Incomplete };
+    assert_eq!((adapted.stop, adapted.levels.len()), (stop, 1), "{told:?}");
+    told
+}
+
+#[test]
+fn an_answer_that_something_speaks_against_is_not_met_on_any_mesh() {
+    let (case, _) = slab_moved_at_both_ends();
+    let usual = Settings::default();
+    let pressed = Plan {
+        prescribed: vec![constraint("ends", [Some(25.0), Some(0.0), Some(9.0)])],
+        ..Plan::default()
+    };
+    let loose = Settings { relative_residual: 1e-2, ..usual.clone() };
+    for is_of_answer in [false, true] {
+        assert!(objections(&case, &lifted_at_both_ends(0.1), &usual, is_of_answer).is_empty());
+        let [told] = &objections(&case, &pressed, &usual, is_of_answer)[..] else { panic!() };
+        assert!(told.contains("inside out"), "{told}");
+        let found = objections(&case, &lifted_at_both_ends(0.1), &loose, is_of_answer);
+        assert!(found.iter().any(|told| told.contains("relative residual")), "{found:?}");
+    }
+}
+
+/// The second order across a wall that turns with its segment is not known.
+#[test]
+fn an_answer_of_unknown_linearity_is_not_met_on_any_mesh() {
+    let mesh = block(Vector::new(60.0, 40.0, 20.0), [5, 4, 3], CellShape::Tet4);
+    let carried = Sliding {
+        nodes: set("x_min"),
+        normal: SlidingNormal::Surface,
+        segment: Some("jaw".to_owned()),
+    };
+    let case = Case {
+        skin: Some(set("z_max")),
+        segments: vec![CaseSegment { name: "jaw".to_owned(), nodes: set("z_min") }],
+        sliding: vec![carried],
+        allow_unfixed: true,
+        ..case_of(mesh, material(15.0, 0.3))
+    };
+    let turned = |degrees: f64| {
+        let angles = Vector::new(degrees, -degrees, degrees).map(f64::to_radians);
+        let movement = RigidMovement::about_pivot(angles, Vector::zeros(), Vector::x());
+        let segments = vec![PlannedSegment { name: "jaw".to_owned(), movement }];
+        Plan { segments, ..Plan::default() }
+    };
+    for is_of_answer in [false, true] {
+        let told =
+            |degrees: f64| objections(&case, &turned(degrees), &Settings::default(), is_of_answer);
+        let [unknown] = &told(4.0)[..] else { panic!() };
+        assert!(unknown.contains("not known") && unknown.contains("jaw"), "{unknown}");
+        assert!(told(0.0).is_empty());
+    }
+}
+
+#[test]
+fn what_auto_accepts_is_mesh_and_linearity_together() {
+    let (case, _) = slab_moved_at_both_ends();
+    let errors = |adapted: &AdaptivePrediction, case: &Case, plan: &Plan| {
+        let scene = Scene::new(case, plan, &Settings::default()).unwrap();
+        let moving = scene.skin.moving_points(&adapted.prediction.displacement);
+        let left = &adapted.prediction.nonlinearity.as_ref().unwrap().left_out;
+        (adapted.levels.last().unwrap().mean_mm, scene.skin.mean_length(&moving, left))
+    };
+    let whole = lifted_at_both_ends(4.0);
+    let first = adapted(&case, &whole, &wanted(1e3, 100_000));
+    let (mesh, linearity) = errors(&first, &case, &whole);
+    // The first order of the mesh and the second of linearity, so that they are as 5 to 3.
+    let share = 0.6 * mesh / linearity;
+    let plan = lifted_at_both_ends(4.0 * share);
+    let of_mesh = wanted(1.3 * share * mesh, 100_000);
+    let named = adapted(&case, &plan, &of_mesh);
+    assert_eq!((named.stop, named.levels.len()), (Stop::Met, 1));
+    let of_answer = RefinementGoal { is_of_answer: true, ..of_mesh };
+    let chosen = adapted(&case, &plan, &of_answer);
+    let (mesh, linearity) = errors(&chosen, &case, &plan);
+    assert!(chosen.levels.len() > 1 && mesh + linearity <= of_answer.skin_mm);
+    assert_eq!(chosen.stop, Stop::Met, "{:?}", chosen.prediction.warnings);
 }
 
 #[test]

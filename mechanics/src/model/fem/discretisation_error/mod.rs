@@ -45,7 +45,7 @@ pub(super) use edge_equations::EdgeEquation;
 pub(super) use edge_functions::{Corners, MAX_EDGES, at_point};
 pub use indicators::{Goal, marked};
 pub(super) use inner_modes::{
-    MAX_MODES, ModeEquations, Modes, mode_gradients, moment_weights, sums_of_edges,
+    MAX_MODES, ModeEquations, Modes, NO_MODES, mode_gradients, moment_weights, sums_of_edges,
 };
 pub use loads::DistributedLoads;
 pub(super) use mean_stress::{Weighted, has_wedges, smooth_in_wedges};

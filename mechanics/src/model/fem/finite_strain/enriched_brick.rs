@@ -1,7 +1,9 @@
 //! A hexahedron or wedge at rest at finite strain with functions on its edges, integrated at its points.
 //!
 //! Its inner modes come first, as in `discretisation_error::points`, at the tangent moduli of its state. Volume is resisted as the mean of J and
-//! in the three moments of ln J: moments of J would resist cells too much some points of which are pressed.
+//! in the three moments of ln J: moments of J would resist cells too much some points of which are pressed. A cell that is all but
+//! collapsed at a point has neither modes nor moments: no linear step says what it would do, and the forces of a few such cells would move
+//! a whole face by centimetres.
 
 use nalgebra::Matrix3;
 
@@ -12,10 +14,13 @@ use crate::element::{MAX_NODES, ReferencePoint};
 use crate::material::hyperelastic::point::{Corner, Point};
 use crate::mesh::{CellShape, Vector};
 use crate::model::fem::discretisation_error::{
-    Coefficients, Corners, EdgeEquation, MAX_EDGES, MAX_MODES, ModeEquations, Modes, OfEdges,
-    at_point, gradient_of, mode_gradients, moment_weights, sums_of_edges,
+    Coefficients, Corners, EdgeEquation, MAX_EDGES, MAX_MODES, ModeEquations, Modes, NO_MODES,
+    OfEdges, at_point, gradient_of, mode_gradients, moment_weights, sums_of_edges,
 };
 use crate::model::reference_cell;
+
+/// The det F of a point below which its cell has no inner modes.
+pub const COLLAPSED: f64 = 0.2;
 
 pub(super) struct EnrichedBrick<'a> {
     pub shape: CellShape,
@@ -33,6 +38,10 @@ impl EnrichedBrick<'_> {
         let reference = &reference_cell(self.shape).points;
         let pairs = self.brick.at_rest.iter().zip(self.brick.points).zip(reference);
         pairs.map(|((at_rest, point), reference)| (at_rest, point, reference))
+    }
+
+    fn is_collapsed(&self) -> bool {
+        self.brick.points.iter().any(|point| point.volume() < COLLAPSED)
     }
 
     /// The gradients at rest of the functions of the edges at a point.
@@ -98,6 +107,9 @@ impl EnrichedBrick<'_> {
 
     /// The three moments of ln J.
     fn moments(&self, inner: &Inner) -> [f64; 3] {
+        if self.is_collapsed() {
+            return [0.0; 3];
+        }
         let pairs = self.points().zip(&inner.weights);
         pairs.fold([0.0; 3], |sum, ((_, point, _), y)| {
             std::array::from_fn(|k| sum[k] + point.log_volume() * y[k])
@@ -106,6 +118,9 @@ impl EnrichedBrick<'_> {
 
     /// What the inner modes do beside the corners in the state.
     fn modes(&self, inner: &Inner) -> Modes {
+        if self.is_collapsed() {
+            return NO_MODES;
+        }
         let mut softest = self.mode_equations(inner);
         for ((at_rest, point, _), modes) in self.points().zip(&inner.gradients) {
             let stress = point.stress() * at_rest.volume;
@@ -118,6 +133,9 @@ impl EnrichedBrick<'_> {
 
     /// v . (K_i - K) v of displaced corners at the tangent moduli, in mN mm: what moments resist, less what modes give way.
     pub fn stiffening(&self, displacement: &[Vector]) -> f64 {
+        if self.is_collapsed() {
+            return 0.0;
+        }
         let inner = self.inner();
         let mut softest = self.mode_equations(&inner);
         let (mut moments, mut mean) = ([0.0; 3], 0.0);

@@ -25,7 +25,7 @@ impl<'a> FiniteStrain<'a> {
             let most_steps = begun + question.most_steps;
             let own = Question { share, most_steps, ..question };
             let (tissue, mut rest) = self.rest_at_share(own, reached)?;
-            rests.extend(load_step(own, &rest, begun));
+            rests.extend(load_step(own, &tissue, &rest, begun));
             if let Some(touching) = &mut rest.touching {
                 let rows = own.constrained.dof_map.ordering.place.iter();
                 let positions: Vec<Vector> =
@@ -47,7 +47,7 @@ impl<'a> FiniteStrain<'a> {
 }
 
 /// Report of rest at the end of a load step that began after so many residuals.
-fn load_step(question: Question, rest: &Rest, begun: usize) -> Option<LoadStep> {
+fn load_step(question: Question, tissue: &Tissue, rest: &Rest, begun: usize) -> Option<LoadStep> {
     let loads = question.case.forces.iter().map(|force| force * question.share);
     let mut acting: Vec<Vector> = loads.collect();
     if let Some(touching) = &rest.touching {
@@ -59,6 +59,9 @@ fn load_step(question: Question, rest: &Rest, begun: usize) -> Option<LoadStep> 
         rest: rest.on_the_way(begun)?,
         relative_residual: rest.report.relative_residual,
         is_stable: newton.is_stable,
+        bulk_in_cells: newton.bulk_in_cells,
+        cells_with_bulk: newton.cells_with_bulk,
+        is_bulk_in_all: tissue.is_bulk_in_all(newton),
         reactions: reactions(question.constrained, &rest.forces, &acting),
     })
 }

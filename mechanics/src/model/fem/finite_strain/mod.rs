@@ -51,6 +51,7 @@ use another_rest::{another_rest, is_doubtful};
 use direction::Directions;
 use elements::CellBulkModulus;
 pub use elements::Elements;
+pub use enriched_brick::COLLAPSED;
 pub use fibres::FibreField;
 pub use mesh_error::{FinerProblem, MeshError, NoMeshError};
 use newton::Newton;
@@ -81,9 +82,6 @@ const OUT_OF_BALANCE: f64 = 0.3;
 
 /// What moves goes by at most this part of its longest edges in a step where things touch.
 const STEP: f64 = 0.5;
-
-/// Cells whose det F is as near to 1 as this are not strained.
-const ROUNDING: f64 = 1e-9;
 
 impl<'a> FiniteStrain<'a> {
     /// Solves a load case for rest.
@@ -217,9 +215,7 @@ impl<'a> FiniteStrain<'a> {
         let places = dof_map.ordering.place.iter().zip(self.nodes);
         let displacement: Vec<Vector> =
             places.map(|(&row, rest)| positions[row as usize] - rest).collect();
-        let is_strained =
-            report.newton.as_ref().is_some_and(|way| way.least_det_f < 1.0 - ROUNDING);
-        let pressed = tissue.bulk_warning().filter(|_| is_strained);
+        let pressed = report.newton.as_ref().and_then(|newton| tissue.bulk_warning(newton));
         let doubtful = report.newton.as_ref().filter(|newton| is_doubtful(newton));
         let (mut doubt, mut states) = (None, CellStates::default());
         if self.with_states || doubtful.is_some() {

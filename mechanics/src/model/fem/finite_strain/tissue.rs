@@ -15,11 +15,14 @@ use crate::mesh::{Vector, Warning};
 use crate::model::dofs::DofMap;
 use crate::model::problem::InvertedCell;
 use crate::progress::Progress;
-use crate::solver::SolverError;
 use crate::solver::half_matrix::HalfMatrix;
+use crate::solver::{NewtonReport, SolverError};
 
 /// What the last digits of a sum of a few terms lose, with some room.
 const ROUNDING: f64 = 1e-15;
+
+/// A cell whose volume is less by this part is compressed.
+const COMPRESSED: f64 = 1e-9;
 
 /// What a cell may lose of its volume in one step. Where cells do not share their volume it is less above twelve times the
 /// shear modulus: what a loss does to the forces grows with their ratio.
@@ -92,17 +95,32 @@ impl<'a> Tissue<'a> {
         })
     }
 
-    /// The warning of tissue all of whose cells keep bulk modulus at rest, because it jams where only pressed ones do.
-    pub fn bulk_warning(&self) -> Option<Warning> {
-        let keeps_all = self.bulk_in_cells > 0.0 && !self.shares_all;
-        let detail = format!(
-            "strong compression: the solver needed an extra bulk modulus of {:.2} times the shear modulus in all {} cells, not in the compressed \
-             ones alone; a slightly different plan may change the skin by some tenths of a millimetre",
-            self.bulk_in_cells, self.cells_with_bulk
-        );
-        let warning = Warning::new("bulk-in-all-cells", detail);
-        let warning = warning.with("bulk_in_cells", self.bulk_in_cells);
-        keeps_all.then(|| warning.with("cells", self.cells_with_bulk as f64))
+    /// Whether all cells of strained tissue at rest keep bulk modulus, because it jams where only pressed ones do.
+    pub fn is_bulk_in_all(&self, rest: &NewtonReport) -> bool {
+        self.bulk_in_cells > 0.0 && !self.shares_all && rest.least_det_f < 1.0 - COMPRESSED
+    }
+
+    /// The warning of tissue all of whose cells keep bulk modulus at rest; of load steps, the last of which is that rest, for the
+    /// first one where they do.
+    pub fn bulk_warning(&self, rest: &NewtonReport) -> Option<Warning> {
+        let told = |bulk: f64, cells: usize, at: &str| {
+            let detail = format!(
+                "strong compression: the solver needed an extra bulk modulus of {bulk:.2} times the shear modulus in all {cells} cells, not in \
+                 the compressed ones alone{at}; a slightly different plan may change the skin by some tenths of a millimetre"
+            );
+            let warning = Warning::new("bulk-in-all-cells", detail);
+            warning.with("bulk_in_cells", bulk).with("cells", cells as f64)
+        };
+        let steps = &rest.load_steps;
+        let Some(first) = steps.iter().position(|step| step.is_bulk_in_all) else {
+            let is_in_all = self.is_bulk_in_all(rest);
+            return is_in_all.then(|| told(self.bulk_in_cells, self.cells_with_bulk, ""));
+        };
+        let count = steps.iter().filter(|step| step.is_bulk_in_all).count();
+        let at =
+            format!(", at load step {} of {} first, and at {count} in all", first + 1, steps.len());
+        let warning = told(steps[first].bulk_in_cells, steps[first].cells_with_bulk, &at);
+        Some(warning.with("load_step", (first + 1) as f64).with("load_steps", count as f64))
     }
 
     /// The pressures of stabilised tetrahedra; none where there are none.
