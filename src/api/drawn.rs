@@ -87,7 +87,7 @@ async fn drawn(service: &Service, job: &JobRow, wanted: DrawingRequest) -> ApiRe
     }
     let sources = service.library.source(Handle::current(), BTreeMap::new());
     let drawn = checked_in_time(service, move |limits, stop| {
-        finished.draw(picture, language, &sources, limits, stop)
+        finished.draw((picture, language), &sources, limits, stop)
     });
     let bytes = Bytes::from(drawn.await?);
     let (case, cache_key) = (job.case_id.as_deref(), wanted.cache_key());

@@ -71,8 +71,7 @@ impl Finished {
     /// The bytes of a picture or a report. An SVG is the same as the job would have written. After a stop it is cancelled.
     pub fn draw(
         &self,
-        picture: PictureName,
-        language: Language,
+        (picture, language): (PictureName, Language),
         sources: &dyn MeshSource,
         limits: &Limits,
         stop: &StopQuery,

@@ -104,7 +104,10 @@ fn minimum_of(question: &Question, held: Option<&Optimum>) -> Result<Optimum, Op
     let reduction = Reduction::new(question)?;
 
     // 2. The minimum, and how certain it is.
-    let starts = starts(&unknowns, held);
+    let starts = match held {
+        Some(optimum) => vec![unknowns.beside(|parameter| optimum.value(parameter))],
+        None => starts(&unknowns),
+    };
     let LowestMinimum { minimum, others } = lowest(&unknowns, &reduction, &starts)?;
     let at_bound = unknowns.at_bound(&minimum.unknowns);
     let certainty = Certainty::new(&unknowns, &minimum, &at_bound);

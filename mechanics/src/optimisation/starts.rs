@@ -5,7 +5,6 @@
 
 use nalgebra::DVector;
 
-use super::Optimum;
 use super::unknowns::{LEVER, Unknowns};
 
 /// Angles that may be farther than this from those of rest, in radians, have other starts.
@@ -15,11 +14,8 @@ const FAR: f64 = 20.0 * std::f64::consts::PI / 180.0;
 const LATTICE: u64 = 13;
 const GENERATOR: u64 = 6;
 
-/// Within the bounds, rest first; beside an optimum of the same question with fewer unknowns it alone.
-pub(super) fn starts(unknowns: &Unknowns, beside: Option<&Optimum>) -> Vec<DVector<f64>> {
-    if let Some(optimum) = beside {
-        return vec![unknowns.beside(optimum)];
-    }
+/// Within the bounds, rest first.
+pub(super) fn starts(unknowns: &Unknowns) -> Vec<DVector<f64>> {
     let rest = unknowns.feasible_rest();
     let angles: Vec<usize> =
         (0..unknowns.count()).filter(|&place| unknowns.free[place].is_angle()).collect();

