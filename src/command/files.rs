@@ -99,12 +99,12 @@ impl FileSource {
 
     /// The same with the frame of images that state none.
     pub fn in_frame(self, frame: Option<Frame>) -> Self {
-        FileSource { frame: frame.filter(|frame| *frame != Frame::Unspecified), ..self }
+        FileSource { frame: frame.and_then(Frame::known), ..self }
     }
 
     /// The frame of a mesh that was read: that of its file, or of an image the one that is stated for those without.
     fn frame_of(&self, id: &str, stored: &StoredMesh) -> Result<Option<Frame>, SourceError> {
-        let marked = stored.frame.filter(|mark| *mark != Frame::Unspecified);
+        let marked = stored.frame.and_then(Frame::known);
         let StoredShape::Image(_) = &stored.shape else { return Ok(stored.frame) };
         match (marked, self.frame) {
             (Some(mark), Some(frame)) if mark != frame => {

@@ -123,7 +123,7 @@ fn validate_upload(
         frame: statement.frame,
         report,
     };
-    let mesh = StoredMesh { frame: Some(frame), ..StoredMesh::new(read, units, sha256.clone()) };
+    let mesh = StoredMesh { frame: frame.known(), ..StoredMesh::new(read, units, sha256.clone()) };
     let stored = Bytes::from(stored?);
     let row = NewMesh {
         id,
@@ -188,8 +188,8 @@ pub fn problem_of(error: &FormatError) -> Problem {
 }
 
 fn check_frame(read: &ReadMesh, statement: &Statement) -> Result<(), Problem> {
-    let stated = statement.frame.map(Frame::from).filter(|frame| *frame != Frame::Unspecified);
-    let marked = read.frame.filter(|frame| *frame != Frame::Unspecified);
+    let stated = statement.frame.map(Frame::from).and_then(Frame::known);
+    let marked = read.frame.and_then(Frame::known);
     match (stated, marked) {
         (Some(stated), Some(marked)) if stated != marked => {
             let detail = format!("the upload says {stated} and the file says SPACE={marked}");

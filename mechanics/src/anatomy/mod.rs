@@ -33,12 +33,12 @@ use thin_bone::join_thin_bone;
 
 use crate::domain::{Boundary, Domain, ImageDomainError, ImageOptions, SurfaceDomainError};
 use crate::image::ImageVolume;
+use crate::mesh::enclosed::Enclosed;
 use crate::mesh::{Frame, TriangleSurface, Vector, VolumeMesh, Warning};
 use crate::meshing::{MeshingError, MeshingReport, MeshingSettings, TissueMesh, mesh};
 use crate::osteotomy::bone_image::BoneImage;
 use crate::osteotomy::classes::{BoneContact, ClassRules, NodeClasses, TissueBoundary, classify};
 use crate::osteotomy::contact::Contact;
-use crate::osteotomy::enclosed::{Enclosed, enclosed};
 use crate::osteotomy::label_error::extent;
 use crate::osteotomy::label_surface::label_surface;
 use crate::osteotomy::labelling::{FoundSegment, Labelled, label};
@@ -154,7 +154,7 @@ impl PartedBone {
     pub fn solids(&self) -> Vec<Enclosed> {
         let solid = |(found, surface): (&FoundSegment, &TriangleSurface)| {
             let of_voxels = Enclosed { volume_mm3: found.volume_mm3, centre: found.centre };
-            let of_surface = if self.as_given { None } else { enclosed(surface) };
+            let of_surface = if self.as_given { None } else { surface.enclosed() };
             of_surface.unwrap_or(of_voxels)
         };
         self.labelled.segments.iter().zip(&self.surfaces).map(solid).collect()

@@ -12,6 +12,11 @@ pub enum Frame {
 }
 
 impl Frame {
+    /// Itself, if it says where the axes of the patient are.
+    pub fn known(self) -> Option<Frame> {
+        Some(self).filter(|frame| *frame != Frame::Unspecified)
+    }
+
     /// The word used in JSON documents and `SPACE=` marks.
     pub fn name(self) -> &'static str {
         match self {

@@ -15,6 +15,7 @@ pub mod crossing;
 pub mod cubes;
 pub mod disjoint_sets;
 pub mod duplicate_cells;
+pub mod enclosed;
 mod face_shape;
 pub mod frame;
 pub mod generic_face;

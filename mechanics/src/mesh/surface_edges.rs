@@ -67,21 +67,6 @@ impl TriangleSurface {
             ..TriangleSurface::default()
         }
     }
-
-    /// The volume enclosed in mm³, negative where the triangles face inwards. Measured from the
-    /// first point, so that a far origin costs no digits.
-    pub fn signed_volume(&self) -> f64 {
-        let Some(&origin) = self.points.first() else {
-            return 0.0;
-        };
-        let six_times: f64 = (0..self.triangles.len())
-            .map(|triangle| {
-                let [a, b, c] = self.corners(triangle).map(|corner| corner - origin);
-                a.dot(&b.cross(&c))
-            })
-            .sum();
-        six_times / 6.0
-    }
 }
 
 /// The groups of sides that are the same edge.

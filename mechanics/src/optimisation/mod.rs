@@ -83,21 +83,18 @@ pub struct Residual {
 
 /// Finds the plan within the bounds that comes nearest to the targets.
 pub fn optimise(question: &Question) -> Result<Optimum, OptimisationError> {
-    minimum_beside(question, None)
+    check_free(question)?;
+    minimum_of(question, None)
 }
 
-/// The same; beside an optimum whose constants were held, the nearest minimum.
-fn minimum_beside(
-    question: &Question,
-    held: Option<&Optimum>,
-) -> Result<Optimum, OptimisationError> {
+fn check_free(question: &Question) -> Result<(), OptimisationError> {
     match Unknowns::new(question).count() {
         0 => Err(OptimisationError::NothingFree),
-        _ => minimum_of(question, held),
+        _ => Ok(()),
     }
 }
 
-/// The same, also where nothing is free.
+/// The same, also where nothing is free; beside an optimum whose constants were held, the nearest minimum.
 fn minimum_of(question: &Question, held: Option<&Optimum>) -> Result<Optimum, OptimisationError> {
     // 1. What may move, and what is asked of it.
     let unknowns = Unknowns::new(question);

@@ -6,10 +6,9 @@
 //! J has the derivatives by all parameters, and its covariance is that of all of them together.
 
 use super::constants::ConstantFailure;
-use super::unknowns::Unknowns;
 use super::{
     ConstantBounds, ConstantColumn, ConstantError, InnerBounds, OptimisationError, Optimum,
-    Question, SegmentBounds, Target, minimum_beside, minimum_of,
+    Question, SegmentBounds, Target, check_free, minimum_of,
 };
 use crate::prediction::Scene;
 use crate::progress::Progress;
@@ -81,10 +80,7 @@ pub fn search(
     let start = search.constants.iter().map(|own| own.start(scene)).collect();
     let mut iterate = search.solved_at(scene, start, progress)?;
     if search.constants.is_empty() {
-        let question = search.question(&iterate.response, &iterate.columns, &[]);
-        if Unknowns::new(&question).count() == 0 {
-            return Err(OptimisationError::NothingFree.into());
-        }
+        check_free(&search.question(&iterate.response, &iterate.columns, &[]))?;
         let optimum = iterate.held.clone();
         return Ok(iterate.found(optimum, 0));
     }
@@ -182,7 +178,7 @@ impl Iterate<'_> {
             columns.push(constant.column(scene, (asked, &amounts), value, progress)?);
         }
         let question = self.search.question(&self.response, &self.columns, &columns);
-        Ok(minimum_beside(&question, Some(&self.held))?)
+        Ok(minimum_of(&question, Some(&self.held))?)
     }
 
     fn found(self, optimum: Optimum, steps: usize) -> SearchResult {

@@ -15,7 +15,6 @@ pub mod contact;
 pub mod coverage;
 pub mod cut;
 pub mod cut_face;
-pub mod enclosed;
 mod flood;
 mod free_band;
 mod grid;

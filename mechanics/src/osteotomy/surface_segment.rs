@@ -80,15 +80,13 @@ impl Shells {
         }
         let mut number_of = vec![usize::MAX; surface.points.len()];
         let (mut of, mut volumes) = (Vec::new(), Vec::new());
-        let middle = surface.points.first().copied().unwrap_or_default();
         for (triangle, &[a, ..]) in surface.triangles.iter().enumerate() {
             let number = &mut number_of[sets.root(a) as usize];
             if *number == usize::MAX {
                 *number = volumes.len();
                 volumes.push(0.0);
             }
-            let [a, b, c] = surface.corners(triangle).map(|corner| corner - middle);
-            volumes[*number] += a.dot(&b.cross(&c)) / 6.0;
+            volumes[*number] += surface.tetrahedron_on(triangle).1;
             of.push(*number);
         }
         Shells { of, volumes }

@@ -163,24 +163,31 @@ impl<'a> Step<'a> {
         progress: &dyn Progress,
     ) -> Result<Vec<&'b Limit<'b>>, ModelError> {
         let scenes = [first, self.scene];
-        if !is_of_answer {
+        let of_mesh = |own: &'b Limit<'b>| {
             let missing = &self.error.missing;
-            let is_open = |own: &&Limit| own.error(scenes, missing) > own.accepted_mm;
-            return Ok(limits.iter().filter(is_open).collect());
-        }
-        let missing = self.error.missing.clone();
-        let of_mesh = |own: &Limit| own.expected_of_mesh(scenes, &missing);
-        let is_open = |own: &&Limit| of_mesh(own) > own.accepted_mm;
-        let open: Vec<&Limit> = limits.iter().filter(is_open).collect();
-        if !open.is_empty() {
+            let expected = match is_of_answer {
+                true => own.expected_of_mesh(scenes, missing),
+                false => own.error(scenes, missing),
+            };
+            (own, expected)
+        };
+        let expected: Vec<(&Limit, f64)> = limits.iter().map(of_mesh).collect();
+        let open_where = |is_open: &dyn Fn(&Limit, f64) -> bool| {
+            expected
+                .iter()
+                .filter(|(own, of_mesh)| is_open(own, *of_mesh))
+                .map(|(own, _)| *own)
+                .collect()
+        };
+        let open: Vec<&Limit> = open_where(&|own, of_mesh| of_mesh > own.accepted_mm);
+        if !is_of_answer || !open.is_empty() {
             return Ok(open);
         }
         let Ok(left) = self.linearity(progress)? else { return Ok(open) };
-        let is_open = |own: &&Limit| {
+        Ok(open_where(&|own, of_mesh| {
             let of_linearity = own.error(scenes, &left.left_out);
-            of_linearity < own.accepted_mm && of_linearity + of_mesh(own) > own.accepted_mm
-        };
-        Ok(limits.iter().filter(is_open).collect())
+            of_linearity < own.accepted_mm && of_linearity + of_mesh > own.accepted_mm
+        }))
     }
 
     /// The cells from which most of the error comes that is not accepted.

@@ -112,18 +112,20 @@ impl MeshingInput {
         let places: Vec<(Pointer, &String)> = places.collect();
         let fetched = places.iter().map(|(at, id)| fetch(sources, id, at));
         let fetched: Vec<StoredMesh> = fetched.collect::<Result<_, _>>()?;
-        let stated = self.spec.frame.map(Frame::from);
-        let frame = one_frame(&places, &fetched)?.or(stated).unwrap_or_default();
+        let stated = self.spec.frame.map(Frame::from).and_then(Frame::known);
+        let marked = one_frame(&places, &fetched)?;
+        // The frame of those without a mark.
+        let unmarked = stated.or(marked).unwrap_or_default();
         let in_lps = places.iter().zip(&fetched).map(|((at, _), mesh)| {
             let surface = mesh.surface_in_mm().ok_or_else(|| no_surface(at))?;
-            Ok(surface_in_lps(surface, frame))
+            Ok(surface_in_lps(surface, mesh.frame.and_then(Frame::known).unwrap_or(unmarked)))
         });
         let mut surfaces = in_lps.collect::<Result<Vec<_>, JobError>>()?.into_iter();
         let skin = surfaces.next().unwrap_or_default();
         let bones = surfaces.collect();
         let body = Body::Surfaces(Surfaces { skin, bones, document: document.clone() });
         let roles = std::iter::once("skin".to_owned()).chain(roles_of_bones(document));
-        Ok(Fetched { meshes: roles.zip(fetched).collect(), body, frame: lps_if_known(frame) })
+        Ok(Fetched { meshes: roles.zip(fetched).collect(), body, frame: lps_if_known(unmarked) })
     }
 }
 
@@ -178,7 +180,7 @@ fn one_frame(
     fetched: &[StoredMesh],
 ) -> Result<Option<Frame>, JobError> {
     let marked = places.iter().zip(fetched);
-    let mut marked = marked.filter_map(|((at, _), mesh)| Some((at, mesh.frame?)));
+    let mut marked = marked.filter_map(|((at, _), mesh)| Some((at, mesh.frame?.known()?)));
     let Some((_, first)) = marked.next() else { return Ok(None) };
     match marked.find(|(_, frame)| *frame != first) {
         None => Ok(Some(first)),

@@ -10,7 +10,7 @@ use crate::schema::compare::document::{CompareToDocument, MeshReference};
 use crate::schema::methods::ElementName;
 use crate::schema::study::truth::{TruthDocument, TruthMethodName, TruthMetric};
 use crate::schema::{ErrorCode, Faults, Pointer, Problem, Triple};
-use mechanics::mesh::{Frame, TriangleSurface, Vector};
+use mechanics::mesh::{TriangleSurface, Vector};
 use mechanics::prediction::ElementChoice;
 use mechanics::registration::thin_plate_spline::require_thickness;
 use mechanics::study::scenes::usual_truth_element;
@@ -97,7 +97,7 @@ impl Documents<'_> {
         let spec =
             CompareToDocument { align: truth.align.clone(), ..CompareToDocument::of(actual) };
         let meshes = ComparedMeshes::fetch(&spec, self.sources, &at)?;
-        let frame = Some(first.case.frame).filter(|frame| *frame != Frame::Unspecified);
+        let frame = first.case.frame.known();
         meshes.check_frames(frame, &at)?;
         let rest = &first.scene.skin;
         let pair = Pair {

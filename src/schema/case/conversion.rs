@@ -132,7 +132,7 @@ impl CaseDocument {
             .collect();
         let stated = self.frame != FrameName::Unspecified;
         let image = meshes.image.as_ref().and_then(|image| image.frame);
-        let image = image.filter(|mark| *mark != Frame::Unspecified).map(|mark| ("image", mark));
+        let image = image.and_then(Frame::known).map(|mark| ("image", mark));
         // An image is turned to the frame of the others, so that its own mark only counts where it is alone.
         let (first_id, first) = marks.first().copied().or(image)?;
         let frame = if stated { self.frame.into() } else { first };

@@ -12,8 +12,8 @@ use crate::schema::Triple;
 use crate::schema::case::document::CaseDocument;
 use crate::schema::predict::check::CheckDocument;
 use mechanics::anatomy::Anatomy;
+use mechanics::mesh::enclosed::Enclosed;
 use mechanics::meshing::{Angles, Gap, LostPiece};
-use mechanics::osteotomy::enclosed::Enclosed;
 use mechanics::osteotomy::labelling::FoundSegment;
 
 /// A mesh made from a scan, and a case of it.

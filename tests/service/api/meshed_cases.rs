@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 
 use crate::helpers::{Answer, SMALL, Server, ask, spec};
 use crate::processes::faulty;
-use crate::samples::ball_ct;
+use crate::samples::{BONE_BALL, SKIN_BALL, ball_ct, ball_stl};
 
 /// The lower half of the bone comes loose; cells as coarse as a small test needs.
 fn document() -> Value {
@@ -262,4 +262,29 @@ async fn a_case_to_be_meshed_that_makes_no_sense_is_refused_before_it_is_kept() 
     refused(&tags, "bad-name", "/tags/0").await;
     let cases = ask(server.get("/v1/cases")).await.json();
     assert_eq!(cases["items"], json!([]));
+}
+
+/// Surfaces without a mark are in the frame of their document, which is that of its places: they are turned together.
+#[tokio::test]
+async fn surfaces_without_a_mark_are_posted_in_the_frame_of_their_case() {
+    let server = Server::start();
+    let document = json!({"meshing": {"kind": "mesh", "frame": "RAS",
+        "surfaces": {"skin": "skin", "bones": [{"name": "jaw", "mesh": "jaw"}]},
+        "size": {"tetrahedra": 5000, "fine": [{"sphere_mm": [60, 55, 60, 60]}]}}});
+    let form = Form::new().part("case", Part::text(document.to_string()));
+    let form = form.part("skin", Part::bytes(ball_stl(SKIN_BALL)));
+    let form = form.part("jaw", Part::bytes(ball_stl(BONE_BALL)));
+    let posted = ask(server.post("/v1/cases").multipart(form)).await;
+    let case = posted.expect(StatusCode::CREATED);
+    let made = settled(&server, &id(&case)).await.json();
+    assert_eq!(
+        (&made["state"], &made["case"]["frame"]),
+        (&json!("ready"), &json!("LPS")),
+        "{made}"
+    );
+    let job = server.ended(case["meshing"]["job"].as_str().unwrap()).await;
+    assert!(!job["results"]["warnings"].to_string().contains("fine-place-empty"), "{job}");
+    let centre = &job["results"]["meshing"]["segments"][0]["centre_mm"];
+    let at = |axis: usize| centre[axis].as_f64().unwrap().round();
+    assert_eq!([at(0), at(1), at(2)], [-60.0, -55.0, 60.0], "{job}");
 }

@@ -40,10 +40,6 @@ impl EnrichedBrick<'_> {
         pairs.map(|((at_rest, point), reference)| (at_rest, point, reference))
     }
 
-    fn is_collapsed(&self) -> bool {
-        self.brick.points.iter().any(|point| point.volume() < COLLAPSED)
-    }
-
     /// The gradients at rest of the functions of the edges at a point.
     fn edges_at(&self, at_rest: &PointAtRest, reference: &ReferencePoint) -> [Vector; MAX_EDGES] {
         let mut gradients = [Vector::zeros(); MAX_NODES];
@@ -68,6 +64,7 @@ impl EnrichedBrick<'_> {
             bulk: self.brick.bulk_modulus,
             of_mean: self.brick.of_mean(),
             edges,
+            is_collapsed: self.brick.points.iter().any(|point| point.volume() < COLLAPSED),
         };
         for (place, (at_rest, point, _)) in self.points().enumerate() {
             let (modes, y) = (inner.gradients[place], inner.weights[place]);
@@ -107,7 +104,7 @@ impl EnrichedBrick<'_> {
 
     /// The three moments of ln J.
     fn moments(&self, inner: &Inner) -> [f64; 3] {
-        if self.is_collapsed() {
+        if inner.is_collapsed {
             return [0.0; 3];
         }
         let pairs = self.points().zip(&inner.weights);
@@ -118,7 +115,7 @@ impl EnrichedBrick<'_> {
 
     /// What the inner modes do beside the corners in the state.
     fn modes(&self, inner: &Inner) -> Modes {
-        if self.is_collapsed() {
+        if inner.is_collapsed {
             return NO_MODES;
         }
         let mut softest = self.mode_equations(inner);
@@ -133,10 +130,10 @@ impl EnrichedBrick<'_> {
 
     /// v . (K_i - K) v of displaced corners at the tangent moduli, in mN mm: what moments resist, less what modes give way.
     pub fn stiffening(&self, displacement: &[Vector]) -> f64 {
-        if self.is_collapsed() {
+        let inner = self.inner();
+        if inner.is_collapsed {
             return 0.0;
         }
-        let inner = self.inner();
         let mut softest = self.mode_equations(&inner);
         let (mut moments, mut mean) = ([0.0; 3], 0.0);
         for (place, (at_rest, point, _)) in self.points().enumerate() {
@@ -235,6 +232,8 @@ struct Inner {
     /// What resists the moments in kPa, and the integral.
     bulk: f64,
     of_mean: f64,
+    /// Whether its volume is less than `COLLAPSED` of that at rest at a point.
+    is_collapsed: bool,
 }
 
 impl Inner {
