@@ -1,6 +1,7 @@
 //! Every setting of the service, read once at the start from flags, `FACIES_*` variables and a file.
 
 pub mod file;
+mod log_filter;
 mod secret;
 mod settings;
 mod storage_locations;
@@ -104,7 +105,7 @@ impl Config {
             mesh_cache_bytes: read.whole("mesh-cache-mib", 0..=MIB)? * MIB,
             response_cache_bytes: read.whole("response-cache-mib", 0..=MIB)? * MIB,
             free_space_floor_bytes: (read.whole("free-space-floor-mib", 0..=MIB)? * MIB) as u64,
-            log: LogConfig { json: read.json_log()?, filter: (read.text)("log-level") },
+            log: LogConfig { json: read.json_log()?, filter: read.log_filter()? },
             traces: storage_locations::collector((read.text)("traces"))?,
         };
         config.checked()
@@ -243,6 +244,14 @@ impl<Text: Fn(&str) -> String> Reader<Text> {
         Ok(hosts.iter().map(|host| host.to_ascii_lowercase()).collect())
     }
 
+    fn log_filter(&self) -> Result<String, ConfigError> {
+        let value = (self.text)("log-level");
+        match log_filter::is_log_filter(&value) {
+            true => Ok(value),
+            false => Err(out_of_range("log-level", value)),
+        }
+    }
+
     fn json_log(&self) -> Result<bool, ConfigError> {
         let value = (self.text)("log-format");
         match value.as_str() {
@@ -317,6 +326,8 @@ mod tests {
             ("lease-s", "1e9"),
             ("upload-mib", "0"),
             ("log-format", "xml"),
+            ("log-level", "warning"),
+            ("log-level", ""),
             ("api-key", "short"),
             ("bind", "localhost"),
             ("admin-bind", "9090"),
@@ -335,7 +346,7 @@ mod tests {
         ] {
             let error = config(&[(name, value)]).unwrap_err().to_string();
             assert!(error.contains(name), "{error}");
-            assert!(!error.contains('\n'), "{error}");
+            assert!(!error.contains('\n') && !error.contains("secret"), "{error}");
         }
     }
 

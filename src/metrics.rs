@@ -10,6 +10,7 @@ use ::metrics::{
 };
 use metrics_exporter_prometheus::{BuildError, Matcher, PrometheusBuilder, PrometheusHandle};
 
+const DATABASE_UP: &str = "facies_database_up";
 const QUEUE_JOBS: &str = "facies_queue_jobs";
 const QUEUE_AGE: &str = "facies_queue_oldest_seconds";
 const ATTEMPTS: &str = "facies_attempts_total";
@@ -52,6 +53,10 @@ pub fn start() -> Result<(), BuildError> {
 
 fn describe() {
     http::describe();
+    describe_gauge!(
+        DATABASE_UP,
+        "1 if the database was asked for the queue, 0 if it did not answer"
+    );
     describe_gauge!(QUEUE_JOBS, "jobs that wait (state waiting) or run (state running)");
     describe_gauge!(QUEUE_AGE, Unit::Seconds, "age of the job that has waited longest");
     describe_counter!(ATTEMPTS, "attempts at jobs, by kind of job and by how they ended");
@@ -78,9 +83,23 @@ fn describe() {
     describe_gauge!(RETENTION_WITHHELD, "1 while retention erases nothing because of the clock");
 }
 
-/// Everything that was counted, as text for Prometheus; empty before `start`.
-pub fn render() -> String {
-    EXPORTER.get().map(PrometheusHandle::render).unwrap_or_default()
+/// Everything that was counted, as text for Prometheus; empty before `start`. The queue is in it only if the database was asked for it.
+pub fn render(queue: Option<QueueCounts>) -> String {
+    gauge!(DATABASE_UP).set(f64::from(u8::from(queue.is_some())));
+    if let Some(queue) = queue {
+        set_queue(queue);
+    }
+    let text = EXPORTER.get().map(PrometheusHandle::render).unwrap_or_default();
+    match queue {
+        Some(_) => text,
+        None => without_queue(&text),
+    }
+}
+
+/// The exporter keeps the last value of a gauge.
+fn without_queue(text: &str) -> String {
+    let is_queue = |line: &str| line.contains(QUEUE_JOBS) || line.contains(QUEUE_AGE);
+    text.split_inclusive('\n').filter(|line| !is_queue(line)).collect()
 }
 
 /// Frees the memory of rendered samples; to be called now and then.
@@ -91,10 +110,17 @@ pub fn release_memory() {
 }
 
 /// Jobs that have not ended, and how long the first of those that wait has waited.
-pub fn queue(waiting: i64, running: i64, oldest_ms: i64) {
-    gauge!(QUEUE_JOBS, "state" => "waiting").set(waiting as f64);
-    gauge!(QUEUE_JOBS, "state" => "running").set(running as f64);
-    gauge!(QUEUE_AGE).set(oldest_ms as f64 / 1e3);
+#[derive(Clone, Copy, Debug)]
+pub struct QueueCounts {
+    pub waiting: i64,
+    pub running: i64,
+    pub oldest_ms: i64,
+}
+
+fn set_queue(queue: QueueCounts) {
+    gauge!(QUEUE_JOBS, "state" => "waiting").set(queue.waiting as f64);
+    gauge!(QUEUE_JOBS, "state" => "running").set(queue.running as f64);
+    gauge!(QUEUE_AGE).set(queue.oldest_ms as f64 / 1e3);
     release_memory();
 }
 
@@ -167,11 +193,12 @@ mod tests {
     fn what_was_counted_is_rendered() {
         start().unwrap();
         start().unwrap();
-        queue(3, 2, 1500);
+        let queue = QueueCounts { waiting: 3, running: 2, oldest_ms: 1500 };
         job_solved("fem_linear", 50_000, 40, Duration::from_millis(20));
         attempt_lost("signal");
-        let text = render();
+        let text = render(Some(queue));
         for line in [
+            "facies_database_up 1",
             "facies_queue_jobs{state=\"waiting\"} 3",
             "facies_queue_oldest_seconds 1.5",
             "facies_job_seconds_bucket{method=\"fem_linear\",size=\"below_1e5\",le=\"0.03\"} 1",
@@ -180,5 +207,11 @@ mod tests {
         ] {
             assert!(text.contains(line), "{line} is not in {text}");
         }
+        let text = render(None);
+        assert!(text.contains("facies_database_up 0"), "{text}");
+        assert!(
+            text.contains("facies_attempts_lost_total") && !text.contains("facies_queue"),
+            "{text}"
+        );
     }
 }

@@ -70,6 +70,20 @@ for wrong in ({"translation_mm": [1, 0, 0]}, np.eye(3), np.full((4, 4), np.nan),
     refused_here(lambda: response.displacement_mm({"mandible": wrong}), "`mandible`: ")
 assert np.abs(here - prediction.displacement_mm).max() < 1e-3, "the response says what the prediction says"
 
+for member, value in {"frame": "RAS", "units": "m", "fixed": ["skull"], "skin": "skin"}.items():
+    stated: Any = {member: value}
+    try:
+        service.predict(head, PLAN, **stated)
+        sys.exit(f"`{member}` was ignored beside a case")
+    except TypeError as error:
+        assert f"`{member}`" in str(error), error
+growing = service.response(head, growth=["*"])
+assert np.abs(growing.displacement_mm({}, growth={"*": 0.1})).max() > 0.1
+no_number: Any
+for no_number in (float("nan"), float("inf"), True, "3", None, [1]):
+    refused_here(lambda: growing.displacement_mm({}, growth={"*": no_number}), f"`growth/*`: {no_number!r} ")
+    refused_here(lambda: growing.displacement_mm({}, activations={"lip": no_number}), f"`activations/lip`: {no_number!r} ")
+
 found = service.optimise(head, [{"nodes": {"node_set": "chin"}, "displacement_mm": [None, 4, None]}],
                          {"mandible": {"translation_mm": [[0, 0], [-10, 10], [-5, 5]]}})
 again = service.predict(head, found.plan, method="fem_linear")
@@ -83,6 +97,26 @@ assert mesh.displacement_mm.shape == prediction.displacement_mm.shape
 size = Path("examples/head/face.vtu").stat().st_size
 sent = [event for event in told if event.get("phase") == "upload"]
 assert sent[-1] == {"phase": "upload", "file": "face.vtu", "sent_bytes": size, "total_bytes": size, "progress": 100}, sent
+with tempfile.TemporaryDirectory() as folder:
+    volume = Path(folder, "ras.vtu")
+    volume.write_bytes(Path("examples/head/face.vtu").read_bytes().replace(b"SPACE=LPS", b"SPACE=RAS"))
+    ras = service.predict(volume, {"segments": [{"name": "mandible", "translation_mm": [0, 4, 1]}]},
+                          fixed=["skull", "rim"], skin="skin", frame="RAS", method="fem_linear")
+    assert service.compare(ras, ras).both["max"] < 1e-3, "a predicted skin has its own frame"
+    marked = Path(folder, "skin.vtp")
+    marked.write_bytes(service.file(ras.job, "skin.vtp"))
+    assert service.compare(ras, marked).both["max"] < 1e-3, "and so has a file with a mark"
+    for stated in ({"frame": "LPS"}, {"frame": ""}):
+        try:
+            service.compare(ras, marked, **stated)
+            sys.exit(f"{stated} was not taken at its word")
+        except Refused:
+            pass
+try:
+    service.compare(ras, ras, frame="LPS")
+    sys.exit("`frame` was ignored beside a prediction")
+except TypeError as error:
+    assert "`frame`" in str(error), error
 shares: list[int] = []
 service.upload(b"solid x\n" + b" " * (5 << 20) + b"facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 50 0 0\nvertex 0 50 0\n"
                b"endloop\nendfacet\nendsolid x\n", progress=lambda event: shares.append(event["progress"]))

@@ -7,6 +7,7 @@ use tokio::runtime::Handle;
 
 use super::Service;
 use super::error::{ApiError, ApiResult};
+use super::meshes::document_of;
 use super::parameters::id;
 use crate::jobs::{JobError, JobInput, MeshSource, SourceError};
 use crate::schema::job::JobStatus;
@@ -120,14 +121,14 @@ impl Accepted {
     }
 }
 
-/// The hash of a mesh that has to exist.
+/// What a mesh is that has to exist.
 pub(super) async fn require_mesh(service: &Service, at: &str, mesh: &str) -> ApiResult<String> {
     let row = match id(mesh) {
         Some(id) => service.store.mesh(&id).await?,
         None => None,
     };
     let row = row.ok_or_else(|| fault(at, ErrorCode::UnknownMesh, "there is no such mesh"))?;
-    Ok(row.sha256)
+    Ok(document_of(&row)?.identity())
 }
 
 pub(super) fn fault(at: &str, code: ErrorCode, detail: &str) -> ApiError {

@@ -16,6 +16,7 @@ use bytes::Bytes;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use tokio::net::TcpListener;
+use tokio::time::timeout;
 
 use super::access::{Access, Audit, Declared, RouteAccess};
 use super::audit::{self, AuditParameters};
@@ -30,16 +31,18 @@ use super::paging::PageParameters;
 use super::parameters::Parameters;
 use super::{body, json, keys, server_loop, time};
 use crate::config::{Config, Secret};
-use crate::metrics;
+use crate::metrics::{self, QueueCounts};
 use crate::schema::Limits;
 use crate::schema::key::{
     KeyDocument, RETENTION_DAYS, RotationDocument, Scope, TENANT_NAMES, is_key_id, is_tenant,
 };
 use crate::schema::wire::strict;
-use crate::store::{AuditedAction, Chain, LostRow, Store, TenantRow};
+use crate::store::{AuditedAction, Chain, LostRow, QueueRow, Store, StoreError, TenantRow};
 use crate::worker::process::memory::usage;
 
 const PROMETHEUS: &str = "text/plain; version=0.0.4; charset=utf-8";
+/// How long a scrape waits for the database; Prometheus waits for 10 s.
+const QUEUE_WITHIN: Duration = Duration::from_secs(5);
 
 /// Shared state of the admin listener.
 #[derive(Clone)]
@@ -203,19 +206,24 @@ fn document<T: DeserializeOwned>(headers: &HeaderMap, body: &Bytes) -> ApiResult
     Ok(strict::parse(body, &Limits::default())?)
 }
 
-/// The metrics, with the present queue.
+/// The metrics, with the present queue as far as the database tells it in time.
 async fn counted(State(admin): State<AdminListener>) -> Response {
-    match admin.store.queue().await {
-        Ok(queue) => metrics::queue(queue.waiting, queue.running, queue.oldest_ms),
-        Err(error) if !admin.store.is_closing() => {
-            tracing::warn!(%error, "the queue was not counted");
+    let late = |_| Err(StoreError::Interrupted);
+    let queue = match timeout(QUEUE_WITHIN, admin.store.queue()).await.unwrap_or_else(late) {
+        Ok(QueueRow { waiting, running, oldest_ms }) => {
+            Some(QueueCounts { waiting, running, oldest_ms })
         }
-        Err(_) => {}
-    }
+        Err(error) => {
+            if !admin.store.is_closing() {
+                tracing::warn!(%error, "the queue was not counted");
+            }
+            None
+        }
+    };
     if let Some(usage) = usage("self") {
         metrics::process_memory(usage.now_bytes);
     }
-    ([(header::CONTENT_TYPE, PROMETHEUS)], metrics::render()).into_response()
+    ([(header::CONTENT_TYPE, PROMETHEUS)], metrics::render(queue)).into_response()
 }
 
 impl AdminListener {

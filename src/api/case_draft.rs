@@ -123,7 +123,8 @@ impl Draft {
                     row.id
                 }
                 UploadedMesh::New(upload) => {
-                    let same = |other: &&Upload| other.row.sha256 == upload.row.sha256;
+                    let identity = |own: &Upload| (own.row.sha256.clone(), own.row.options.clone());
+                    let same = |other: &&Upload| identity(other) == identity(&upload);
                     match uploads.iter().find(same) {
                         Some(other) => other.row.id.clone(),
                         None => {
@@ -196,7 +197,7 @@ impl Draft {
         let prepared = prepared.await;
         let moved = |problem: Problem| problem.moved("/spec", "/meshing");
         let prepared = prepared.map_err(|error| error.map_problem(moved))?;
-        let contents = prepared.meshes.into_iter().map(|(_, mesh)| mesh.sha256);
+        let contents = prepared.meshes.into_iter().map(|(_, mesh)| mesh.identity);
         Ok(Checked::ToMesh {
             contents: case.meshing.clone().mesh_ids().into_iter().zip(contents).collect(),
         })

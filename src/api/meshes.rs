@@ -198,8 +198,7 @@ async fn store(service: &Service, upload: Upload) -> ApiResult<Option<(MeshRow, 
 
 /// The description of a stored mesh.
 pub fn document_of(row: &MeshRow) -> ApiResult<MeshDocument> {
-    let mut document: MeshDocument =
-        serde_json::from_str(&row.report).map_err(ApiError::internal)?;
+    let mut document = crate::library::meshes::document_of(row)?;
     document.created = time::rfc3339(row.created);
     Ok(document)
 }

@@ -25,6 +25,10 @@ impl<T: DeserializeOwned, S: Sync> FromRequestParts<S> for Parameters<T> {
                 let detail = error.body_text();
                 let detail = detail.rsplit("query string: ").next().unwrap_or_default();
                 let detail = detail.replace("unknown variant", "unknown word");
+                if let Some(name) = repeated(&detail) {
+                    let detail = format!("{name} is given more than once");
+                    return Err(ApiError::invalid_parameter(name, detail));
+                }
                 if named(&detail) == "limit" {
                     let detail = format!("limit has to be a number from 1 to {LONGEST_PAGE}");
                     return Err(ApiError::invalid_parameter("limit", detail));
@@ -33,6 +37,11 @@ impl<T: DeserializeOwned, S: Sync> FromRequestParts<S> for Parameters<T> {
             }
         }
     }
+}
+
+/// The parameter that a refusal says is there twice.
+fn repeated(detail: &str) -> Option<&str> {
+    detail.split_once("duplicate field `")?.1.split('`').next()
 }
 
 /// The parameter that a refusal of the query begins with, or that it says is missing.

@@ -71,10 +71,10 @@ enum Command {
         #[command(flatten)]
         settings: Settings,
     },
-    /// Tell which rows miss their bytes, which bytes no row knows and which meshes nothing leads to; exits with 1 where
-    /// there are some
+    /// Tell whether SQLite finds its file damaged, which rows miss their bytes, which bytes no row knows and which meshes nothing leads
+    /// to; exits with 1 where there are some
     Fsck {
-        /// Read every blob and compare it with its hash
+        /// Read every row, and every blob and compare it with its hash
         #[arg(long)]
         read_all: bool,
         /// Have jobs whose files are lost solved again, and remove bytes that no row knows and meshes that nothing leads to
@@ -169,6 +169,7 @@ pub fn run(arguments: &Arguments) -> Result<(), AdminError> {
             Command::Audit { after, settings } => audit(&open(settings).await?, *after).await,
             Command::Fsck { read_all, repair, settings } => {
                 let store = open(settings).await?;
+                store.check_pages().await?;
                 store.check_owner().await?;
                 check(&store, *read_all, *repair).await
             }

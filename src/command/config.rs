@@ -2,11 +2,14 @@
 
 use super::settings::{Arguments, Source};
 use crate::config::{Config, ConfigError, SETTINGS};
+use crate::store;
 
 /// Prints every setting with its source, or says what is wrong with one.
 pub fn run(arguments: &Arguments) -> Result<(), ConfigError> {
     let given = arguments.given()?;
-    Config::without_listener(|name| given.get(name))?;
+    let places = Config::without_listener(|name| given.get(name))?.places;
+    places.check_folders()?;
+    places.check_address(store::address_fault)?;
     for setting in SETTINGS {
         let (value, source) = match given.find(setting) {
             Some(found) => found,

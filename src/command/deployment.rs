@@ -97,6 +97,7 @@ pub async fn export(to: &Path, settings: &Settings) -> Result<TransferCounts, Ad
         return Err(AdminError::Refused(detail));
     }
     let store = open(settings).await?;
+    store.check_pages().await?;
     store.check_owner().await?;
     // A database is only read here: the disk that is full is that of the target.
     store.export(to).await.map_err(|error| not_exported(to, error))

@@ -13,6 +13,7 @@ use crate::schema::Problem;
 use crate::schema::job::ErrorClass;
 use crate::schema::study::report::OutcomeName;
 use crate::schema::wire::numbers::with_short_numbers;
+use crate::store::StoreError;
 use crate::worker::process::SlotError;
 
 /// The job ran and failed.
@@ -74,6 +75,7 @@ impl CommandError {
             CommandError::Admin(error) if error.is_refused() => REFUSED,
             CommandError::Admin(
                 AdminError::Findings { .. }
+                | AdminError::Store(StoreError::Damaged { .. })
                 | AdminError::Audit { .. }
                 | AdminError::ClockDoubted(_),
             ) => FAILED,

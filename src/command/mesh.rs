@@ -307,6 +307,7 @@ fn in_memory(case: &CaseDocument, done: &JobOutput) -> BTreeMap<String, StoredMe
             warnings: Vec::new(),
             told: made.told.clone(),
             sha256: file.sha256.clone(),
+            identity: file.sha256.clone(),
         };
         Some((id.clone(), mesh))
     };

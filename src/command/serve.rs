@@ -30,6 +30,9 @@ const CHAIN_EVERY: Duration = Duration::from_secs(2);
 const WIPE_EVERY: Duration = Duration::from_secs(2);
 /// How long the store may take to be closed.
 const LAST_WORDS: Duration = Duration::from_secs(2);
+/// How long the start waits for the store of blobs, and when it looks again for one that did not answer.
+const BLOBS_WITHIN: Duration = Duration::from_secs(5);
+const BLOBS_AGAIN: Duration = Duration::from_secs(5);
 /// Between two garbage collections.
 const SWEEP_EVERY: Duration = Duration::from_secs(3600);
 
@@ -173,15 +176,16 @@ pub async fn open(config: &Config) -> Result<Store, ServeError> {
         }
         Ok(()) => {}
     }
-    match store.check_blobs().await {
+    let has_blobs = match store.check_blobs_within(BLOBS_WITHIN).await {
         // What does not answer yet keeps the service unready, not from starting.
         Err(error) if error.is_setting() => return Err(error.into()),
         Err(error) => {
             tracing::warn!(%error, "the store of blobs does not answer: /readyz answers 503 until it does");
+            false
         }
-        Ok(()) => {}
-    }
-    start_garbage_collection(&store).await?;
+        Ok(()) => true,
+    };
+    start_garbage_collection(&store, has_blobs).await?;
     start_audit_chaining(&store);
     start_wiping(&store);
     Ok(store)
@@ -239,20 +243,40 @@ fn slot_settings(config: &Config, limits: &Limits) -> Settings {
     }
 }
 
-/// Collects garbage of dead processes, at once and then every hour.
-async fn start_garbage_collection(store: &Store) -> Result<(), StoreError> {
-    match collect_garbage_at_start(store).await {
-        // What is stored is served all the same, and can be erased.
-        Err(error) if error.is_full() => tracing::error!(%error, "nothing was swept"),
-        swept => swept?,
+/// Collects garbage of dead processes, as soon as blobs can be reached and then every hour.
+async fn start_garbage_collection(store: &Store, has_blobs: bool) -> Result<(), StoreError> {
+    match has_blobs {
+        true => match collect_garbage_at_start(store).await {
+            // What is stored is served all the same, and can be erased.
+            Err(error) if error.is_full() => tracing::error!(%error, "nothing was swept"),
+            swept => swept?,
+        },
+        false => drop(store.sweep_temporary()?),
     }
     let store = store.clone();
     tokio::spawn(async move {
+        if !has_blobs && reach_blobs(&store).await {
+            sweep(&store).await;
+        }
         while store.is_open_after(SWEEP_EVERY).await {
             sweep(&store).await;
         }
     });
     Ok(())
+}
+
+/// Looks again and again for blobs that did not answer at the start; false where the store was closed before they did.
+async fn reach_blobs(store: &Store) -> bool {
+    while store.is_open_after(BLOBS_AGAIN).await {
+        match store.check_blobs_within(BLOBS_WITHIN).await {
+            Ok(()) => {
+                tracing::info!("the store of blobs answers");
+                return true;
+            }
+            Err(error) => tracing::warn!(%error, "the store of blobs does not answer yet"),
+        }
+    }
+    false
 }
 
 async fn collect_garbage_at_start(store: &Store) -> Result<(), StoreError> {

@@ -43,6 +43,10 @@ pub enum ConfigError {
     Heartbeat { heartbeat: f64, lease: f64 },
     #[error("database has to begin with postgres:// or postgresql://")]
     Database,
+    #[error("database is `{address}`, which is no address of a PostgreSQL: {reason}")]
+    DatabaseAddress { address: String, reason: String },
+    #[error("{name} is `{}`: {} is no folder", folder.display(), at.display())]
+    NoFolder { name: &'static str, folder: PathBuf, at: PathBuf },
     #[error(
         "{name} is not set: a worker of its own shares the database and the blobs with the API, \
          and what is in the data folder belongs to one process"

@@ -170,7 +170,7 @@ pub const SETTINGS: &[Setting] = &[
     setting(
         "log-level",
         "info",
-        "error, warn, info, debug, trace, or a filter such as facies=debug,sqlx=warn",
+        "off, error, warn, info, debug, trace, or levels by module such as info,facies=debug,sqlx=warn",
     ),
     setting(
         "traces",

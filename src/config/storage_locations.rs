@@ -41,6 +41,30 @@ impl StorageLocations {
         }
     }
 
+    /// Whether the folders are some, or can be made, as far as this can be told without making them.
+    pub fn check_folders(&self) -> Result<(), ConfigError> {
+        let blobs = match &self.blobs {
+            BlobLocation::Folder(folder) => Some(("blobs", folder)),
+            BlobLocation::InData | BlobLocation::Bucket { .. } => None,
+        };
+        for (name, folder) in [("data", &self.data)].into_iter().chain(blobs) {
+            let known = folder.ancestors().find_map(|at| Some((at, at.metadata().ok()?)));
+            if let Some((at, _)) = known.filter(|(_, found)| !found.is_dir()) {
+                return Err(ConfigError::NoFolder { name, folder: folder.clone(), at: at.into() });
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether the address of a server is one; `fault` tells what is wrong with it.
+    pub fn check_address(&self, fault: impl Fn(&str) -> Option<String>) -> Result<(), ConfigError> {
+        let DatabaseLocation::Server { address, .. } = &self.database else { return Ok(()) };
+        fault(address.reveal()).map_or(Ok(()), |reason| {
+            let address = without_password(address.reveal());
+            Err(ConfigError::DatabaseAddress { address, reason })
+        })
+    }
+
     /// What keeps another process from working on the same jobs.
     pub fn check_shared(&self) -> Result<(), ConfigError> {
         match (&self.database, &self.blobs) {

@@ -3,7 +3,7 @@
 use std::sync::Mutex;
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
-use super::failure::JobError;
+use super::failure::{JobError, TIME_OF_STUDY};
 use crate::schema::predict::result::TimingDocument;
 use crate::schema::wire::date::date_and_time;
 use mechanics::prediction::{ModelError, SolverError};
@@ -14,6 +14,8 @@ pub struct Observed<'a> {
     inner: &'a dyn Progress,
     started: Instant,
     budget: Duration,
+    /// How the budget follows from what was stated, if it is not that.
+    how: &'static str,
     phases: Mutex<Phases>,
 }
 
@@ -34,8 +36,14 @@ impl<'a> Observed<'a> {
             inner,
             started: now,
             budget: Duration::try_from_secs_f64(wall_s).unwrap_or(Duration::MAX),
+            how: "",
             phases: Mutex::new(phases),
         }
+    }
+
+    /// The clock of a whole study, whose budget follows from that of its rows.
+    pub fn of_study(self) -> Self {
+        Observed { how: TIME_OF_STUDY, ..self }
     }
 
     /// The reason to stop, if there is one.
@@ -114,7 +122,8 @@ impl<'a> Observed<'a> {
     }
 
     fn over_budget(&self) -> JobError {
-        JobError::Budget { which: "wall", allowed: self.budget.as_secs_f64(), unit: "s" }
+        let allowed = self.budget.as_secs_f64();
+        JobError::Budget { which: "wall", allowed, unit: "s", how: self.how }
     }
 
     fn lock(&self) -> std::sync::MutexGuard<'_, Phases> {
@@ -176,6 +185,14 @@ mod tests {
             (error.kind().name(), &error.to_document().members["which"]),
             ("budget-exceeded", &"wall".into())
         );
+    }
+
+    #[test]
+    fn a_study_out_of_time_tells_how_its_time_follows_from_its_budget() {
+        let of_one = Observed::start(&Unobserved, 0.0).stopped().to_string();
+        assert_eq!(of_one, "wall ran out: 0 s are allowed by `budget`");
+        let of_study = Observed::start(&Unobserved, 0.0).of_study().stopped().to_string();
+        assert!(of_study.contains("twice the `wall_s` of the study"), "{of_study}");
     }
 
     #[test]

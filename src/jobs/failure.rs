@@ -19,6 +19,9 @@ use mechanics::validation::StatisticsError;
 /// The most reported residuals of a diverged solver, from one for each iteration.
 const TOLD_RESIDUALS: usize = 200;
 
+/// How the time of a whole study follows from its budget, behind a sentence that tells it.
+pub const TIME_OF_STUDY: &str = ", as twice the `wall_s` of the study, once for its rows and once for their reference solutions, and 60 s; a larger `wall_s` allows more";
+
 #[derive(Debug, thiserror::Error)]
 pub enum JobError {
     /// The documents or the meshes.
@@ -37,8 +40,8 @@ pub enum JobError {
     DoubtfulScan { error: Box<AnatomyError>, found: String },
     #[error("the study could not be run: {0}")]
     Study(#[from] StudyError),
-    #[error("{which} ran out: {allowed} {unit} are allowed by `budget`")]
-    Budget { which: &'static str, allowed: f64, unit: &'static str },
+    #[error("{which} ran out: {allowed} {unit} are allowed by `budget`{how}")]
+    Budget { which: &'static str, allowed: f64, unit: &'static str, how: &'static str },
     #[error("stopped on request")]
     Cancelled,
     #[error("the surfaces could not be aligned: {0}")]
@@ -140,7 +143,7 @@ impl JobError {
                 step,
                 wanted,
             }) => json!({ "iterations": iterations, "step": step, "wanted": wanted }),
-            JobError::Budget { which, allowed, unit } => {
+            JobError::Budget { which, allowed, unit, how: _ } => {
                 json!({ "which": which, format!("allowed_{unit}"): allowed })
             }
             _ => json!({}),

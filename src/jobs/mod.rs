@@ -28,7 +28,7 @@ pub use cohort::CohortInput;
 pub use compare::CompareInput;
 pub use conform::ConformInput;
 pub use drawing::Finished;
-pub use failure::JobError;
+pub use failure::{JobError, TIME_OF_STUDY};
 pub use input::JobInput;
 pub use learn::{LearnInput, LearnedCase};
 pub use meshing::{MeshingInput, WaitingCase};

@@ -54,6 +54,8 @@ pub struct StoredMesh {
     pub told: Vec<WarningDocument>,
     /// SHA-256 in hexadecimal.
     pub sha256: String,
+    /// What it is to a job: that, with what its upload stated of frame and unit.
+    pub identity: String,
 }
 
 /// A mesh of either kind or an image, shared by the jobs that use it.
@@ -91,7 +93,16 @@ impl StoredMesh {
         let units = units.filter(|_| !matches!(shape, StoredShape::Image(_)));
         let (frame, warnings) = (read.frame, read.warnings);
         let of_points = Arc::new(read.of_points);
-        StoredMesh { shape, of_points, frame, units, warnings, told: Vec::new(), sha256 }
+        let (identity, told) = (sha256.clone(), Vec::new());
+        StoredMesh { shape, of_points, frame, units, warnings, told, sha256, identity }
+    }
+
+    /// What it is to a case, whose meshes are in the case's frame and unit or refused: an image is turned from its own frame.
+    pub fn content_in_case(&self) -> String {
+        match self.shape {
+            StoredShape::Image(_) => self.identity.clone(),
+            StoredShape::Volume(_) | StoredShape::Surface(_) => self.sha256.clone(),
+        }
     }
 
     /// The surface, or the boundary of the volume; an image has none.

@@ -27,6 +27,7 @@ pub struct MeshCard {
     pub blob: String,
     /// The hash of the bytes that were sent.
     pub sha256: String,
+    pub identity: String,
     pub frame: Option<FrameName>,
     pub units: Option<LengthUnit>,
     /// What the meshing that made it had to say.
@@ -36,9 +37,9 @@ pub struct MeshCard {
 
 impl MeshCard {
     fn of(row: MeshRow) -> Result<MeshCard, StoreError> {
-        let document: MeshDocument = serde_json::from_str(&row.report)
-            .map_err(|error| StoreError::Schema(format!("report of a mesh: {error}")))?;
+        let document = document_of(&row)?;
         Ok(MeshCard {
+            identity: document.identity(),
             blob: row.blob,
             sha256: row.sha256,
             frame: document.report.space.or(document.frame),
@@ -57,8 +58,15 @@ impl MeshCard {
             warnings: Vec::new(),
             told: self.told,
             sha256: self.sha256,
+            identity: self.identity,
         }
     }
+}
+
+/// The document of a stored mesh.
+pub fn document_of(row: &MeshRow) -> Result<MeshDocument, StoreError> {
+    serde_json::from_str(&row.report)
+        .map_err(|error| StoreError::Schema(format!("report of a mesh: {error}")))
 }
 
 /// Parses bytes that our own writers made: they may compress better than a stranger's file is allowed to.

@@ -5,6 +5,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use super::cache::Cache;
 use super::loaded_response::{LoadedResponse, Stored, parsed};
+use super::meshes::document_of;
 use crate::jobs::JobInput;
 use crate::jobs::response::{COLUMNS_FILE, DESCRIPTION_FILE, REST_FILE, SECOND_ORDER_FILE};
 use crate::schema::hashes;
@@ -180,7 +181,7 @@ impl Responses {
         let mut contents = BTreeMap::new();
         for id in case.mesh_ids() {
             if let Some(mesh) = self.store.mesh(&id).await? {
-                contents.insert(id, mesh.sha256);
+                contents.insert(id, document_of(&mesh)?.content_in_case());
             }
         }
         let content = |id: &str| contents.get(id).cloned();

@@ -123,7 +123,11 @@ fn validate_upload(
         frame: statement.frame,
         report,
     };
-    let mesh = StoredMesh { frame: frame.known(), ..StoredMesh::new(read, units, sha256.clone()) };
+    let mesh = StoredMesh {
+        frame: frame.known(),
+        identity: document.identity(),
+        ..StoredMesh::new(read, units, sha256.clone())
+    };
     let stored = Bytes::from(stored?);
     let row = NewMesh {
         id,

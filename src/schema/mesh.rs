@@ -8,6 +8,7 @@ use utoipa::ToSchema;
 use super::{CornerPair, Triple};
 use crate::schema::case::document::{FrameName, LengthUnit};
 use crate::schema::wire::warning::WarningDocument;
+use mechanics::mesh::Frame;
 
 /// The response of `POST /v1/meshes` and `GET /v1/meshes/{id}`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
@@ -30,6 +31,25 @@ pub struct MeshDocument {
     #[schema(nullable = false)]
     pub frame: Option<FrameName>,
     pub report: MeshReport,
+}
+
+impl MeshDocument {
+    /// What it is to a job: the hash of its bytes, with the frame and the unit that were stated beside them.
+    pub fn identity(&self) -> String {
+        let frame = self.frame.filter(|_| self.report.space.is_none()).map(Frame::from);
+        let frame = frame.and_then(Frame::known).map(Frame::name);
+        let units = self.units.filter(|units| *units != LengthUnit::Mm).map(LengthUnit::name);
+        let stated = [frame, units].into_iter().flatten();
+        stated.fold(self.sha256.clone(), |identity, own| format!("{identity} {own}"))
+    }
+
+    /// What it is to a case, whose meshes are in the case's frame and unit or refused: an image is turned from its own frame.
+    pub fn content_in_case(&self) -> String {
+        match self.report.image {
+            Some(_) => self.identity(),
+            None => self.sha256.clone(),
+        }
+    }
 }
 
 /// Content of a mesh file. Lengths are in the units of the file.

@@ -5,13 +5,16 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use bytes::Bytes;
-use futures::{StreamExt, TryStreamExt};
+use futures::StreamExt;
 use object_store::aws::AmazonS3Builder;
 use object_store::local::LocalFileSystem;
+use object_store::path::Path as Place;
 use object_store::prefix::PrefixStore;
 use object_store::{ClientOptions, ObjectStore, ObjectStoreExt, PutPayload, RetryConfig};
 
 use super::StoreError;
+use super::blob_folder::{BlobFolder, OWNER};
+use super::blob_operations::{Operations, WITHIN, in_time, limit_of};
 use super::error::at;
 use super::files::FoundBlob;
 use crate::config::{BlobLocation, Secret, StorageLocations};
@@ -24,35 +27,37 @@ const REQUEST_TIMEOUT: Duration = Duration::from_secs(300);
 const RETRY_TIMEOUT: Duration = Duration::from_secs(10);
 const RETRIES: usize = 3;
 
-/// The place that says whose blobs these are.
-const OWNER: &str = "facies-owner";
-
 /// Blobs, each complete or absent: the folder writes beside the place, flushes and renames; S3 shows an object
 /// when all of it is there.
 #[derive(Clone)]
 pub struct Blobs {
     objects: Arc<dyn ObjectStore>,
-    in_data: bool,
+    /// Where they are, unless in a bucket.
+    folder: Option<BlobFolder>,
+    pub(super) operations: Operations,
 }
 
 impl Blobs {
     pub fn open(places: &StorageLocations) -> Result<Blobs, StoreError> {
         match &places.blobs {
-            BlobLocation::InData => {
-                let blobs = Blobs::in_folder(&places.data.join("blobs"))?;
-                Ok(Blobs { in_data: true, ..blobs })
-            }
-            BlobLocation::Folder(folder) => Blobs::in_folder(folder),
+            BlobLocation::InData => Blobs::in_folder(&places.data.join("blobs"), true),
+            BlobLocation::Folder(folder) => Blobs::in_folder(folder, false),
             BlobLocation::Bucket { bucket, prefix, settings } => {
                 Blobs::in_bucket(bucket, prefix, settings)
             }
         }
     }
 
-    fn in_folder(folder: &Path) -> Result<Blobs, StoreError> {
+    fn in_folder(folder: &Path, in_data: bool) -> Result<Blobs, StoreError> {
         std::fs::create_dir_all(folder).map_err(at(folder))?;
         let objects = LocalFileSystem::new_with_prefix(folder)?.with_fsync(true);
-        Ok(Blobs { objects: Arc::new(objects), in_data: false })
+        let folder = BlobFolder::new(std::path::absolute(folder)?, in_data);
+        Ok(Blobs::new(Arc::new(objects), Some(folder)))
+    }
+
+    fn new(objects: Arc<dyn ObjectStore>, folder: Option<BlobFolder>) -> Blobs {
+        let operations = Operations::new(folder.is_some());
+        Blobs { objects, folder, operations }
     }
 
     fn in_bucket(
@@ -82,31 +87,42 @@ impl Blobs {
             "" => Arc::new(objects),
             prefix => Arc::new(PrefixStore::new(objects, prefix)),
         };
-        Ok(Blobs { objects, in_data: false })
+        Ok(Blobs::new(objects, None))
     }
 
     /// Stores bytes durably, at a place that never holds other bytes.
     pub async fn put(&self, place: &str, bytes: Bytes) -> Result<(), StoreError> {
-        match self.objects.put(&place.into(), PutPayload::from(bytes)).await {
-            Ok(_) => Ok(()),
-            Err(error) if tells_of_no_bucket(&error) => Err(StoreError::NoBucket),
-            Err(error) => Err(error.into()),
-        }
+        let limit = limit_of(bytes.len() as u64);
+        let (blobs, place) = (self.clone(), Place::from(place));
+        let put = async move {
+            blobs.require_folder().await?;
+            blobs.objects.put(&place, PutPayload::from(bytes)).await.map_err(named)?;
+            // Below its mount point, where the folder went meanwhile.
+            blobs.require_folder().await
+        };
+        self.operations.within(limit, put).await
     }
 
     /// A blob that is there.
     pub(super) async fn find(&self, place: &str, sha256: &str) -> Result<FoundBlob, StoreError> {
-        let sha256 = sha256.to_owned();
-        match self.objects.get(&place.into()).await {
-            Ok(found) => Ok(FoundBlob { sha256, found }),
-            Err(object_store::Error::NotFound { .. }) => Err(StoreError::Missing { sha256 }),
-            Err(error) => Err(error.into()),
-        }
+        let (blobs, place, sha256) = (self.clone(), Place::from(place), sha256.to_owned());
+        let find = async move {
+            match blobs.objects.get(&place).await {
+                Ok(found) => Ok(FoundBlob { sha256, found }),
+                Err(object_store::Error::NotFound { .. }) => {
+                    blobs.require_folder().await?;
+                    Err(StoreError::Missing { sha256 })
+                }
+                Err(error) => Err(error.into()),
+            }
+        };
+        self.operations.within(WITHIN, find).await
     }
 
     /// The bytes, compared with their hash: a blob that changed where it is kept is an error, never an answer.
     pub async fn get(&self, place: &str, sha256: &str) -> Result<Bytes, StoreError> {
-        let bytes = self.find(place, sha256).await?.found.bytes().await?;
+        let found = self.find(place, sha256).await?;
+        let bytes = self.operations.within(limit_of(found.bytes()), found.found.bytes()).await?;
         let (bytes, found) = tokio::task::spawn_blocking(move || {
             let found = sha256_hex(&bytes);
             (bytes, found)
@@ -120,70 +136,115 @@ impl Blobs {
     }
 
     pub async fn delete(&self, place: &str) -> Result<(), StoreError> {
-        match self.objects.delete(&place.into()).await {
-            Ok(()) | Err(object_store::Error::NotFound { .. }) => Ok(()),
-            Err(error) => Err(error.into()),
-        }
+        let (blobs, place) = (self.clone(), Place::from(place));
+        let delete = async move {
+            match blobs.objects.delete(&place).await {
+                Ok(()) => Ok(()),
+                Err(object_store::Error::NotFound { .. }) => blobs.require_folder().await,
+                Err(error) => Err(error.into()),
+            }
+        };
+        self.operations.within(WITHIN, delete).await
     }
 
     /// Whether a place holds bytes.
     pub async fn exists(&self, place: &str) -> Result<bool, StoreError> {
-        match self.objects.head(&place.into()).await {
-            Ok(_) => Ok(true),
-            Err(object_store::Error::NotFound { .. }) => Ok(false),
-            Err(error) => Err(error.into()),
-        }
+        let (blobs, place) = (self.clone(), Place::from(place));
+        let exists = async move {
+            match blobs.objects.head(&place).await {
+                Ok(_) => Ok(true),
+                // Whose folder it is may be asked by what is there.
+                Err(object_store::Error::NotFound { .. }) if !blobs.had_owner() => Ok(false),
+                Err(object_store::Error::NotFound { .. }) => {
+                    blobs.require_folder().await.map(|()| false)
+                }
+                Err(error) => Err(StoreError::from(error)),
+            }
+        };
+        self.operations.within(WITHIN, exists).await
     }
 
     /// All places that hold bytes, without the mark and without folders that bear a mark of their own.
     pub async fn list(&self) -> Result<Vec<String>, StoreError> {
-        let found = self.objects.list(None).try_collect::<Vec<_>>().await?;
-        let places = found.iter().map(|object| object.location.to_string());
-        Ok(own_places(places.collect()))
+        self.require_folder().await?;
+        let (mut places, mut found) = (Vec::new(), self.objects.list(None));
+        while let Some(object) = in_time(WITHIN, async { Ok(found.next().await) }).await? {
+            places.push(object?.location.to_string());
+        }
+        Ok(own_places(places))
     }
 
     /// Whether they are in the data folder, which has one owner.
     pub fn are_in_data(&self) -> bool {
-        self.in_data
+        self.folder.as_ref().is_some_and(BlobFolder::is_in_data)
     }
 
     /// The identity of the database whose blobs these are, if it is written there.
     pub async fn owner(&self) -> Result<Option<String>, StoreError> {
-        match self.objects.get(&OWNER.into()).await {
-            Ok(found) => {
-                let bytes = found.bytes().await?;
-                Ok(Some(String::from_utf8_lossy(&bytes).trim().to_owned()))
+        let objects = self.objects.clone();
+        let read = async move {
+            match objects.get(&OWNER.into()).await {
+                Ok(found) => Ok(Some(found.bytes().await?)),
+                Err(object_store::Error::NotFound { .. }) => Ok(None),
+                Err(error) => Err(error),
             }
-            Err(object_store::Error::NotFound { .. }) => Ok(None),
-            Err(error) => Err(error.into()),
+        };
+        let owner = self.operations.within(WITHIN, read).await?;
+        Ok(owner.map(|owner| String::from_utf8_lossy(&owner).trim().to_owned()))
+    }
+
+    /// Writes the mark, in a place that was just found to be the right one.
+    pub async fn set_owner(&self, identity: &str) -> Result<(), StoreError> {
+        let (objects, mark) = (self.objects.clone(), PutPayload::from(format!("{identity}\n")));
+        let put = async move { objects.put(&OWNER.into(), mark).await.map_err(named) };
+        self.operations.within(WITHIN, put).await.map(drop)
+    }
+
+    /// The mark was found: a folder without it is out of reach from now on.
+    pub fn know_owner(&self, identity: &str) {
+        if let Some(folder) = &self.folder {
+            folder.know_owner(identity);
         }
     }
 
-    pub async fn set_owner(&self, identity: &str) -> Result<(), StoreError> {
-        self.put(OWNER, format!("{identity}\n").into()).await
+    /// Whether a folder had its mark since the start.
+    pub fn had_owner(&self) -> bool {
+        self.folder.as_ref().is_some_and(BlobFolder::is_known)
     }
 
     /// Whether nothing is there but the mark. A folder that cannot be read, as `lost+found` of a disk, is none of ours.
-    pub async fn is_empty(&self) -> bool {
+    pub async fn is_empty(&self) -> Result<bool, StoreError> {
         let mut found = self.objects.list(None);
-        while let Some(object) = found.next().await {
+        while let Some(object) = in_time(WITHIN, async { Ok(found.next().await) }).await? {
             if object.is_ok_and(|object| object.location != OWNER.into()) {
-                return false;
+                return Ok(false);
             }
         }
-        true
+        Ok(true)
     }
 
-    /// Whether the store answers, and its bucket exists, which a list tells: an object that is not there has the same status as a
-    /// bucket that is not.
+    /// Whether the folder takes a file; whether the store answers, and its bucket exists, which a list tells: an object that is not
+    /// there has the same status as a bucket that is not.
     pub async fn ping(&self) -> Result<(), StoreError> {
-        let nothing = self.objects.list(Some(&"ready".into())).try_next().await;
-        match nothing {
-            Ok(_) => Ok(()),
-            Err(error) if tells_of_no_bucket(&error) => Err(StoreError::NoBucket),
-            Err(error) => Err(error.into()),
+        if let Some(folder) = &self.folder {
+            return in_time(WITHIN, folder.try_write()).await;
+        }
+        let mut listed = self.objects.list(Some(&"ready".into()));
+        let ready = async move { listed.next().await.transpose().map_err(named) };
+        self.operations.within(WITHIN, ready).await.map(drop)
+    }
+
+    async fn require_folder(&self) -> Result<(), StoreError> {
+        match &self.folder {
+            Some(folder) => folder.require().await,
+            None => Ok(()),
         }
     }
+}
+
+/// An error with a name for that of a bucket which does not exist.
+fn named(error: object_store::Error) -> StoreError {
+    if tells_of_no_bucket(&error) { StoreError::NoBucket } else { error.into() }
 }
 
 /// Places without the mark and what another one owns.
@@ -210,14 +271,5 @@ fn tells_of_no_bucket(error: &object_store::Error) -> bool {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn places_of_a_store_within_another_are_none_of_its_own() {
-        let places =
-            ["ab/1", "facies-owner", "b/facies-owner", "b/cd/2", "bc/3", "not-facies-owner"];
-        let own = own_places(places.map(str::to_owned).into());
-        assert_eq!(own, ["ab/1", "bc/3", "not-facies-owner"]);
-    }
-}
+#[path = "blobs_tests.rs"]
+mod tests;

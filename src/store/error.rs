@@ -22,6 +22,13 @@ pub enum StoreError {
     #[error("the bucket of the setting `blobs` does not exist: create it, or name another one")]
     NoBucket,
     #[error(
+        "the folder {} is not mounted or not there, or it is another: nothing is stored below it",
+        folder.display()
+    )]
+    NoFolder { folder: std::path::PathBuf },
+    #[error("the store of blobs did not answer within {within_s} s")]
+    NoAnswer { within_s: f64 },
+    #[error(
         "none of the {meshes} newest meshes of the database is in these blobs: all hosts of a database keep theirs in one place. The setting `blobs` (FACIES_BLOBS) has to name the folder, or the bucket and prefix, of the other hosts; without it blobs are in the data folder of each"
     )]
     OtherBlobs { meshes: usize },
@@ -29,6 +36,14 @@ pub enum StoreError {
         "the blobs of the setting `blobs` (FACIES_BLOBS) are not those of this database: they hold {owner}. Name a place that no other deployment has; if they are those of this database all the same, as after a restore, write {identity} into the file `facies-owner` there"
     )]
     ForeignBlobs { owner: String, identity: String },
+    #[error(
+        "the database {database} is new and {} holds blobs: its rows are lost. Restore the database from a backup; to begin anew, move \
+         that folder away",
+        folder.display()
+    )]
+    NewDatabase { database: String, folder: std::path::PathBuf },
+    #[error("the database {place} is damaged: {}. Restore it from a backup", found.join("; "))]
+    Damaged { place: String, found: Vec<String> },
     #[error("file system: {0}")]
     Files(#[from] std::io::Error),
     #[error(
@@ -122,7 +137,11 @@ impl StoreError {
             }
             // A server that does not answer, a disk that errs, no descriptor left.
             StoreError::Blobs(object_store::Error::Generic { .. }) => !self.is_full(),
-            StoreError::Contended | StoreError::Busy { .. } | StoreError::NoBucket => true,
+            StoreError::Contended
+            | StoreError::Busy { .. }
+            | StoreError::NoBucket
+            | StoreError::NoFolder { .. }
+            | StoreError::NoAnswer { .. } => true,
             StoreError::OfMany(error) => error.is_unavailable(),
             _ => false,
         }
@@ -136,6 +155,7 @@ impl StoreError {
             | StoreError::NoBucket
             | StoreError::OtherBlobs { .. }
             | StoreError::ForeignBlobs { .. }
+            | StoreError::NewDatabase { .. }
             | StoreError::CannotOpen { .. }
             | StoreError::ReadOnly { .. }
             | StoreError::Files(_)

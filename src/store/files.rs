@@ -7,6 +7,7 @@ use futures::StreamExt as _;
 use object_store::{GetResult, GetResultPayload};
 use sha2::{Digest, Sha256};
 
+use super::blob_operations::{Operations, WITHIN, in_time, limit_of};
 use super::error::StoreError;
 use crate::schema::wire::canonical::hex;
 
@@ -35,10 +36,14 @@ impl FoundBlob {
     /// The file, at its beginning, compared with the hash; a copy where it comes from another machine.
     pub(super) async fn into_file(
         self,
+        operations: &Operations,
         nameless: impl FnOnce() -> Result<File, StoreError>,
     ) -> Result<File, StoreError> {
+        let limit = limit_of(self.bytes());
         let (mut file, found) = match self.found.payload {
-            GetResultPayload::File(file, _) => blocking(move || hashed(file)).await?,
+            GetResultPayload::File(file, _) => {
+                operations.within(limit, blocking(move || hashed(file))).await?
+            }
             GetResultPayload::Stream(_) => copied(self.found, nameless()?).await?,
         };
         if found != self.sha256 {
@@ -64,7 +69,7 @@ fn hashed(mut file: File) -> Result<(File, String), StoreError> {
 /// What comes from elsewhere, in a file, with its hash.
 async fn copied(found: GetResult, mut file: File) -> Result<(File, String), StoreError> {
     let (mut pieces, mut hasher) = (found.into_stream(), Sha256::new());
-    while let Some(piece) = pieces.next().await {
+    while let Some(piece) = in_time(WITHIN, async { Ok(pieces.next().await) }).await? {
         let piece = piece?;
         (file, hasher) = blocking(move || {
             file.write_all(&piece)?;

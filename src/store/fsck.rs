@@ -80,8 +80,12 @@ impl Findings {
 }
 
 impl Store {
-    /// Compares rows with bytes; with `read_all` the bytes with their hashes too.
+    /// Compares rows with bytes; with `read_all` the bytes with their hashes too. All rows are
+    /// read before them then, and a damaged one is an error.
     pub async fn fsck(&self, read_all: bool) -> Result<Findings, StoreError> {
+        if read_all {
+            self.check_all_rows().await?;
+        }
         // Places come first: bytes are stored after their row, so each of these has its row by now.
         let objects: BTreeSet<String> = self.blobs.list().await?.into_iter().collect();
         let places = self.places().await?;

@@ -260,6 +260,11 @@ fn address(places: &StorageLocations) -> Result<Address, StoreError> {
     })
 }
 
+/// What is wrong with the address of a server, if anything is.
+pub fn address_fault(address: &str) -> Option<String> {
+    Address::server(address, 1).err().map(|error| error.to_string())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -2,6 +2,7 @@
 
 use std::time::{Duration, Instant};
 
+use super::blob_operations::in_time;
 use super::database::{is_read_only, query};
 use super::spare::free_bytes;
 use super::{Store, StoreError};
@@ -40,6 +41,11 @@ impl Store {
             }
             tried => tried,
         }
+    }
+
+    /// The same within so long.
+    pub async fn check_blobs_within(&self, limit: Duration) -> Result<(), StoreError> {
+        in_time(limit, self.check_blobs()).await
     }
 
     /// Whether the blobs can be reached, are those of this database and, where other hosts share it, those that they name: what is kept

@@ -5,6 +5,9 @@ use super::database::query;
 use super::{Store, StoreError};
 
 const IDENTITY: &str = "SELECT id FROM identity";
+/// What a database has that ran beside its blobs, if only once.
+const LIVED: &str = "SELECT 1 FROM seen_clock UNION ALL SELECT 1 FROM blobs UNION ALL SELECT 1 FROM unfinished_blobs \
+     UNION ALL SELECT 1 FROM discarded_blobs LIMIT 1";
 const MAKE: &str = "INSERT INTO identity (number, id) VALUES (1, $1) ON CONFLICT DO NOTHING";
 
 /// The places of the meshes that were stored last.
@@ -19,27 +22,50 @@ pub(super) struct NewestMeshes {
 
 impl Store {
     /// Refuses blobs that bear the mark of another database, and those that bear none and hold what this one does not know. The mark is
-    /// made in an empty store, and beside the newest meshes of the database.
+    /// made in a store that is empty as the database is, and beside the newest meshes of the database. In a data folder, which has
+    /// one owner, only a new database beside old blobs is refused.
     pub async fn check_owner(&self) -> Result<(), StoreError> {
         let owner = self.blobs.owner().await?;
         if owner.is_none() && self.blobs.are_in_data() {
-            return Ok(());
+            return self.refuse_new_beside_blobs().await;
         }
         let identity = self.identity().await?;
         let foreign = |owner| StoreError::ForeignBlobs { owner, identity: identity.clone() };
         match owner {
-            Some(owner) if owner == identity => return Ok(()),
+            Some(owner) if owner == identity => {
+                self.blobs.know_owner(&identity);
+                return Ok(());
+            }
             Some(owner) => return Err(foreign(format!("the mark of another database, {owner}"))),
             None => {}
         }
-        if self.newest().await?.is_there || self.blobs.is_empty().await {
-            return self.blobs.set_owner(&identity).await;
+        let (newest, is_empty) = (self.newest().await?, self.blobs.is_empty().await?);
+        // One that had its mark and is empty is not mounted.
+        let is_new = is_empty && newest.meshes == 0 && !self.blobs.had_owner();
+        if newest.is_there || is_new {
+            self.blobs.set_owner(&identity).await?;
+            self.blobs.know_owner(&identity);
+            return Ok(());
         }
         // Another host may have stored its first mesh meanwhile.
         match self.blobs.owner().await? {
-            Some(owner) if owner == identity => Ok(()),
+            Some(owner) if owner == identity => {
+                self.blobs.know_owner(&identity);
+                Ok(())
+            }
+            _ if is_empty => Err(foreign("nothing, as a disk that is not mounted".into())),
             _ => Err(foreign("bytes, and neither a mark nor the newest meshes of this one".into())),
         }
+    }
+
+    /// A database that nothing was ever stored through, where there are blobs, stands in the place of one that was lost.
+    async fn refuse_new_beside_blobs(&self) -> Result<(), StoreError> {
+        let lived = query(LIVED).fetch_optional(self.database.reader()).await?;
+        if lived.is_some() || self.blobs.is_empty().await? {
+            return Ok(());
+        }
+        let folder = self.folder.join("blobs");
+        Err(StoreError::NewDatabase { database: self.database.place(), folder })
     }
 
     pub(super) async fn newest(&self) -> Result<NewestMeshes, StoreError> {

@@ -128,7 +128,10 @@ impl Store {
         transaction.commit().await?;
         for (stored, (_, bytes)) in stored.iter().zip(contents) {
             if let Err(error) = self.blobs.put(&stored.place, bytes.clone()).await {
-                self.discard(hashes(contents)).await;
+                // A store that hangs would hang once more: what it has is left to the sweep.
+                if !matches!(error, StoreError::NoAnswer { .. }) {
+                    self.discard(hashes(contents)).await;
+                }
                 return Err(error);
             }
         }
@@ -140,6 +143,9 @@ impl Store {
         for sha256 in blobs {
             if let Err(error) = self.discard_one(&sha256).await {
                 tracing::warn!(%sha256, %error, "bytes without a reference are left to the sweep");
+                if let StoreError::NoAnswer { .. } = error {
+                    return;
+                }
             }
         }
     }
@@ -190,12 +196,15 @@ impl Store {
 
     /// It as a file, compared with its hash, which can be read to its end also where the blob is erased meanwhile.
     pub async fn file_of(&self, found: FoundBlob) -> Result<File, StoreError> {
-        found.into_file(|| self.nameless_file()).await
+        found.into_file(&self.blobs.operations, || self.nameless_file()).await
     }
 
     /// An unnamed file of this process, removed when it is closed.
     pub fn nameless_file(&self) -> Result<File, StoreError> {
-        Ok(tempfile::tempfile_in(self.folder.join("tmp"))?)
+        tempfile::tempfile_in(self.folder.join("tmp")).map_err(|error| match error.kind() {
+            std::io::ErrorKind::NotFound => StoreError::NoFolder { folder: self.folder.clone() },
+            _ => error.into(),
+        })
     }
 
     /// Where the bytes of a hash are.

@@ -25,6 +25,13 @@ impl Store {
     /// Removes everything that a process which died may have left. At the start only: the folder of
     /// temporary files belongs to the one process that holds the lock of the data folder.
     pub async fn sweep(&self) -> Result<Swept, StoreError> {
+        let temporary = self.sweep_temporary()?;
+        let patience = if self.shared { PATIENCE } else { Duration::ZERO };
+        Ok(Swept { blobs: self.sweep_blobs(patience).await?, temporary })
+    }
+
+    /// The same in the data folder alone, where blobs cannot be reached: the number of files.
+    pub fn sweep_temporary(&self) -> Result<usize, StoreError> {
         let mut temporary = 0;
         for entry in std::fs::read_dir(self.folder.join("tmp"))? {
             remove(&entry?.path())?;
@@ -34,8 +41,7 @@ impl Store {
         if own_blobs.exists() {
             temporary += remove_staged(&own_blobs)?;
         }
-        let patience = if self.shared { PATIENCE } else { Duration::ZERO };
-        Ok(Swept { blobs: self.sweep_blobs(patience).await?, temporary })
+        Ok(temporary)
     }
 
     /// Removes bytes that were announced long ago and that nothing refers to, and those whose removal was

@@ -89,14 +89,55 @@ fn read_exported(folder: &Path, sha256: &str) -> Result<Vec<u8>, StoreError> {
 }
 
 impl Store {
-    /// Writes everything into a new folder, as it is at this moment.
+    /// Reads every page of an embedded database; an error where one is damaged. To be done before rows are trusted.
+    pub async fn check_pages(&self) -> Result<(), StoreError> {
+        let found = self.database.faults().await?;
+        match found.is_empty() {
+            true => Ok(()),
+            false => Err(StoreError::Damaged { place: self.database.place(), found }),
+        }
+    }
+
+    /// Writes everything into a new folder, as it is at this moment. What an import would refuse is refused, and has no manifest.
     pub async fn export(&self, folder: &Path) -> Result<TransferCounts, StoreError> {
-        // It holds faces of patients.
+        let damaged = |error| self.damaged_row(error, folder);
+        let manifest = self.export_rows(folder).await.map_err(damaged)?;
+        std::fs::create_dir(folder.join("blobs"))?;
+        let sizes = self.export_blobs(folder, &manifest.blobs).await?;
+        self.check_rows(folder, &manifest, Some(&sizes)).await.map_err(damaged)?;
+        let text = serde_json::to_vec_pretty(&manifest).map_err(unreadable)?;
+        write_durably(&folder.join(MANIFEST), &text)?;
+        Ok(TransferCounts { rows: manifest.rows.values().sum(), blobs: manifest.blobs.len() })
+    }
+
+    /// Reads all rows; an error at one that an export could not write or an import would refuse, apart from its blob.
+    pub(super) async fn check_all_rows(&self) -> Result<(), StoreError> {
+        let temporary = tempfile::TempDir::new_in(self.folder.join("tmp"))?;
+        let folder = temporary.path().join("rows");
+        let damaged = |error| self.damaged_row(error, &folder);
+        let manifest = self.export_rows(&folder).await.map_err(damaged)?;
+        self.check_rows(&folder, &manifest, None).await.map_err(damaged)
+    }
+
+    /// The error of a row, without the folder of its file; other errors stay as they are.
+    fn damaged_row(&self, error: StoreError, folder: &Path) -> StoreError {
+        let row = match error {
+            StoreError::Export(text) => text.replace(&format!("{}/", folder.display()), ""),
+            StoreError::Database(sqlx::Error::ColumnDecode { index, source }) => {
+                format!("column {index} cannot be read: {source}")
+            }
+            other => return other,
+        };
+        StoreError::Damaged { place: self.database.place(), found: vec![row] }
+    }
+
+    /// Writes the rows into a new folder.
+    async fn export_rows(&self, folder: &Path) -> Result<Manifest, StoreError> {
+        // They hold faces of patients.
         DirBuilder::new()
             .mode(0o700)
             .create(folder)
             .map_err(at(folder, "it has to be a new folder"))?;
-        std::fs::create_dir(folder.join("blobs"))?;
         let mut snapshot = self.database.snapshot().await?;
         let mut manifest =
             Manifest { schema: newest_step(), rows: BTreeMap::new(), blobs: BTreeSet::new() };
@@ -109,26 +150,25 @@ impl Store {
             manifest.blobs.insert(row.try_get(0)?);
         }
         snapshot.rollback().await;
-        self.export_blobs(folder, &manifest.blobs).await?;
-        let text = serde_json::to_vec_pretty(&manifest).map_err(unreadable)?;
-        write_durably(&folder.join(MANIFEST), &text)?;
-        Ok(TransferCounts { rows: manifest.rows.values().sum(), blobs: manifest.blobs.len() })
+        Ok(manifest)
     }
 
-    /// After the snapshot has ended, which must not last as long as they take.
+    /// After the snapshot has ended, which must not last as long as they take. Returns their sizes.
     async fn export_blobs(
         &self,
         folder: &Path,
         blobs: &BTreeSet<String>,
-    ) -> Result<(), StoreError> {
+    ) -> Result<BTreeMap<String, u64>, StoreError> {
+        let mut sizes = BTreeMap::new();
         for sha256 in blobs {
             let bytes = self.read_blob(sha256).await.map_err(|error| match error {
                 StoreError::Erased => StoreError::ErasedDuringExport { sha256: sha256.clone() },
                 other => other,
             })?;
             write_durably(&folder.join("blobs").join(sha256), &bytes)?;
+            sizes.insert(sha256.clone(), bytes.len() as u64);
         }
-        Ok(())
+        Ok(sizes)
     }
 
     /// Takes in what was exported, all of it or nothing. Only into a deployment in which there is nothing.
@@ -146,7 +186,7 @@ impl Store {
         self.refuse_unless_empty().await?;
         // All of it before anything is stored.
         let blobs = check_blobs(folder, &manifest)?;
-        self.check_rows(folder, &manifest, &blobs).await?;
+        self.check_rows(folder, &manifest, Some(&blobs)).await?;
         let mut stored = Vec::with_capacity(manifest.blobs.len());
         for sha256 in &manifest.blobs {
             let content: Content = (sha256.clone(), read_exported(folder, sha256)?.into());
@@ -169,12 +209,12 @@ impl Store {
         }
     }
 
-    /// Looks at all rows that a manifest names, before anything is stored.
+    /// Looks at all rows that a manifest names, and at what they say of their blobs if the sizes of these are known.
     async fn check_rows(
         &self,
         folder: &Path,
         manifest: &Manifest,
-        blobs: &BTreeMap<String, u64>,
+        blobs: Option<&BTreeMap<String, u64>>,
     ) -> Result<(), StoreError> {
         for table in TABLES {
             let columns = self.database.columns(table).await?;

@@ -204,7 +204,7 @@ mod tests {
         }
         // Some milliseconds; a collector that was waited for would never answer.
         assert!(begun.elapsed() < Duration::from_secs(2));
-        assert!(metrics::render().contains("facies_spans_lost_total{cause=\"queue\"} 7"));
+        assert!(metrics::render(None).contains("facies_spans_lost_total{cause=\"queue\"} 7"));
         let begun = Instant::now();
         assert!(queue.shutdown_with_timeout(Duration::from_millis(50)).is_err());
         assert!(begun.elapsed() < Duration::from_secs(2));

@@ -211,15 +211,7 @@ impl Pulse {
         if reaped.is_none_or(|last| last.elapsed() >= self.interval) {
             *reaped = Some(Instant::now());
             self.reap(store).await;
-            self.count(store).await;
-        }
-    }
-
-    /// Updates the metrics of the queue: its length and the age of its first job.
-    async fn count(&self, store: &Store) {
-        match store.queue().await {
-            Ok(queue) => metrics::queue(queue.waiting, queue.running, queue.oldest_ms),
-            Err(error) => tracing::warn!(%error, "the queue was not counted"),
+            metrics::release_memory();
         }
     }
 

@@ -5,5 +5,6 @@ pub mod heartbeat;
 pub mod niceness;
 pub mod process;
 mod publication;
+mod publisher;
 pub mod slots;
 pub mod work;

@@ -40,6 +40,13 @@ impl Publication {
         })
     }
 
+    /// How many there are to be stored.
+    pub fn bytes(&self) -> u64 {
+        let files: usize = self.files.iter().map(|file| file.bytes.len()).sum();
+        let meshes: usize = self.meshes.iter().map(|made| made.mesh.bytes.len()).sum();
+        (files + meshes) as u64
+    }
+
     /// Publishes all of it, or nothing where the job is not ours any more. A mesh that is stored already keeps its id.
     pub async fn publish(&self, store: &Store, lease: &Lease) -> Result<bool, StoreError> {
         if self.meshes.is_empty() {

@@ -14,6 +14,7 @@ use tokio::runtime::Handle;
 use super::fail_point::FailPoints;
 use super::heartbeat::{Heartbeat, RunningJob, worker_lost};
 use super::publication::Publication;
+use super::publisher::Publisher;
 use super::work::{Failure, Finished, Work};
 use crate::config::Config;
 use crate::metrics;
@@ -31,8 +32,6 @@ const IDLE: Duration = Duration::from_secs(1);
 const LAST_WORDS: Duration = Duration::from_secs(2);
 /// How long a slot that is not ready sleeps at most before it looks whether to stop.
 const UNREADY: Duration = Duration::from_millis(100);
-/// Between two tries to publish while the database is busy.
-const PUBLISH_PAUSE: Duration = Duration::from_millis(200);
 
 /// The worker slots of this process.
 pub struct Workers {
@@ -135,23 +134,25 @@ impl Shared {
         let fail_points = FailPoints::of(lease.attempt, &claim.document);
         fail_points.pass_by("claim:after", &|| job.is_cancelled());
         let folder = self.store.attempt_folder(&lease.job, lease.attempt);
-        let mut effort = Effort::default();
+        let (mut effort, mut until) = (Effort::default(), None);
         let made = make(claim, &folder, &job, work);
         let worked = started.elapsed();
         let made = made.and_then(|finished| {
             job.trace.phase("publish");
-            effort = finished.effort.clone();
+            (effort, until) = (finished.effort.clone(), finished.until);
             Publication::read(finished)
         });
         if let Err(error) = remove_attempt(&folder) {
             tracing::warn!(%error, "the files of an attempt were left to the next start");
         }
-        let ended = made.and_then(|publication| {
-            fail_points.pass("publish:before", &|| job.is_cancelled())?;
-            let published = self.publish(claim, &publication);
-            fail_points.pass("publish:after", &|| job.is_cancelled())?;
-            published
-        });
+        let publisher = Publisher {
+            store: self.store.of_tenant(&claim.tenant),
+            runtime: self.runtime.clone(),
+            job: job.clone(),
+            fail_points,
+            patience: self.lease,
+        };
+        let ended = made.and_then(|publication| publisher.publish(publication, until));
         let status = self.conclude(lease, &job, ended);
         self.heartbeat.unregister(lease);
         job.trace.ended(status);
@@ -163,22 +164,6 @@ impl Shared {
         }
         let (work_ms, duration_ms) = (worked.as_secs_f64() * 1e3, took.as_secs_f64() * 1e3);
         tracing::info!(status, work_ms, duration_ms, "job ended");
-    }
-
-    /// Makes files, meshes and the manifest visible at once; false when the job is not ours.
-    fn publish(&self, claim: &Claim, publication: &Publication) -> Result<bool, Failure> {
-        let store = self.store.of_tenant(&claim.tenant);
-        let until = Instant::now() + self.lease;
-        loop {
-            let published = publication.publish(&store, &claim.lease);
-            match self.runtime.block_on(published) {
-                Err(error) if error.is_unavailable() && Instant::now() < until => {
-                    tracing::warn!(%error, "the result waits for the database");
-                    std::thread::sleep(PUBLISH_PAUSE);
-                }
-                published => return Ok(published?),
-            }
-        }
     }
 
     /// Writes down how an attempt ended, and returns a word for it.
@@ -243,6 +228,10 @@ fn make(
     job: &RunningJob,
     work: &mut dyn Work,
 ) -> Result<Finished, Failure> {
+    // Nothing is made below a data folder that is not mounted.
+    if let Some(temporary) = folder.ancestors().nth(2) {
+        std::fs::metadata(temporary)?;
+    }
     std::fs::create_dir_all(folder)?;
     let made = catch_unwind(AssertUnwindSafe(|| work.work(claim, folder, job)));
     made.unwrap_or_else(|panic| {

@@ -1,12 +1,17 @@
 //! Interface between a slot and the rest of the worker: input, output and failures of an attempt.
 
 use std::path::{Path, PathBuf};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use super::fail_point::Injected;
 use super::process::protocol::{Effort, MeshFile};
 use crate::store::{Claim, StoreError};
 use mechanics::progress::Progress;
+
+/// How often the worker looks whether a job is still wanted, and what its process takes.
+pub(super) const LOOK: Duration = Duration::from_millis(100);
+/// How long a process, or a publication, may go on that was cancelled, or whose budget of time is used up.
+pub(super) const GRACE: Duration = Duration::from_secs(10);
 
 /// Result of an attempt: the manifest, and files in its folder.
 pub struct Finished {
@@ -15,6 +20,8 @@ pub struct Finished {
     pub files: Vec<FinishedFile>,
     pub meshes: Vec<FinishedMesh>,
     pub effort: Effort,
+    /// When the time of the job is up, and that of its publication, if it has not begun late.
+    pub until: Option<Instant>,
 }
 
 /// A file by its name in the folder of the attempt.

@@ -3,6 +3,7 @@
 use std::path::Path;
 use std::time::Duration;
 
+use reqwest::StatusCode;
 use serde_json::json;
 use sqlx::sqlite::{SqliteConnectOptions, SqliteConnection};
 use sqlx::{Connection as _, Row as _};
@@ -93,4 +94,25 @@ async fn a_slot_that_stands_still_fails_its_job_over_its_budget() {
     assert_eq!((&error["type"], &error["which"]), (&"budget-exceeded".into(), &"wall".into()));
     assert_eq!(error["allowed_s"], 0.2);
     works_on(&server).await;
+}
+
+#[tokio::test]
+async fn a_job_dismissed_while_its_publication_hangs_frees_its_slot() {
+    let server = faulty("publish:before:1:hang:tag=deaf", &["--workers", "1"]);
+    let case = server.case(&SMALL).await;
+    let id = accepted(&server, &tagged(&case, 1.0, "deaf")).await;
+    server.started(&id).await;
+    ask(server.delete(&format!("/v1/jobs/{id}"))).await.expect(StatusCode::OK);
+    works_on(&server).await;
+    assert_eq!(state(&server, &id).await["status"], "dismissed");
+}
+
+#[tokio::test]
+async fn a_publication_that_hangs_beyond_the_time_of_its_job_is_an_attempt_lost() {
+    let server = faulty("publish:before:1:hang:attempt=1:tag=still", &["--workers", "1"]);
+    let case = server.case(&SMALL).await;
+    let mut hurried = tagged(&case, 1.0, "still");
+    hurried["budget"] = json!({"wall_s": 3.0});
+    let id = accepted(&server, &hurried).await;
+    succeeds(&server, &id, 2).await;
 }

@@ -5,6 +5,8 @@ use std::os::unix::fs::{MetadataExt, PermissionsExt};
 use std::path::Path;
 use std::process::{Command, Output};
 
+use sqlx::{Connection as _, SqliteConnection};
+
 use crate::program::{facies, path, text};
 
 /// An empty deployment on SQLite.
@@ -119,4 +121,69 @@ fn a_data_folder_that_cannot_be_made_is_named() {
         refused(&facies(&key), 78, path(data));
         refused(&facies(&["admin", "fsck", "--data", path(data)]), 78, path(data));
     }
+}
+
+/// Runs SQL in the database of a deployment that nobody serves.
+async fn changed(data: &Path, sql: &'static str) {
+    let options = sqlx::sqlite::SqliteConnectOptions::new().filename(data.join("facies.db"));
+    let mut connection = SqliteConnection::connect_with(&options).await.unwrap();
+    sqlx::raw_sql(sql).execute(&mut connection).await.unwrap();
+    connection.close().await.unwrap();
+}
+
+#[test]
+fn a_database_with_a_damaged_page_is_not_exported_and_fsck_names_the_page() {
+    const PAGE: usize = 4096;
+    let folder = tempfile::tempdir().unwrap();
+    let [data, backup] = ["data", "backup"].map(|name| folder.path().join(name));
+    made(&data);
+    let fsck = ["admin", "fsck", "--data", path(&data)];
+    assert_eq!(facies(&fsck).status.code(), Some(0));
+    let file = data.join("facies.db");
+    let mut bytes = fs::read(&file).unwrap();
+    let pages = bytes.len() / PAGE;
+    bytes[(pages - 1) * PAGE..].fill(0);
+    fs::write(&file, bytes).unwrap();
+    // Page or page, as SQLite writes it.
+    let named = format!("age {pages}: ");
+    refused(&facies(&[&fsck[..], &["--repair"]].concat()), 1, &named);
+    let export = ["admin", "export", "--data", path(&data), "--to", path(&backup)];
+    let told = facies(&export);
+    refused(&told, 1, path(&file));
+    refused(&told, 1, &named);
+    assert!(!backup.exists());
+}
+
+#[tokio::test]
+async fn a_row_that_an_import_would_refuse_is_not_exported_and_fsck_finds_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let [data, backup] = ["data", "backup"].map(|name| folder.path().join(name));
+    let key = facies(&["admin", "key", "new", "--label", "first", "--data", path(&data)]);
+    assert_eq!(key.status.code(), Some(0), "{}", text(&key.stderr));
+    let fsck = ["admin", "fsck", "--read-all", "--data", path(&data)];
+    assert_eq!(facies(&fsck).status.code(), Some(0));
+    changed(&data, "UPDATE keys SET scopes = 'something else'").await;
+    let row = "keys.ndjson, row 1: column scopes holds scopes";
+    refused(&facies(&fsck), 1, &format!("is damaged: {row}. "));
+    let export = ["admin", "export", "--data", path(&data), "--to", path(&backup)];
+    refused(&facies(&export), 1, row);
+    assert!(!backup.join("export.json").exists(), "what is there is no export");
+}
+
+#[tokio::test]
+async fn a_new_database_beside_old_blobs_is_refused_and_one_that_was_served_is_not() {
+    let folder = tempfile::tempdir().unwrap();
+    let data = folder.path().join("data");
+    made(&data);
+    let blobs = data.join("blobs");
+    fs::create_dir_all(blobs.join("ab")).unwrap();
+    fs::write(blobs.join("ab/abcd"), "a mesh").unwrap();
+    let fsck = ["admin", "fsck", "--repair", "--data", path(&data)];
+    refused(&facies(&fsck), 78, path(&blobs));
+    let serve = ["serve", "--bind", "127.0.0.1:0", "--log-level", "error", "--data", path(&data)];
+    refused(&facies(&serve), 78, "Restore the database from a backup");
+    assert!(blobs.join("ab/abcd").exists());
+    changed(&data, "INSERT INTO seen_clock (number, trusted, latest) VALUES (1, 1, 1)").await;
+    let found = facies(&["admin", "fsck", "--data", path(&data)]);
+    assert_eq!(text(&found.stdout), "known to no row: ab/abcd\n");
 }

@@ -28,5 +28,6 @@ pub fn stored(shape: StoredShape, frame: Option<Frame>) -> StoredMesh {
         warnings: Vec::new(),
         told: Vec::new(),
         sha256: format!("sha {frame:?}"),
+        identity: format!("sha {frame:?}"),
     }
 }

@@ -24,7 +24,8 @@ def finite(what: str, value: object, shape: tuple[int, ...]) -> NDArray[np.float
     entries = np.asarray(value, dtype=object)
     are_numbers = all(isinstance(entry, Real) and not isinstance(entry, bool) and isfinite(entry) for entry in entries.flat)
     if entries.shape != shape or not are_numbers:
-        raise ValueError(f"`{what}`: {value!r} is not {'x'.join(map(str, shape))} finite numbers")
+        wanted = f"{'x'.join(map(str, shape))} finite numbers" if shape else "a finite number"
+        raise ValueError(f"`{what}`: {value!r} is not {wanted}")
     return entries.astype(np.float64)
 
 
@@ -78,7 +79,7 @@ class Response:
         """How far each node of the skin goes where segments move by these 4x4 matrices (see `rigid`); others stay. `growth`:
         volume change by region, `activations`: stress in kPa by muscle, of those in `inner_columns` of the description.
         Without asking the service, whose `apply` also refuses plans beyond the limits and estimates the linearisation error;
-        raises `ValueError` where a matrix is not that of a rigid movement."""
+        raises `ValueError` where a matrix is not that of a rigid movement, or growth or stress is no finite number."""
         segments = {segment["name"]: index for index, segment in enumerate(self.description["segments"])}
         if unknown := sorted(set(movements) - set(segments)):
             raise KeyError(f"the response moves {', '.join(segments)}, not {', '.join(unknown)}")
@@ -105,14 +106,14 @@ class Response:
         columns = self.description.get("inner_columns", [])
         first = 12 * len(self.description["segments"])
         numbers = {(column["kind"], column["name"]): first + index for index, column in enumerate(columns)}
-        strain = {region: np.cbrt(1 + change) - 1 for region, change in growth.items()}
+        strain = {region: np.cbrt(1 + finite(f"growth/{region}", change, ())) - 1 for region, change in growth.items()}
         # A region beside `*` grows by that and by the rest.
         everywhere = strain.get("*", 0.0)
         regions = self.description.get("regions", [])
         if "*" in strain and regions and set(regions) <= set(strain):
             raise KeyError(f"every region has growth of its own, and no cell is left to `*`: {sorted(regions)}")
         amounts = {("growth", region): own if region == "*" else own - everywhere for region, own in strain.items()}
-        amounts |= {("muscle", muscle): stress for muscle, stress in activations.items()}
+        amounts |= {("muscle", muscle): finite(f"activations/{muscle}", stress, ()) for muscle, stress in activations.items()}
         if unknown := sorted(set(amounts) - set(numbers)):
             raise KeyError(f"the response has columns of {sorted(numbers)}, not of {unknown}")
         return {numbers[key]: float(amount) for key, amount in amounts.items()}

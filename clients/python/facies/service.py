@@ -84,20 +84,24 @@ class Facies:
         return Case(made["id"], made["case"], made.get("check"), spec)
 
     def predict(self, case: Case | File | Document, plan: Document, *, fixed: Sequence[str] = (),
-                skin: str | None = None, frame: str = "LPS", units: str = "mm",
+                skin: str | None = None, frame: str | None = None, units: str | None = None,
                 progress: Progress | None = None, **spec: Any) -> Prediction:
         """The skin after a plan. A file that is not a `.json` is a volume mesh: `fixed` and `skin` name its node sets,
-        and so do the segments of the plan. With a plan that has an `osteotomy` the file is a scan, whose bone it cuts.
-        `spec` has further members of the job, such as `method`."""
+        and so do the segments of the plan; `frame` (LPS) and `units` (mm) are its own. With a plan that has an `osteotomy` the
+        file is a scan, whose bone it cuts. `spec` has further members of the job, such as `method`. Raises `TypeError` where
+        what is of a mesh is given without one; a plan states its frame itself."""
+        is_file = isinstance(case, (str, PathLike)) and Path(case).suffix != ".json"
+        stated = {"fixed": fixed or None, "skin": skin, "frame": frame, "units": units}
+        strange = [f"`{name}`" for name, value in stated.items() if value is not None]
+        if strange and (not is_file or "osteotomy" in plan):
+            raise TypeError(f"{', '.join(strange)}: of a volume mesh alone; a case and a scan have their own, and `frame` of a plan "
+                            "is a member of the plan")
         if isinstance(case, (str, PathLike)) and "osteotomy" in plan:
-            if fixed or skin:
-                raise TypeError("`fixed` and `skin` go with a volume mesh; those of a scan are found")
             case = case_of_scan(case, plan)
             plan = {name: value for name, value in plan.items() if name != "osteotomy"}
-        elif isinstance(case, (str, PathLike)) and Path(case).suffix != ".json":
-            case = case_of_mesh(case, plan, fixed, skin) | {"frame": frame, "units": units}
-        elif fixed or skin:
-            raise TypeError("`fixed` and `skin` go with a volume mesh; a case has its own")
+        elif isinstance(case, (str, PathLike)) and is_file:
+            case = case_of_mesh(case, plan, fixed, skin) | {"frame": "LPS" if frame is None else frame,
+                                                          "units": "mm" if units is None else units}
         outputs = spec.pop("outputs", ["skin.vtp", SKIN])
         stored = self._stored(case, progress)
         job = self.run({"kind": "predict", "case": stored.id, "plan": plan,
@@ -140,14 +144,16 @@ class Facies:
                         "outputs": sorted({*outputs, SKIN}), **stored.spec, **spec}, progress)
         return Optimisation(job["id"], self._skin(job), job["results"])
 
-    def compare(self, prediction: Prediction, actual: Prediction | File, *, units: str = "mm", frame: str = "LPS",
+    def compare(self, prediction: Prediction, actual: Prediction | File, *, units: str | None = None, frame: str | None = None,
                 progress: Progress | None = None, **spec: Any) -> Comparison:
-        """A predicted skin against another, or against the surface in a file in `units` and `frame`."""
+        """A predicted skin against another, or against the surface in a file in `units` (mm) and `frame`: if none is stated, that
+        which the file is marked with, else LPS."""
         if isinstance(actual, Prediction):
-            content = self.file(actual.job, "skin.vtp")
+            if units is not None or frame is not None:
+                raise TypeError("`units` and `frame` go with a file; a predicted skin has its own")
+            mesh = self.upload(self.file(actual.job, "skin.vtp"))
         else:
-            content = Path(actual).read_bytes()
-        mesh = self.upload(content, units=units, frame=frame)
+            mesh = self._surface(Path(actual).read_bytes(), "mm" if units is None else units, frame)
         job = self.run({"kind": "compare", "prediction": {"job": prediction.job},
                         "actual": {"mesh": mesh}, **spec}, progress)
         return Comparison(job["id"], job["results"]["comparison"])
@@ -194,6 +200,15 @@ class Facies:
 
     def _stored(self, case: Case | File | Document, progress: Progress | None) -> Case:
         return case if isinstance(case, Case) else self.case(case, progress=progress)
+
+    def _surface(self, content: bytes, units: str, frame: str | None) -> str:
+        """The id of a surface in a frame, or in that of its mark, else in LPS."""
+        try:
+            return self.upload(content, units=units, frame="LPS" if frame is None else frame)
+        except Refused as refused:
+            if frame is not None or refused.code != "frame-conflict":
+                raise
+            return self.upload(content, units=units)
 
     def _skin(self, job: Document) -> Surface:
         return Surface.from_glb(self.file(job["id"], SKIN))

@@ -11,7 +11,7 @@ use crate::material::hyperelastic::Law;
 use crate::mesh::ignored::listed;
 use crate::mesh::{ArrayUse, Vector, VolumeMesh, Warning};
 use crate::model::fem::membrane::Membrane;
-use crate::muscle::axis::{CROSSING, mean_axis};
+use crate::muscle::axis::{CROSSING, MeanAxis, mean_axis};
 
 /// A direction shorter than this, and a line of the skin of which less than this lies in a face, has no angle.
 const SHORTEST: f64 = 1e-6;
@@ -191,7 +191,9 @@ impl Check<'_> {
             },
         };
         let along = |corners: &[u32; 3]| match (stated, vectors) {
-            (_, Some(vectors)) => towards_first(corners.map(|node| vectors[node as usize])),
+            (_, Some(vectors)) => {
+                common_axis(corners, vectors).map_or(Vector::zeros(), |of| of.direction)
+            }
             (FibreDirection::Uniform(direction), _) => *direction,
             (FibreDirection::Array(_), None) => Vector::zeros(),
         };
@@ -275,14 +277,13 @@ impl<'a> Course<'a> {
             Course::Cells(vectors) => return Axis { along: vectors[cell], beside: 0.0 },
             Course::Nodes(mesh, vectors) => (mesh, vectors),
         };
-        let nodes = mesh.cells.nodes(cell).iter();
-        let units: Vec<Vector> = nodes.filter_map(|&node| unit(&vectors[node as usize])).collect();
-        let mean = mean_axis(units.iter().map(|axis| (1.0, *axis)));
-        let Some((mean, first)) = mean.zip(units.first()) else {
+        let nodes = mesh.cells.nodes(cell);
+        let Some(mean) = common_axis(nodes, vectors) else {
             return Axis { along: Vector::zeros(), beside: 0.0 };
         };
-        let along = mean.direction;
-        let along = if along.dot(first) < 0.0 { -along } else { along };
+        let mut units = nodes.iter().filter_map(|&node| unit(&vectors[node as usize]));
+        let is_opposite = units.next().is_some_and(|first| mean.direction.dot(&first) < 0.0);
+        let along = if is_opposite { -mean.direction } else { mean.direction };
         Axis { along, beside: mean.crossing }
     }
 
@@ -298,8 +299,8 @@ impl<'a> Course<'a> {
     }
 }
 
-/// The sum of axes, which have no sign, each on the side of the first.
-fn towards_first([a, b, c]: [Vector; 3]) -> Vector {
-    let towards_a = |vector: Vector| if vector.dot(&a) < 0.0 { -vector } else { vector };
-    a + towards_a(b) + towards_a(c)
+/// The mean of the axes of nodes that have one, which have neither sign nor length.
+fn common_axis(nodes: &[u32], vectors: &[Vector]) -> Option<MeanAxis> {
+    let units = nodes.iter().filter_map(|&node| unit(&vectors[node as usize]));
+    mean_axis(units.map(|axis| (1.0, axis)))
 }

@@ -11,6 +11,9 @@ use crate::model::fem::cell_stiffness::Dilatation;
 /// docs/verification.md#v29).
 const LOCKING: f64 = 0.45;
 
+/// The share of wedges in a mesh from which they lock too, two changes of volume standing where a hexahedron has one.
+const MANY_WEDGES: f64 = 0.25;
+
 /// The volume term of a law's second order above which it counts at points.
 const VOLUME_COUNTS: f64 = 5.0;
 
@@ -45,12 +48,25 @@ impl Scene {
             let is_quadratic =
                 shape == CellShape::Tet4 && self.tetrahedron() == Tetrahedron::Quadratic;
             let shares = self.shares_volume(&self.materials[material]);
-            !is_quadratic && (self.is_pointwise(shape) || !shares)
+            let is_one_of_many = shape == CellShape::Wedge6 && self.has_many_wedges();
+            !is_quadratic && (self.is_pointwise(shape) || !shares || is_one_of_many)
         };
         let detail = format!(
-            "of plain elements have a Poisson ratio above {LOCKING}: they lock, and the skin moves too little"
+            "of plain elements, or wedges in a mesh with many, have a Poisson ratio above {LOCKING}: they lock, and the skin moves too little"
         );
         self.warning_of(locks, &detail)
+    }
+
+    /// Whether its wedges lock: what is estimated of their error is then too large, and makes an answer worse.
+    pub(super) fn wedges_lock(&self) -> bool {
+        let is_near = |material: &LinearElastic| material.poisson_ratio() > LOCKING;
+        self.has_many_wedges() && self.materials.iter().any(is_near)
+    }
+
+    fn has_many_wedges(&self) -> bool {
+        let cells = &self.mesh.cells;
+        let wedges = cells.iter().filter(|(shape, _)| *shape == CellShape::Wedge6).count();
+        wedges as f64 >= MANY_WEDGES * cells.len() as f64
     }
 
     /// Whether linear cells of a shape take volume point by point at first order.

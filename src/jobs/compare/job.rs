@@ -43,7 +43,7 @@ pub fn compare_job(
     // 2. Files.
     clock.phase(Phase::Write);
     let origin = Origin {
-        spec_hash: input.spec_hash(&prediction.sha256, &meshes),
+        spec_hash: input.spec_hash(&prediction.identity, &meshes),
         inputs: [vec![prediction.to_input("prediction")], meshes.to_inputs()].concat(),
         frame: frame.unwrap_or_default(),
         queue_s: input.queue_s,

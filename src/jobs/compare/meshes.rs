@@ -34,7 +34,7 @@ impl ComparedMeshes {
         })
     }
 
-    /// The hash of a mesh by its id in the spec.
+    /// What a mesh is, by its id in the spec.
     pub fn content_of(&self, spec: &CompareToDocument, id: &str) -> Option<String> {
         let is = |mesh: &Option<MeshReference>| mesh.as_ref().is_some_and(|mesh| mesh.mesh == id);
         let found = match spec.actual.mesh == id {
@@ -43,7 +43,7 @@ impl ComparedMeshes {
             false if is(&spec.align.moving) => self.moving.as_ref(),
             false => None,
         };
-        found.map(|mesh| mesh.sha256.clone())
+        found.map(|mesh| mesh.identity.clone())
     }
 
     /// Their names in provenance.

@@ -86,7 +86,7 @@ impl ConformInput {
             let mut spec = self.spec.clone();
             let places = spec.mesh_references_mut();
             let number = places.iter().position(|(_, other)| other.as_str() == id)?;
-            Some(meshes[number].1.sha256.clone())
+            Some(meshes[number].1.identity.clone())
         };
         let spec_hash = hashes::conform_hash(&self.spec, &content);
         Ok(PreparedConformation {

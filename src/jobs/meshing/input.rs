@@ -78,7 +78,7 @@ impl MeshingInput {
         let content = |id: &str| {
             let ids = self.spec.clone().mesh_ids();
             let number = ids.iter().position(|other| other == id)?;
-            Some(meshes[number].1.sha256.clone())
+            Some(meshes[number].1.identity.clone())
         };
         let spec_hash = hashes::meshing_hash(&self.spec, &content, self.case_id());
         Ok(PreparedMeshing { meshes, body, rules, spec_hash, frame })
@@ -114,6 +114,9 @@ impl MeshingInput {
         let fetched: Vec<StoredMesh> = fetched.collect::<Result<_, _>>()?;
         let stated = self.spec.frame.map(Frame::from).and_then(Frame::known);
         let marked = one_frame(&places, &fetched)?;
+        if let (None, Some(Frame::Ras)) = (stated, marked) {
+            check_marked(&places, &fetched)?;
+        }
         // The frame of those without a mark.
         let unmarked = stated.or(marked).unwrap_or_default();
         let in_lps = places.iter().zip(&fetched).map(|((at, _), mesh)| {
@@ -189,6 +192,17 @@ fn one_frame(
             Err(Problem::at(at, ErrorCode::FrameConflict, detail).into())
         }
     }
+}
+
+/// Refuses a surface without a mark beside those in RAS, whose frame is LPS by default: it may be in either.
+fn check_marked(places: &[(Pointer, &String)], fetched: &[StoredMesh]) -> Result<(), JobError> {
+    let mut unmarked =
+        places.iter().zip(fetched).filter(|(_, mesh)| mesh.frame.and_then(Frame::known).is_none());
+    unmarked.next().map_or(Ok(()), |((at, _), _)| {
+        let detail = "this surface states no frame, another one is marked RAS: state `frame` of the document, which is then that of \
+                      surfaces without a mark";
+        Err(Problem::at(at, ErrorCode::FrameConflict, detail).into())
+    })
 }
 
 /// 3D Slicer reads a file of a volume mesh as LPS, so that everything is converted to it if possible.

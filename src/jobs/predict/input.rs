@@ -123,7 +123,10 @@ impl PredictInput {
             repair: converted.repair,
             spec_hash: self.spec_hash(&stored, compared.as_ref()),
             inputs: self.inputs(&stored, compared.as_ref()),
-            contents: stored.iter().map(|(id, mesh)| (id.clone(), mesh.sha256.clone())).collect(),
+            contents: stored
+                .iter()
+                .map(|(id, mesh)| (id.clone(), mesh.content_in_case()))
+                .collect(),
             compared,
             model,
             warnings,
@@ -290,7 +293,7 @@ impl PredictInput {
     ) -> String {
         let content = |id: &str| {
             let compared = || compared?.content_of(self.spec.compare_to.as_ref()?, id);
-            stored.get(id).map(|mesh| mesh.sha256.clone()).or_else(compared)
+            stored.get(id).map(StoredMesh::content_in_case).or_else(compared)
         };
         hashes::predict_hash(&self.case, &self.plan, &self.spec, &content)
     }

@@ -49,6 +49,7 @@ impl StoredMesh {
             warnings: Vec::new(),
             told: Vec::new(),
             sha256: String::new(),
+            identity: String::new(),
         }
     }
 }

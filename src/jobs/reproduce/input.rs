@@ -51,7 +51,7 @@ impl ReproduceInput {
 
     /// The hash of everything that determines the numbers.
     pub fn spec_hash(&self, stored: &BTreeMap<String, StoredMesh>) -> String {
-        let content = |id: &str| stored.get(id).map(|mesh| mesh.sha256.clone());
+        let content = |id: &str| stored.get(id).map(|mesh| mesh.identity.clone());
         hashes::reproduce_hash(&self.spec, &content)
     }
 }

@@ -89,7 +89,7 @@ pub fn study_job(
     place: &JobContext,
     progress: &dyn Progress,
 ) -> Result<JobOutput, JobError> {
-    let clock = Observed::start(progress, whole_budget(input.spec.budget.wall_s));
+    let clock = Observed::start(progress, whole_budget(input.spec.budget.wall_s)).of_study();
 
     // 1. Documents and meshes, checked together.
     let prepared = clock.prepared(|stop| input.prepare(place.sources, place.limits, stop))?;

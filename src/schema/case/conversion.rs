@@ -81,7 +81,7 @@ impl CaseDocument {
         let muscles_read_with = MuscleContext { limits, surfaces: Some(&surfaces) };
         let case = Case {
             frame: self.frame.into(),
-            bones: self.to_bones(&at.key("bones"), meshes, faults),
+            bones: self.to_bones(&at.key("bones"), meshes, limits, faults),
             landmarks: self.to_landmarks(&at.key("landmarks"), limits, faults),
             regions,
             skin,
@@ -206,11 +206,20 @@ impl CaseDocument {
         surfaces
     }
 
-    fn to_bones(&self, at: &Pointer, meshes: &CaseMeshes, faults: &mut Faults) -> Vec<Bone> {
+    fn to_bones(
+        &self,
+        at: &Pointer,
+        meshes: &CaseMeshes,
+        limits: &Limits,
+        faults: &mut Faults,
+    ) -> Vec<Bone> {
+        faults.check_length(at, self.bones.len(), limits.list_entries as usize);
         let names = self.bones.iter().map(|bone| bone.name.as_str());
         check_distinct(names, at, faults);
         let mut bones = Vec::new();
         for (index, bone) in self.bones.iter().enumerate() {
+            let place = at.index(index).key("name");
+            faults.check_name(&place, &bone.name, limits.name_characters as usize);
             if !meshes.surfaces.contains_key(&bone.mesh) {
                 let detail = format!("mesh `{}` is not a surface", bone.mesh);
                 faults.add(&at.index(index).key("mesh"), ErrorCode::UnknownMesh, detail);

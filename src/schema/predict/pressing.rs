@@ -32,7 +32,7 @@ pub struct ContactPairDocument {
     pub nodes: u64,
     pub area_mm2: f64,
     pub largest_pressure_kpa: f64,
-    /// The total normal force; absent in results of before.
+    /// The sum of what presses at nodes, each in its own direction, so above the resultant; absent in results of before.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub force_millinewton: Option<f64>,

@@ -213,7 +213,8 @@ impl Default for TolerancesDocument {
 #[serde(deny_unknown_fields)]
 pub struct StudyBudgetDocument {
     /// After this time no further row is begun, and the study ends as incomplete with the rows it has; their reference
-    /// solutions are still computed, for at most as long again and a minute.
+    /// solutions are still computed. The whole study may take twice this time and 60 s: if it takes longer, the job fails with
+    /// `budget-exceeded` and has no rows.
     #[serde(default = "default_wall_s")]
     #[schema(default = 3600.0, exclusive_minimum = 0.0)]
     pub wall_s: f64,

@@ -227,6 +227,14 @@ impl Database {
         Ok(Transaction::new(open, None))
     }
 
+    /// What is wrong with the pages of an embedded database, all of which are read. A server checks its own.
+    pub async fn faults(&self) -> Result<Vec<String>, StoreError> {
+        match &*self.reader {
+            Pool::Sqlite(pool) => Ok(sqlite::faults(pool).await?),
+            Pool::Postgres(_) => Ok(Vec::new()),
+        }
+    }
+
     /// The columns of a table.
     pub async fn columns(&self, table: &str) -> Result<Vec<Column>, StoreError> {
         Ok(schema::columns(&self.reader, table).await?)

@@ -81,6 +81,58 @@ pub async fn empty_log(file: &Path) -> Result<bool, sqlx::Error> {
     Ok(is_busy? == 0)
 }
 
+/// What is wrong with the pages of the file and with its indexes, at most so much of it.
+const CHECK: &str = "SELECT integrity_check FROM pragma_integrity_check(20)";
+/// The same of one table without its indexes' content, where the whole check is broken off.
+const CHECK_TABLE: &str = "SELECT quick_check FROM pragma_quick_check($1)";
+const TABLES: &str = "SELECT name FROM sqlite_schema WHERE type = 'table'";
+/// The file is damaged, or is none of SQLite.
+const DAMAGED: [u32; 2] = [11, 26];
+
+/// Reads every page of the file; returns what is wrong, with its pages, or its table where a check is broken off.
+pub async fn faults(pool: &SqlitePool) -> Result<Vec<String>, sqlx::Error> {
+    let broken_off = match told(sqlx::query_scalar(CHECK).fetch_all(pool).await)? {
+        Ok(faults) => return Ok(faults),
+        Err(message) => message,
+    };
+    let mut found = Vec::new();
+    let tables: Vec<String> = match told(sqlx::query_scalar(TABLES).fetch_all(pool).await)? {
+        Ok(tables) => tables,
+        Err(message) => return Ok(vec![message]),
+    };
+    for table in tables {
+        match told(sqlx::query_scalar(CHECK_TABLE).bind(&table).fetch_all(pool).await)? {
+            Ok(faults) => found.extend(faults),
+            Err(message) => found.push(format!("table {table}: {message}")),
+        }
+    }
+    if found.is_empty() {
+        found.push(broken_off);
+    }
+    Ok(found)
+}
+
+/// The lines that a check tells, or its message where the damage breaks it off.
+fn told(
+    lines: Result<Vec<String>, sqlx::Error>,
+) -> Result<Result<Vec<String>, String>, sqlx::Error> {
+    match lines {
+        Ok(texts) => {
+            let lines = texts.iter().flat_map(|text| text.lines()).map(str::trim);
+            let faults = lines.filter(|line| *line != "ok" && !line.starts_with("***"));
+            Ok(Ok(faults.map(str::to_owned).collect()))
+        }
+        Err(sqlx::Error::Database(error)) if error.code().is_some_and(|code| is_damaged(&code)) => {
+            Ok(Err(error.message().to_owned()))
+        }
+        Err(error) => Err(error),
+    }
+}
+
+fn is_damaged(code: &str) -> bool {
+    kind(code).is_some_and(|kind| DAMAGED.contains(&kind))
+}
+
 /// A transaction that takes the write lock at once: one that reads first and writes later fails
 /// with BUSY, without waiting, when another has written in between.
 pub async fn begin(pool: &SqlitePool) -> Result<sqlx::Transaction<'static, Sqlite>, sqlx::Error> {

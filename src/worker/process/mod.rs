@@ -2,6 +2,7 @@
 //! one attempt and nothing else. The worker keeps claim, lease and publication; the process gets documents and meshes
 //! from it, and has neither database nor credentials.
 
+mod answers;
 pub mod attempt;
 pub mod child;
 pub mod memory;

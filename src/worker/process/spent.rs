@@ -4,9 +4,11 @@ use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 
 use serde::Deserialize;
+use serde::de::IgnoredAny;
 use serde_json::{Value, json};
 
 use super::memory::{ROOM, Usage};
+use crate::jobs::TIME_OF_STUDY;
 use crate::schema::ErrorCode;
 use crate::schema::job::ErrorClass;
 use crate::schema::predict::budget::BudgetDocument;
@@ -72,12 +74,15 @@ fn over_memory(allowed_mb: f64, most_mb: f64, taken_mb: f64) -> Value {
     })
 }
 
-/// The error of a job whose time ran out and that did not notice.
-pub fn over_time(wall_s: f64) -> Value {
+/// The error of a job with this document whose time ran out and that did not notice.
+pub fn over_time(document: &str, wall_s: f64) -> Value {
+    let stated: Option<BTreeMap<String, IgnoredAny>> = serde_json::from_str(document).ok();
+    let is_study = stated.is_some_and(|stated| stated.contains_key(OF_ROWS));
+    let how = if is_study { TIME_OF_STUDY } else { "" };
     json!({
         "type": ErrorCode::BudgetExceeded,
         "class": ErrorClass::Budget,
-        "detail": format!("wall ran out: {wall_s} s are allowed by `budget`"),
+        "detail": format!("wall ran out: {wall_s} s are allowed by `budget`{how}"),
         "which": "wall",
         "allowed_s": wall_s,
     })
@@ -122,5 +127,8 @@ mod tests {
         );
         let study = r#"{"study":{"spec":{"budget":{"memory_mb":1}}}}"#;
         assert!(MemoryBound::of(study, Some(usage(100))).is_none());
+        let detail = |document| over_time(document, 61.0)["detail"].as_str().unwrap().to_owned();
+        assert_eq!(detail(meshing), "wall ran out: 61 s are allowed by `budget`");
+        assert!(detail(study).contains("twice the `wall_s` of the study"));
     }
 }

@@ -4,28 +4,23 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use bytes::Bytes;
 use serde_json::Value;
 use tokio::runtime::Handle;
 
+use super::answers::Answers;
 use super::child::{Death, Output, Process, Program};
 use super::memory::Usage;
-use super::protocol::{Answer, Assignment, Order, Outcome, Products, Question, Report, Settings};
+use super::protocol::{Assignment, Order, Outcome, Products, Question, Report, Settings};
 use super::restarts::Restarts;
 use super::spent::{MemoryBound, megabytes, out_of_memory, over_time};
 use crate::library::meshes::Library;
 use crate::metrics;
 use crate::schema::job::ErrorClass;
-use crate::store::{Claim, StoreError};
+use crate::store::Claim;
 use crate::worker::process::attempt::broke_off;
-
-use crate::worker::work::{Failure, Finished, FinishedFile, FinishedMesh, Work};
+use crate::worker::work::{Failure, Finished, FinishedFile, FinishedMesh, GRACE, LOOK, Work};
 use mechanics::progress::{Phase, Progress};
 
-/// How often the worker looks whether the job is still wanted, and what its process takes.
-const LOOK: Duration = Duration::from_millis(100);
-/// How long a process may go on that was cancelled, or whose budget of time is used up.
-const GRACE: Duration = Duration::from_secs(10);
 /// How long a process may take to begin.
 const START: Duration = Duration::from_secs(30);
 /// After so many jobs a process makes room for a fresh one.
@@ -51,6 +46,8 @@ struct Attempt<'a> {
     shared: &'a SlotSettings,
     /// Scoped to the tenant of the job.
     library: Library,
+    /// The input of the job.
+    document: &'a str,
     process: &'a Process,
     progress: &'a dyn Progress,
     /// When it was cancelled.
@@ -68,10 +65,8 @@ enum End {
     Died,
     /// It did not stop when it was told to.
     Deaf,
-    /// Its time was up, and it did not notice.
-    OverTime {
-        wall_s: f64,
-    },
+    /// Its time was up, and it did not notice, with the error that says so.
+    OverTime(Value),
     /// It took more memory than its budget, with the error that says so.
     OverMemory(Value),
 }
@@ -130,10 +125,10 @@ impl SlotWork {
                 self.killed("deaf");
                 Err(Failure::Cancelled)
             }
-            End::OverTime { wall_s } => {
+            End::OverTime(error) => {
                 tracing::warn!("a job did not notice the end of its time; its process is killed");
                 self.killed("over-time");
-                Err(Failure::Permanent(over_time(wall_s)))
+                Err(Failure::Permanent(error))
             }
             End::OverMemory(error) => {
                 tracing::warn!("a job took more memory than its budget; its process is killed");
@@ -213,6 +208,7 @@ impl Work for SlotWork {
         let mut attempt = Attempt {
             shared: &self.shared,
             library: self.shared.library.of_tenant(&claim.tenant),
+            document: &claim.document,
             process,
             progress,
             stopped: None,
@@ -222,7 +218,8 @@ impl Work for SlotWork {
         };
         let end = attempt.follow();
         let usage = attempt.usage;
-        let ended = self.judge(end, usage, folder);
+        let until = attempt.budget.map(|(until, _)| until);
+        let ended = self.judge(end, usage, folder).map(|made| Finished { until, ..made });
         if let Some(process) = &self.process {
             process.set_log_owner(None);
         }
@@ -288,7 +285,15 @@ impl Attempt<'_> {
             return Some(End::OverMemory(error));
         }
         let (until, wall_s) = self.budget?;
-        (now > until).then_some(End::OverTime { wall_s })
+        (now > until).then(|| End::OverTime(over_time(self.document, wall_s)))
+    }
+
+    fn answer(&self, question: Question) {
+        let (library, runtime) = (&self.library, &self.shared.runtime);
+        let over = self.budget.map(|(until, _)| until);
+        let is_over =
+            || self.progress.is_cancelled() || over.is_some_and(|until| Instant::now() > until);
+        Answers { library, runtime, process: self.process, is_over: &is_over }.answer(question);
     }
 
     /// Asks now and then what the process takes.
@@ -300,40 +305,6 @@ impl Attempt<'_> {
         let usage = self.process.usage()?;
         self.usage = Some(usage);
         bound.broken(usage)
-    }
-
-    fn answer(&self, question: Question) {
-        let (library, runtime) = (&self.library, &self.shared.runtime);
-        let answer = match question {
-            Question::Mesh(id) => runtime
-                .block_on(library.card(&id))
-                .map(|card| card.map_or(Answer::Unknown, Answer::Mesh)),
-            Question::Skin(job) => runtime
-                .block_on(library.skin_blob(&job))
-                .map(|blob| blob.map_or(Answer::Unknown, Answer::Skin)),
-            Question::Model(job) => runtime
-                .block_on(library.model_blob(&job))
-                .map(|blob| blob.map_or(Answer::Unknown, Answer::Skin)),
-            Question::Blob(blob) => return self.give_blob(runtime.block_on(library.bytes(&blob))),
-        };
-        self.tell(answer.unwrap_or_else(|error| Answer::Unreadable(error.to_string())));
-    }
-
-    fn give_blob(&self, bytes: Result<Bytes, StoreError>) {
-        match bytes {
-            Ok(bytes) => {
-                self.tell(Answer::Bytes);
-                self.process.give(Bytes::copy_from_slice(&(bytes.len() as u64).to_le_bytes()));
-                self.process.give(bytes);
-            }
-            Err(error) => self.tell(Answer::Unreadable(error.to_string())),
-        }
-    }
-
-    fn tell(&self, answer: Answer) {
-        if let Err(error) = self.process.tell(&Order::Answer(answer)) {
-            tracing::error!(%error, "an answer could not be written");
-        }
     }
 }
 
@@ -366,6 +337,7 @@ fn finished(outcome: Outcome, folder: &Path) -> Result<Finished, Failure> {
                 .map(|mesh| FinishedMesh { path: folder.join(&mesh.file), mesh })
                 .collect(),
             effort,
+            until: None,
         }),
         Outcome::Failed(error) => Err(Failure::Permanent(error)),
         Outcome::Cancelled => Err(Failure::Cancelled),

@@ -27,6 +27,7 @@ impl MeshSource for Block {
             warnings: Vec::new(),
             told: Vec::new(),
             sha256: "sha of block".to_owned(),
+            identity: "sha of block".to_owned(),
         })
     }
 

@@ -39,6 +39,7 @@ fn stored(shape: StoredShape, sha256: &str) -> StoredMesh {
         warnings: Vec::new(),
         told: Vec::new(),
         sha256: sha256.to_owned(),
+        identity: sha256.to_owned(),
     }
 }
 
@@ -433,6 +434,20 @@ fn a_job_tells_where_a_mesh_is_missing_or_of_the_wrong_kind() {
     assert_eq!(place(CASE, near), one("/plan/prescribed/0/nodes/surface", "unknown-mesh"));
     let elsewhere = r#"{"segments":[{"name":"jaw","translation_mm":[1,0,0]}]}"#;
     assert_eq!(place(CASE, elsewhere), one("/plan/segments/0/name", "unknown-segment"));
+}
+
+#[test]
+fn a_bone_has_a_name_as_a_segment_has() {
+    let out = tempfile::tempdir().unwrap();
+    for name in [String::new(), " ".into(), "base\\u0000".into(), "b".repeat(129)] {
+        let case = CASE.replace("\"base\"", &format!("\"{name}\""));
+        let Err(JobError::Refused(problem)) = predict(&case, TURN, "{}", out.path()) else {
+            panic!("{name:?} is taken for a name")
+        };
+        let errors: Vec<(&str, &str)> =
+            problem.errors.iter().map(|error| (error.code.name(), &*error.pointer)).collect();
+        assert_eq!(errors, [("bad-name", "/case/bones/0/name")], "{name:?}");
+    }
 }
 
 #[test]

@@ -253,6 +253,34 @@ async fn surfaces_become_a_case_by_cuts_or_as_segments() {
     assert!(made["node_sets"]["jaw"].as_u64() > Some(300) && made["node_sets"]["fixed"].is_null());
 }
 
+/// The same bytes, of which an upload says where their axes are, or the unit of a face.
+#[tokio::test]
+async fn the_same_surface_in_another_frame_is_another_job() {
+    let server = Server::start_with(&["--workers", "0"]);
+    let uploaded = async |stated: &str, ball: SampleBall| {
+        let request = server.post(&format!("/v1/meshes?allow_any_scale=true&{stated}"));
+        let request = request.header("content-type", "model/stl").body(ball_stl(ball));
+        ask(request).await.expect(StatusCode::CREATED)["id"].clone()
+    };
+    let mut meshings = Vec::new();
+    let mut comparisons = Vec::new();
+    for stated in ["frame=LPS", "frame=RAS", "units=um"] {
+        let [skin, bone] = [uploaded(stated, SKIN_BALL).await, uploaded(stated, BONE_BALL).await];
+        let mesh = json!({"kind": "mesh", "surfaces": {"skin": skin, "bone": bone}});
+        let compare =
+            json!({"kind": "compare", "prediction": {"mesh": skin}, "actual": {"mesh": bone}});
+        for (asked, jobs) in [(mesh, &mut meshings), (compare, &mut comparisons)] {
+            let answer = ask(server.post("/v1/jobs").json(&asked)).await;
+            jobs.push(answer.expect(StatusCode::CREATED)["id"].clone());
+            let again = ask(server.post("/v1/jobs").json(&asked)).await.json();
+            assert_eq!(jobs.last(), Some(&again["id"]), "{stated}");
+        }
+    }
+    for jobs in [meshings, comparisons] {
+        assert!(jobs[0] != jobs[1] && jobs[1] != jobs[2] && jobs[0] != jobs[2], "{jobs:?}");
+    }
+}
+
 #[tokio::test]
 async fn surfaces_that_bound_no_tissue_are_refused_with_their_place() {
     let server = Server::start();

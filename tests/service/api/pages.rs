@@ -79,6 +79,11 @@ async fn a_page_that_is_none_is_refused() {
             answer.problem(400, "invalid-parameter");
         }
     }
+    for twice in ["limit=2&limit=3", "limit=2&limit=2"] {
+        let told = hospital.get(&key, &format!("/v1/keys?{twice}")).await;
+        let problem = told.problem(400, "invalid-parameter");
+        assert_eq!(problem["detail"], "limit is given more than once", "{problem}");
+    }
     let path = format!("/v1/keys?cursor={other}");
     hospital.get(&key, &path).await.problem(400, "invalid-parameter");
 }

@@ -2,6 +2,7 @@
 //! what was counted.
 
 use reqwest::StatusCode;
+use sqlx::{Connection as _, SqliteConnection};
 
 use crate::helpers::{SMALL, Server, ask, spec};
 use crate::processes::until;
@@ -85,4 +86,25 @@ async fn what_was_counted_is_reported_on_a_listener_of_its_own() {
     let root = metrics.trim_end_matches("/metrics");
     let jobs = ask(server.client.get(format!("{root}/v1/jobs"))).await;
     assert_eq!(jobs.status, StatusCode::NOT_FOUND, "clients are answered elsewhere");
+}
+
+#[tokio::test]
+async fn a_queue_that_the_database_does_not_tell_is_left_out() {
+    let mut server = Server::start_with(&["--admin-bind", "127.0.0.1:0"]);
+    let metrics = server.second_line().strip_prefix("metrics on ").unwrap().to_owned();
+    let told = async || String::from_utf8(ask(server.client.get(&metrics)).await.bytes).unwrap();
+    let options =
+        sqlx::sqlite::SqliteConnectOptions::new().filename(server.path().join("facies.db"));
+    let mut other = SqliteConnection::connect_with(&options).await.unwrap();
+    for (sql, up) in [
+        ("SELECT 1", true),
+        ("ALTER TABLE jobs RENAME TO jobs_elsewhere", false),
+        ("ALTER TABLE jobs_elsewhere RENAME TO jobs", true),
+    ] {
+        sqlx::raw_sql(sql).execute(&mut other).await.unwrap();
+        let text = told().await;
+        assert!(text.contains(&format!("facies_database_up {}\n", u8::from(up))), "{sql}: {text}");
+        assert_eq!(text.contains("facies_queue_oldest_seconds 0\n"), up, "{sql}: {text}");
+        assert_eq!(text.contains("facies_queue"), up, "{sql}: {text}");
+    }
 }

@@ -29,6 +29,9 @@ fn a_wrong_setting_stops_the_start_with_one_line_and_78() {
         (["--heartbeat-s", "60"], "heartbeat-s"),
         (["--log-format", "xml"], "log-format"),
         (["--log-level", "=="], "log-level"),
+        (["--log-level", "warning"], "log-level"),
+        (["--log-level", ""], "log-level"),
+        (["--log-level", "facies=loud"], "log-level"),
         (["--api-key", "short"], "api-key"),
         (["--traces", "collector:4318"], "traces"),
     ] {
@@ -36,6 +39,36 @@ fn a_wrong_setting_stops_the_start_with_one_line_and_78() {
         assert_eq!(code, Some(78), "{line}");
         assert!(line.contains(named), "{line}");
     }
+}
+
+#[test]
+fn config_refuses_what_a_start_refuses_without_a_connection() {
+    let folder = TempDir::new().unwrap();
+    let file = folder.path().join("file");
+    std::fs::write(&file, "").unwrap();
+    let below = file.join("data");
+    let [file, below] = [&file, &below].map(|path| path.to_str().unwrap());
+    let config = |setting: &str, value: &str| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_facies"));
+        run(command.args(["config", setting, value]))
+    };
+    for (setting, value) in [
+        ("--log-level", "inof"),
+        ("--database", "postgres://a:secret@h:99999/d"),
+        ("--database", "postgres://a:secret@h/d?sslmode=foo"),
+        ("--data", file),
+        ("--data", below),
+        ("--blobs", file),
+        ("--blobs", below),
+    ] {
+        let output = config(setting, value);
+        let told = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(78), "{setting} {value}: {told}");
+        assert!(told.contains(&setting[2..]) && told.lines().count() == 1, "{told}");
+        assert!(!told.contains("secret") && output.stdout.is_empty(), "{told}");
+    }
+    let new = folder.path().join("new/data");
+    assert!(config("--data", new.to_str().unwrap()).status.success() && !new.exists());
 }
 
 #[test]

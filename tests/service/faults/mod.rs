@@ -3,3 +3,4 @@
 mod failed_commits;
 mod outages;
 mod storage;
+mod unmounted;

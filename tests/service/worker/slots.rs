@@ -50,7 +50,13 @@ impl Work for Scripted {
                     path,
                 };
                 let (files, meshes) = (vec![file], Vec::new());
-                Ok(Finished { result: "{}".into(), files, meshes, effort: Effort::default() })
+                Ok(Finished {
+                    result: "{}".into(),
+                    files,
+                    meshes,
+                    effort: Effort::default(),
+                    until: None,
+                })
             }
         }
     }

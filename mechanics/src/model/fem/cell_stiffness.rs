@@ -8,8 +8,8 @@
 //! replaced by its mean over the cell, eps -> dev eps + 1/3 (1/V sum_q V_q div u) 1, so that with
 //! C = C_dev + C_vol (`ElasticTensor::split_volume`)
 //! K_jk = sum_q V_q g_j.C_dev.g_k + V gbar_j.C_vol.gbar_k, gbar_j = (1/V) sum_q V_q g_j.
-//! Isotropic, C_dev has lambda = -2/3 mu, and C_vol is the bulk modulus K alone. One volume change a cell does
-//! not lock as nu goes to 1/2.
+//! Isotropic, C_dev has lambda = -2/3 mu, and C_vol is the bulk modulus K alone. One volume change a hexahedron
+//! does not lock as nu goes to 1/2; one a wedge does, two standing where a hexahedron has one.
 
 use crate::element::MAX_NODES;
 use crate::material::ElasticTensor;

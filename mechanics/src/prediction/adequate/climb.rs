@@ -7,7 +7,7 @@ use super::duration::{SECOND_ORDER_TAKES, newton_relative_time};
 use super::finite_strain::{self, NoAnswer};
 use super::objection::{CandidateAnswer, Objection};
 use super::rung::{
-    Considered, Errors, Rung, WORTHWHILE, cheapest, error_over_estimate,
+    Considered, Errors, Rung, WORTHWHILE, cheapest, collapses, error_over_estimate,
     error_over_estimate_at_rest,
 };
 use crate::mesh::Vector;
@@ -326,8 +326,7 @@ impl Climb<'_> {
         if rung.is_corrected() && !is_known {
             return Some("its error is not known".to_owned());
         }
-        if rung.is_corrected() && found.contact.is_some() {
-            let why = "the estimated discretisation error is not added where tissue is in contact";
+        if let Some(why) = self.why_not_corrected(found).filter(|_| rung.is_corrected()) {
             return Some(why.to_owned());
         }
         let objections = found.objections(rung.is_corrected(), self.accepted);
@@ -336,6 +335,22 @@ impl Climb<'_> {
         let why = (!told.is_empty()).then(|| told.join("; "));
         self.objections.insert(rung, objections);
         why
+    }
+
+    /// Why the estimate is not added to an answer.
+    fn why_not_corrected(&self, found: &CandidateAnswer) -> Option<&'static str> {
+        if found.contact.is_some() {
+            return Some(
+                "the estimated discretisation error is not added where tissue is in contact",
+            );
+        }
+        if self.scene.wedges_lock() {
+            return Some(
+                "the estimated discretisation error of wedges that lock is not added: it makes results worse",
+            );
+        }
+        let collapses = collapses(self.scene, found.equilibrium);
+        collapses.then_some("the estimated discretisation error is not added where cells collapse: nothing is gained by it")
     }
 
     fn pass_over(&mut self, solution: Rung, why: String) {

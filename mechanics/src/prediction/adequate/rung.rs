@@ -31,14 +31,17 @@ pub fn error_over_estimate(scene: &Scene) -> f64 {
     if acts || grows { LOADED } else { 1.0 }
 }
 
-/// The same of an answer at finite strain: estimates leave out the inner modes of cells that all but collapse, and were .4 to .8 of the
-/// error there.
+/// The same of an answer at finite strain: estimates leave out the inner modes of cells that all but collapse.
 pub(super) fn error_over_estimate_at_rest(scene: &Scene, answer: &Equilibrium) -> f64 {
+    error_over_estimate(scene) * if collapses(scene, answer) { LEFT_OUT } else { 1.0 }
+}
+
+/// Whether hexahedra or wedges all but collapse at finite strain.
+pub(super) fn collapses(scene: &Scene, answer: &Equilibrium) -> bool {
     let mut shapes = scene.mesh.cells.iter().map(|(shape, _)| shape);
     let has_modes = shapes.any(|shape| shape != CellShape::Tet4);
     let newton = answer.solver.newton.as_ref();
-    let collapses = has_modes && newton.is_some_and(|newton| newton.least_det_f < COLLAPSED);
-    error_over_estimate(scene) * if collapses { LEFT_OUT } else { 1.0 }
+    has_modes && newton.is_some_and(|newton| newton.least_det_f < COLLAPSED)
 }
 
 /// The first of rungs that is adequate, or else the first that is nearly as good as the best; each with its error as a share of the

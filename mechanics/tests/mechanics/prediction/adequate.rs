@@ -6,9 +6,9 @@ use mechanics::mesh::sample::hard_block;
 use mechanics::mesh::{CellShape, Vector};
 use mechanics::plan::RigidMovement;
 use mechanics::prediction::{
-    Accepted, Adequate, Case, CaseSegment, ContactKind, ElementChoice, FibreDirection, MeanErrors,
-    Method, Plan, Prediction, Rung, Scene, Settings, SkinMembrane, TimedProgress, predict,
-    predict_adequately,
+    Accepted, Adequate, Case, CaseSegment, Considered, ContactKind, ElementChoice, FibreDirection,
+    MeanErrors, Method, Plan, Prediction, Rung, Scene, Settings, SkinMembrane, TimedProgress,
+    predict, predict_adequately,
 };
 use mechanics::progress::{Progress, Unobserved};
 
@@ -83,6 +83,19 @@ fn an_answer_that_only_its_mesh_spoils_is_corrected() {
     let added =
         pairs.zip(&error.missing).map(|((before, after), missing)| before + missing - after);
     assert!(added.map(|left| left.norm()).fold(0.0, f64::max) < 1e-12);
+}
+
+#[test]
+fn an_answer_of_wedges_that_lock_is_not_corrected() {
+    let taken = |nu: f64| {
+        let case = slab(CellShape::Wedge6, nu);
+        let plan = plan_of(&case, &movements(0.1));
+        let found = adequate(&case, &plan, &Settings::default(), within(1e-3));
+        let is_corrected = |one: &&Considered| one.rung == Rung::Corrected;
+        found.considered.iter().find(is_corrected).unwrap().passed_over.clone()
+    };
+    assert_eq!(taken(0.45), None);
+    assert!(taken(0.49).is_some_and(|why| why.contains("wedges that lock")));
 }
 
 #[test]

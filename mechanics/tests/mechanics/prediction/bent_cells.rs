@@ -8,7 +8,8 @@ use mechanics::mesh::sample::block;
 use mechanics::mesh::{CellShape, Vector};
 use mechanics::plan::{PlannedSegment, RigidMovement};
 use mechanics::prediction::{
-    Case, CaseSegment, ElementChoice, Load, Method, Plan, RegionNames, Settings,
+    Case, CaseSegment, ElementChoice, Load, Method, Plan, RegionNames, Settings, Sliding,
+    SlidingNormal,
 };
 
 use super::growth::growing;
@@ -74,6 +75,32 @@ fn a_load_that_bends_a_beam_is_estimated_within_a_factor_of_two() {
         let plan = Plan { loads, ..Plan::default() };
         let name = format!("{shape:?} {cells:?}");
         asserted(&name, &question(case, plan, Method::FemLinear), [0.5, 2.0]);
+    }
+}
+
+/// Shear that the cells resist too much and changes of volume that they do not resist nearly cancel here.
+#[test]
+fn a_beam_of_hexahedra_between_walls_is_estimated_near_the_incompressible_limit_too() {
+    for (nu, least_left) in [(0.3, 0.4), (0.45, 0.8), (0.485, 1.3)] {
+        let mesh = block(Vector::new(80.0, 8.0, 20.0), [8, 1, 2], CellShape::Hex8);
+        let mut case = case_of(mesh, material(15.0, nu));
+        case.fixed = vec![set("x_min")];
+        case.sliding = ["y_min", "y_max"]
+            .map(|wall| Sliding {
+                nodes: set(wall),
+                normal: SlidingNormal::Direction(Vector::y()),
+                segment: None,
+            })
+            .to_vec();
+        let traction = Vector::new(0.0, 0.0, 0.05);
+        let plan = Plan {
+            loads: vec![Load::Traction { faces: set("x_max"), traction }],
+            ..Plan::default()
+        };
+        let found = question(case, plan, Method::FemLinear).effectivity();
+        println!("nu {nu}: {:.2} {:.2}, {:.2} left", found.mean, found.p95, found.left);
+        assert!((0.7..=2.2).contains(&found.mean), "nu {nu}: {:.2}", found.mean);
+        assert!(found.left < least_left, "nu {nu}: {:.2}", found.left);
     }
 }
 

@@ -315,7 +315,7 @@ fn an_inverted_tetrahedron_is_reported_and_not_solved() {
 }
 
 #[test]
-fn plain_tetrahedra_warn_of_locking_above_nu_0_45_and_no_other_element_does() {
+fn plain_elements_and_wedges_warn_of_locking_above_nu_0_45_and_no_other_element_does() {
     let warned = |shape: CellShape, nu: f64, element: ElementChoice| {
         let mut case = jaw_and_skull(shape);
         case.materials.insert("*".to_owned(), material(15.0, nu));
@@ -333,6 +333,8 @@ fn plain_tetrahedra_warn_of_locking_above_nu_0_45_and_no_other_element_does() {
         assert!(!warned(CellShape::Hex8, 0.499, element));
     }
     assert!(!warned(CellShape::Tet4, 0.499, ElementChoice::Quadratic));
+    assert!(warned(CellShape::Wedge6, 0.46, ElementChoice::MeanDilatation));
+    assert!(!warned(CellShape::Wedge6, 0.45, ElementChoice::MeanDilatation));
 }
 
 #[test]

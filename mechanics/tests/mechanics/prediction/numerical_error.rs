@@ -31,7 +31,7 @@ pub(super) struct Question {
 pub(super) struct Effectivity {
     pub mean: f64,
     pub p95: f64,
-    left: f64,
+    pub left: f64,
 }
 
 fn mean_and_p95(vectors: &[Vector]) -> [f64; 2] {

@@ -3,7 +3,9 @@
 //! With mean dilatation the volume change of the edge functions is taken as its mean over the cell too, as that of the corners
 //! is (`cell_stiffness`), and the stress of it is that of `mean_stress`.
 //!
-//! What the cell by itself does better, its inner modes, comes first: edges see the stress that these leave.
+//! What the cell by itself does better, its inner modes, comes first: edges see the stress that these leave. Edges of hexahedra resist the
+//! moments of volume as modes do: without them bending of nearly incompressible cells would be estimated with the wrong sign. Those of
+//! wedges do not: nine of them stand against moments that four modes leave in half of a hexahedron, and would do next to nothing.
 //!
 //! Gradients stand on the reference cell, where they are the same for all cells of a shape; a field and a stress are brought
 //! there and back by one matrix at each point.
@@ -47,6 +49,11 @@ impl Point {
     fn of_edges(&self, coefficients: &[Vector]) -> Matrix3<f64> {
         gradient_of(coefficients, &self.edges.gradients) * self.to_cell.transpose()
     }
+
+    /// The stress of moments of volume at it, times its volume.
+    fn linear(&self, of_moments: &[Matrix3<f64>; 3]) -> Matrix3<f64> {
+        of_moments.iter().zip(self.moments).map(|(moment, y)| moment * y).sum()
+    }
 }
 
 /// A cell with functions on its edges.
@@ -54,7 +61,7 @@ pub(super) struct EnrichedCell {
     shape: CellShape,
     /// Of the points.
     tensor: ElasticTensor,
-    /// With mean dilatation, of the change of volume: its mean, and for inner modes its moments, which leave edges out.
+    /// With mean dilatation, of the change of volume: its mean and its moments.
     of_volume: Option<ElasticTensor>,
     points: Vec<Point>,
     /// In mm³.
@@ -107,14 +114,9 @@ impl EnrichedCell {
     /// The equations of the inner modes at a field of the corners and its moments. Modes have no mean.
     fn mode_equations(&self, field: &[Matrix3<f64>], moments: &[Matrix3<f64>; 3]) -> ModeEquations {
         let mut equations = ModeEquations::new(self.shape);
-        let of_moments: Option<[Matrix3<f64>; 3]> =
-            self.of_volume.as_ref().map(|tensor| moments.map(|moment| tensor.stress(&moment)));
+        let of_moments = self.stress_of_moments(moments);
         for (point, own) in self.points.iter().zip(field) {
-            let mut stress = self.tensor.stress(own) * point.volume;
-            if let Some(of_moments) = &of_moments {
-                let pairs = of_moments.iter().zip(point.moments);
-                stress += pairs.map(|(moment, y)| moment * y).sum::<Matrix3<f64>>();
-            }
+            let stress = self.tensor.stress(own) * point.volume + point.linear(&of_moments);
             for mode in equations.modes() {
                 equations.add_force(mode, &-(stress * point.modes[mode]));
             }
@@ -168,8 +170,14 @@ impl EnrichedCell {
         let of_mean = self.of_volume.as_ref().map_or(Matrix3::zeros(), |tensor| {
             mean_stress.unwrap_or_else(|| tensor.stress(&self.mean(&field)))
         });
+        let moments = match self.edges_resist_moments() {
+            true => self.moments(&field),
+            false => [Matrix3::zeros(); 3],
+        };
+        let of_moments = self.stress_of_moments(&moments);
         for (point, own) in self.points.iter().zip(&field) {
-            let stress = (self.tensor.stress(own) + of_mean) * point.to_cell * point.volume;
+            let even = (self.tensor.stress(own) + of_mean) * point.volume;
+            let stress = (even + point.linear(&of_moments)) * point.to_cell;
             let pairs = equations[..self.edge_count()].iter_mut().zip(&point.edges.gradients);
             pairs.for_each(|(equation, gradient)| equation.residual -= stress * gradient);
         }
@@ -206,7 +214,28 @@ impl EnrichedCell {
             self.points.iter().map(of_point).sum::<Vector>()
         };
         let of_mean = mean(edge) * (mean(other) / self.volume).transpose();
-        block + tensor.block(&of_mean) * share_of_mean
+        let block = block + tensor.block(&of_mean) * share_of_mean;
+        if !self.edges_resist_moments() {
+            return block;
+        }
+        let moment = |edge: usize, k: usize| {
+            let of_point = |point: &Point| of_edge(point, edge) * point.moments[k];
+            self.points.iter().map(of_point).sum::<Vector>()
+        };
+        let of_moments: Matrix3<f64> =
+            (0..3).map(|k| moment(edge, k) * moment(other, k).transpose()).sum();
+        block + tensor.block(&of_moments)
+    }
+
+    /// Whether the moments of volume count for edges.
+    fn edges_resist_moments(&self) -> bool {
+        self.shape == CellShape::Hex8 && self.of_volume.is_some()
+    }
+
+    /// What the moments of a field of gradients make, in kPa; zero without mean dilatation.
+    fn stress_of_moments(&self, moments: &[Matrix3<f64>; 3]) -> [Matrix3<f64>; 3] {
+        let of_volume = self.of_volume.as_ref();
+        of_volume.map_or([Matrix3::zeros(); 3], |own| moments.map(|moment| own.stress(&moment)))
     }
 
     /// The forces on the corners of coefficients of the edges, and of the modes and moments that displaced corners ask for.
@@ -216,16 +245,17 @@ impl EnrichedCell {
         let (mut of_mean, mut of_moments) = (Matrix3::zeros(), [Matrix3::zeros(); 3]);
         if let Some(tensor) = &self.of_volume {
             of_mean = tensor.stress(&self.mean(&field));
-            let moments = self
-                .field(|point| point.of_corners(displacement) + gradient_of(modes, &point.modes));
-            of_moments = self.moments(&moments).map(|moment| tensor.stress(&moment));
+            let edges = if self.edges_resist_moments() { edges.as_slice() } else { &[] };
+            let moved = self.field(|point| {
+                let inner = point.of_corners(displacement) + gradient_of(modes, &point.modes);
+                inner + point.of_edges(edges)
+            });
+            of_moments = self.stress_of_moments(&self.moments(&moved));
         }
         let mut forces = [Vector::zeros(); MAX_NODES];
         for (point, own) in self.points.iter().zip(&field) {
-            let pairs = of_moments.iter().zip(point.moments);
-            let linear: Matrix3<f64> = pairs.map(|(moment, y)| moment * y).sum();
-            let stress = (self.tensor.stress(own) + of_mean) * point.volume + linear;
-            let stress = stress * point.to_cell;
+            let even = (self.tensor.stress(own) + of_mean) * point.volume;
+            let stress = (even + point.linear(&of_moments)) * point.to_cell;
             let pairs = forces.iter_mut().zip(&point.corners.gradients);
             pairs.for_each(|(force, gradient)| *force += stress * gradient);
         }

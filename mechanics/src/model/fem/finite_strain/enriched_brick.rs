@@ -162,7 +162,14 @@ impl EnrichedBrick<'_> {
         let OfEdges { equations, modes } = of_edges;
         let (mut means, mut shears) = ([Vector::zeros(); MAX_EDGES], [0.0; MAX_EDGES]);
         let more = self.smooth.map_or(0.0, |smooth| smooth - self.brick.pressure());
+        let resists = self.edges_resist_moments(&inner);
+        let changes = match resists {
+            true => inner.changes(self.moments(&inner), modes),
+            false => [0.0; 3],
+        };
+        let mut of_moments = [[Vector::zeros(); 3]; MAX_EDGES];
         for (place, (at_rest, point, _)) in self.points().enumerate() {
+            let linear = inner.linear(changes, place);
             let (gradients, stress) = (&inner.edges[place], point.stress());
             let rows = rows(point, &gradient_of(modes, &inner.gradients[place]));
             for (edge, equation) in equations[..self.edge_count()].iter_mut().enumerate() {
@@ -172,6 +179,10 @@ impl EnrichedBrick<'_> {
                 equation.stiffness += point.block(&own, &own) * volume;
                 let of_volume = own.of_volume() * volume;
                 equation.residual -= of_volume * more;
+                let of_log_volume = own.of_log_volume(point.volume());
+                equation.residual -= of_log_volume * linear;
+                let y = inner.weights[place];
+                (0..3).for_each(|k| of_moments[edge][k] += of_log_volume * y[k]);
                 means[edge] += of_volume;
                 shears[edge] += self.mu * volume * g.norm_squared();
             }
@@ -181,7 +192,11 @@ impl EnrichedBrick<'_> {
             CellShape::Hex8 | CellShape::Tet4 => self.brick.of_mean(),
         };
         for (edge, equation) in equations[..self.edge_count()].iter_mut().enumerate() {
-            let block = equation.stiffness + means[edge] * means[edge].transpose() * of_mean;
+            let mut block = equation.stiffness + means[edge] * means[edge].transpose() * of_mean;
+            if resists {
+                let moments = of_moments[edge].iter().map(|own| own * own.transpose());
+                block += moments.sum::<Matrix3<f64>>() * inner.bulk;
+            }
             equation.stiffness = stiff_enough(block, shears[edge]);
         }
     }
@@ -191,7 +206,15 @@ impl EnrichedBrick<'_> {
         let mut forces = [Vector::zeros(); MAX_NODES];
         let (mut means, mut change) = ([Vector::zeros(); MAX_NODES], 0.0);
         let inner = self.inner();
-        let changes = inner.changes(self.moments(&inner), &of.modes);
+        let mut moments = self.moments(&inner);
+        if self.edges_resist_moments(&inner) {
+            for (place, (_, point, _)) in self.points().enumerate() {
+                let rows = rows(point, &gradient_of(&of.edges, &inner.edges[place]));
+                let change: f64 = (0..3).map(|k| rows[k].of_log_volume(point.volume())[k]).sum();
+                (0..3).for_each(|k| moments[k] += change * inner.weights[place][k]);
+            }
+        }
+        let changes = inner.changes(moments, &of.modes);
         for (place, (at_rest, point, _)) in self.points().enumerate() {
             let volume = at_rest.volume;
             let along = gradient_of(&of.edges, &inner.edges[place])
@@ -200,8 +223,7 @@ impl EnrichedBrick<'_> {
             for (k, row) in rows.iter().enumerate() {
                 change += row.of_volume()[k] * volume;
             }
-            let y = &inner.weights[place];
-            let linear: f64 = changes.iter().zip(y).map(|(change, y)| change * y).sum();
+            let linear = inner.linear(changes, place);
             for (a, g) in at_rest.gradients.iter().enumerate() {
                 let corner = point.corner(g);
                 let of_log_volume = corner.of_log_volume(point.volume());
@@ -212,6 +234,11 @@ impl EnrichedBrick<'_> {
         let pressure = self.brick.of_mean() * change;
         forces.iter_mut().zip(&means).for_each(|(force, mean)| *force += mean * pressure);
         forces
+    }
+
+    /// Whether the moments of ln J count for edges, as in `discretisation_error::points`.
+    fn edges_resist_moments(&self, inner: &Inner) -> bool {
+        self.shape == CellShape::Hex8 && !inner.is_collapsed
     }
 
     fn edge_count(&self) -> usize {
@@ -243,6 +270,11 @@ impl Inner {
             let pairs = modes.iter().zip(&self.of_volume);
             self.bulk * (moments[k] + pairs.map(|(a, v)| a.dot(&v[k])).sum::<f64>())
         })
+    }
+
+    /// That pressure at a point, times its volume.
+    fn linear(&self, changes: [f64; 3], place: usize) -> f64 {
+        changes.iter().zip(&self.weights[place]).map(|(change, y)| change * y).sum()
     }
 }
 
