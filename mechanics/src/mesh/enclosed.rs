@@ -15,29 +15,31 @@ impl TriangleSurface {
     /// Volume and centre by the divergence theorem; `None` where nothing is enclosed.
     pub fn enclosed(&self) -> Option<Enclosed> {
         let origin = *self.points.first()?;
-        let (mut volume_mm3, mut moment) = (0.0, Vector::zeros());
+        let (mut six_volumes, mut moment) = (0.0, Vector::zeros());
         for triangle in 0..self.triangles.len() {
-            let (corners, own) = self.tetrahedron_on(triangle);
-            volume_mm3 += own;
-            moment += corners.iter().sum::<Vector>() * (own / 4.0);
+            let (corners, six_volume) = self.tetrahedron_on(triangle);
+            six_volumes += six_volume;
+            moment += corners.iter().sum::<Vector>() * (six_volume / 4.0);
         }
-        let enclosed = || Enclosed { volume_mm3, centre: origin + moment / volume_mm3 };
-        (volume_mm3 > 0.0).then(enclosed)
+        let enclosed =
+            || Enclosed { volume_mm3: six_volumes / 6.0, centre: origin + moment / six_volumes };
+        (six_volumes > 0.0).then(enclosed)
     }
 
     /// The volume enclosed in mm³, negative where the triangles face inwards.
     pub fn signed_volume(&self) -> f64 {
-        (0..self.triangles.len()).map(|triangle| self.tetrahedron_on(triangle).1).sum()
+        let six_volumes = (0..self.triangles.len()).map(|triangle| self.tetrahedron_on(triangle).1);
+        six_volumes.sum::<f64>() / 6.0
     }
 
-    /// The corners of a triangle, from the first point of the surface so that a far origin costs no digits, and the volume in mm³
-    /// of the tetrahedron between them, negative where that point lies in front.
+    /// The corners of a triangle, from the first point of the surface so that a far origin costs no digits, and six times the volume
+    /// in mm³ of the tetrahedron between them, negative where that point lies in front.
     pub fn tetrahedron_on(&self, triangle: usize) -> ([Vector; 3], f64) {
         let origin = self.points.first().copied().unwrap_or_default();
         let corners = self.corners(triangle).map(|corner| corner - origin);
         let [a, b, c] = &corners;
-        let volume = a.dot(&b.cross(c)) / 6.0;
-        (corners, volume)
+        let six_volume = a.dot(&b.cross(c));
+        (corners, six_volume)
     }
 }
 

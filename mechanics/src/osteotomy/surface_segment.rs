@@ -86,7 +86,7 @@ impl Shells {
                 *number = volumes.len();
                 volumes.push(0.0);
             }
-            volumes[*number] += surface.tetrahedron_on(triangle).1;
+            volumes[*number] += surface.tetrahedron_on(triangle).1 / 6.0;
             of.push(*number);
         }
         Shells { of, volumes }

@@ -82,7 +82,7 @@ pub async fn empty_log(file: &Path) -> Result<bool, sqlx::Error> {
 }
 
 /// What is wrong with the pages of the file and with its indexes, at most so much of it.
-const CHECK: &str = "SELECT integrity_check FROM pragma_integrity_check(20)";
+const CHECK: &str = "PRAGMA integrity_check(20)";
 /// The same of one table without its indexes' content, where the whole check is broken off.
 const CHECK_TABLE: &str = "SELECT quick_check FROM pragma_quick_check($1)";
 const TABLES: &str = "SELECT name FROM sqlite_schema WHERE type = 'table'";

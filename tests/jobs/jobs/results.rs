@@ -440,7 +440,7 @@ fn a_job_tells_where_a_mesh_is_missing_or_of_the_wrong_kind() {
 fn a_bone_has_a_name_as_a_segment_has() {
     let out = tempfile::tempdir().unwrap();
     for name in [String::new(), " ".into(), "base\\u0000".into(), "b".repeat(129)] {
-        let case = CASE.replace("\"base\"", &format!("\"{name}\""));
+        let case = CASE.replacen("\"base\"", &format!("\"{name}\""), 1);
         let Err(JobError::Refused(problem)) = predict(&case, TURN, "{}", out.path()) else {
             panic!("{name:?} is taken for a name")
         };
