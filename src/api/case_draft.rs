@@ -123,8 +123,10 @@ impl Draft {
                     row.id
                 }
                 UploadedMesh::New(upload) => {
-                    let identity = |own: &Upload| (own.row.sha256.clone(), own.row.options.clone());
-                    let same = |other: &&Upload| identity(other) == identity(&upload);
+                    let same = |other: &&Upload| {
+                        let (one, other) = (&upload.row, &other.row);
+                        one.sha256 == other.sha256 && one.options == other.options
+                    };
                     match uploads.iter().find(same) {
                         Some(other) => other.row.id.clone(),
                         None => {

@@ -44,11 +44,12 @@ impl Scene {
         if self.settings.method.properties().unknowns != Unknowns::Elements {
             return None;
         }
+        let has_many_wedges = self.has_many_wedges();
         let locks = |shape, material: usize| {
             let is_quadratic =
                 shape == CellShape::Tet4 && self.tetrahedron() == Tetrahedron::Quadratic;
             let shares = self.shares_volume(&self.materials[material]);
-            let is_one_of_many = shape == CellShape::Wedge6 && self.has_many_wedges();
+            let is_one_of_many = shape == CellShape::Wedge6 && has_many_wedges;
             !is_quadratic && (self.is_pointwise(shape) || !shares || is_one_of_many)
         };
         let detail = format!(
