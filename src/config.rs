@@ -1,6 +1,7 @@
 //! Every setting of the service, read once at the start from flags, `FACIES_*` variables and a file.
 
 pub mod file;
+mod listeners;
 mod log_filter;
 mod secret;
 mod settings;
@@ -65,6 +66,7 @@ impl Config {
     /// Takes each setting from `given` (its value by its name) or from its default, and checks it.
     pub fn new(given: impl Fn(&str) -> Option<String>) -> Result<Config, ConfigError> {
         let config = Config::without_listener(given)?;
+        config.check_listeners()?;
         if !config.listen.ip().is_loopback() && !config.requires_keys {
             return Err(ConfigError::OpenWithoutKey(config.listen));
         }
@@ -109,6 +111,16 @@ impl Config {
             traces: storage_locations::collector((read.text)("traces"))?,
         };
         config.checked()
+    }
+
+    /// Refuses two listeners of one process on the same port.
+    pub fn check_listeners(&self) -> Result<(), ConfigError> {
+        match self.admin_listen {
+            Some(admin) if listeners::overlap(self.listen, admin) => {
+                Err(ConfigError::SameListeners(admin))
+            }
+            _ => Ok(()),
+        }
     }
 
     fn checked(self) -> Result<Config, ConfigError> {

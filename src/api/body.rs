@@ -143,6 +143,7 @@ async fn whole(service: &Service, request: Request, most: usize) -> ApiResult<Sp
     while let Some(frame) = frames.next().await {
         spool.push(&frame?).await?;
     }
+    service.require_key().await?;
     spool.finish().await
 }
 
@@ -188,6 +189,7 @@ pub async fn parts(service: &Service, request: Request) -> ApiResult<Vec<(String
     if let Some(error) = reason.lock().unwrap_or_else(PoisonError::into_inner).take() {
         found = Err(error);
     }
+    service.require_key().await?;
     found
 }
 
@@ -335,4 +337,36 @@ fn too_slow(count: usize) -> ApiError {
         format!("the body came too slowly: {count} bytes so far"),
     )
     .header(header::CONNECTION, HeaderValue::from_static("close"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::api::key_lookup::KeyLookup;
+
+    #[tokio::test]
+    async fn a_body_that_arrives_after_its_key_was_revoked_is_not_taken() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut service = Service::example(folder.path(), &[]).await;
+        let request = || {
+            let request = Request::builder().header(header::CONTENT_TYPE, "application/json");
+            request.body(Body::from("{}")).unwrap()
+        };
+        let form = || {
+            let kind = "multipart/form-data; boundary=b";
+            let part =
+                "--b\r\nContent-Disposition: form-data; name=\"case\"\r\n\r\n{}\r\n--b--\r\n";
+            let request = Request::builder().header(header::CONTENT_TYPE, kind);
+            request.body(Body::from(part)).unwrap()
+        };
+        assert!(json(&service, request()).await.is_ok());
+        assert!(parts(&service, form()).await.is_ok());
+        // No such key is in force.
+        let before = Instant::now() - Duration::from_secs(1);
+        service.key_lookup = KeyLookup::of("000000000000".into(), before);
+        let refused = [json(&service, request()).await.err(), parts(&service, form()).await.err()];
+        for refused in refused {
+            assert_eq!(refused.unwrap().problem.code, ErrorCode::Unauthorized);
+        }
+    }
 }

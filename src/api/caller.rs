@@ -4,16 +4,18 @@
 use std::collections::BTreeSet;
 use std::net::SocketAddr;
 use std::sync::Arc;
+use std::time::Instant;
 
 use axum::extract::{ConnectInfo, FromRequestParts, Request};
 use axum::http::request::Parts;
-use axum::http::{Extensions, HeaderMap, HeaderValue, header};
+use axum::http::{Extensions, HeaderMap, header};
 
 use super::Service;
 use super::access::Access;
 use super::client::Client;
 use super::error::{ApiError, ApiResult};
 use super::foreseen::{self, ResponseLookup};
+use super::key_lookup::{KeyLookup, not_in_force, unauthorized};
 use crate::schema::ErrorCode;
 use crate::schema::key::{Key, Scope, scopes_of};
 use crate::schema::wire::canonical::sha256_hex;
@@ -27,6 +29,7 @@ pub struct Caller {
     /// The id of the key, `setting` for the key in the settings, `-` if none is required and none was sent.
     pub key: Arc<str>,
     scopes: BTreeSet<Scope>,
+    pub lookup: KeyLookup,
 }
 
 const NO_KEY: &str = "-";
@@ -35,7 +38,12 @@ const KEY_OF_SETTINGS: &str = "setting";
 impl Caller {
     /// A caller that needs no key, or has that of the settings.
     fn of_default_tenant(key: &str) -> Caller {
-        Caller { tenant: DEFAULT_TENANT.into(), key: key.into(), scopes: Scope::ALL.into() }
+        Caller {
+            tenant: DEFAULT_TENANT.into(),
+            key: key.into(),
+            scopes: Scope::ALL.into(),
+            lookup: KeyLookup::of_no_row(),
+        }
     }
 
     pub fn require(&self, scope: Scope) -> ApiResult<()> {
@@ -70,7 +78,7 @@ impl FromRequestParts<Service> for Service {
         let caller = Caller::from_request_parts(parts, service).await?;
         let intent = parts.extensions.get::<AuditIntent>().cloned();
         let client = caller.client(&parts.extensions);
-        Ok(service.scoped_to(&caller.tenant, client, intent))
+        Ok(service.scoped_to(&caller.tenant, client, caller.lookup, intent))
     }
 }
 
@@ -120,29 +128,25 @@ async fn known(service: &Service, given: &str, case: Option<String>) -> ApiResul
     if service.config.api_key.as_ref().is_some_and(|key| key.matches(given)) {
         return Ok(Identified::of_default_tenant(KEY_OF_SETTINGS));
     }
-    let refused = || unauthorized("this key is not known, or it was revoked or has expired");
-    let key = Key::parse(given).ok_or_else(refused)?;
+    let at = Instant::now();
+    let key = Key::parse(given).ok_or_else(not_in_force)?;
     let (row, foreseen) = match case {
         Some(case) => {
             let found = service.store.key_and_responses(&key.id, &case).await?;
-            let (row, responses) = found.ok_or_else(refused)?;
+            let (row, responses) = found.ok_or_else(not_in_force)?;
             (row, Some(ResponseLookup::now(responses)))
         }
-        None => (service.store.key_in_force(&key.id).await?.ok_or_else(refused)?, None),
+        None => (service.store.key_in_force(&key.id).await?.ok_or_else(not_in_force)?, None),
     };
     // How long comparing takes tells about the hash of what was sent, from which no key follows.
     if row.hash != sha256_hex(key.text.as_bytes()) {
-        return Err(refused());
+        return Err(not_in_force());
     }
     let scopes = scopes_of(&row.scopes).map_err(ApiError::internal)?;
-    let caller = Caller { tenant: row.tenant.into(), key: row.id.into(), scopes };
+    let key: Arc<str> = row.id.into();
+    let lookup = KeyLookup::of(key.clone(), at);
+    let caller = Caller { tenant: row.tenant.into(), key, scopes, lookup };
     Ok(Identified { caller, foreseen })
-}
-
-/// The refusal of an unknown caller.
-pub fn unauthorized(detail: &str) -> ApiError {
-    let error = ApiError::new(ErrorCode::Unauthorized, detail);
-    error.header(header::WWW_AUTHENTICATE, HeaderValue::from_static("Bearer"))
 }
 
 /// The key in a request.

@@ -15,6 +15,7 @@ use utoipa_axum::routes;
 
 use super::client::Client;
 use super::error::{ApiError, ApiResult};
+use super::key_lookup::KeyLookup;
 use super::middleware::check_accept;
 use super::parameters::{Id, no_such_job};
 use super::resources::Resources;
@@ -22,7 +23,7 @@ use super::streams::StreamPlace;
 use super::{Service, time};
 use crate::schema::job::{JobEvent, JobStatus};
 use crate::schema::key::Scope;
-use crate::store::{Changes, EventRow, Store, StoreError};
+use crate::store::{Changes, EventRow, Store};
 
 const MEDIA_TYPE: &str = "text/event-stream";
 const LAST_ID: &str = "last-event-id";
@@ -41,7 +42,7 @@ pub fn router() -> Resources {
 
 /// The events of a job, from the first or from the one after `Last-Event-ID`, to the end of the job. `event` is
 /// `state` when a job is accepted or an attempt begins, `progress` for its progress, and `end`; `id` counts from 1
-/// without gaps; `data` is a `JobEvent`. If the job is removed meanwhile, the `end` says so (`removed`). The last thousand events of a job are kept. A broken stream is resumed
+/// without gaps; `data` is a `JobEvent`. If the job is removed meanwhile, the `end` says so (`removed`). A stream also ends, without it, when its key is revoked or expires. The last thousand events of a job are kept. A broken stream is resumed
 /// with the last id that was read; if there are no more events, the response is 204: do not reconnect.
 #[utoipa::path(
     get, path = "/v1/jobs/{id}/events", operation_id = "follow_job", tag = "jobs",
@@ -76,6 +77,7 @@ async fn follow(
         place: service.streams.enter(client)?,
         changes: service.store.job_changes(),
         stopping: service.streams.stopping(),
+        key: service.key_lookup,
         store: service.store,
         job,
         after,
@@ -104,6 +106,7 @@ struct EventStream {
     place: StreamPlace,
     changes: Changes,
     stopping: watch::Receiver<bool>,
+    key: KeyLookup,
     store: Store,
     job: String,
     /// The number of the last event sent.
@@ -127,7 +130,8 @@ impl EventStream {
                 }
                 told.wait().await;
                 if let Err(error) = told.look().await {
-                    // The client comes back and misses nothing.
+                    // The client comes back and misses nothing, unless its key is not in force any more.
+                    let error = error.problem.detail;
                     tracing::warn!(job.id = %told.job, %error, "a stream of events broke off");
                     told.ended = true;
                 }
@@ -144,9 +148,11 @@ impl EventStream {
         }
     }
 
-    async fn look(&mut self) -> Result<(), StoreError> {
+    /// Takes the new events, if the key of the client is still in force.
+    async fn look(&mut self) -> ApiResult<()> {
         self.changes.mark_seen();
         self.looked = Instant::now();
+        self.key.require(&self.store).await?;
         match self.store.job_events(&self.job, self.after).await? {
             Some(events) => self.take(&events),
             None => self.end_removed().await?,
@@ -155,7 +161,7 @@ impl EventStream {
     }
 
     /// The end of a job that was removed, with the events that this stream did not read.
-    async fn end_removed(&mut self) -> Result<(), StoreError> {
+    async fn end_removed(&mut self) -> ApiResult<()> {
         self.ended = true;
         let Some(at) = self.store.erased(&self.job).await? else { return Ok(()) };
         let before = self.last.as_ref();

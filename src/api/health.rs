@@ -40,10 +40,14 @@ async fn healthz() -> Response {
 #[utoipa::path(get, path = "/readyz", tag = "health", responses((status = 200, description = "ready", body = Health)))]
 async fn readyz(service: Service) -> ApiResult {
     let mut failing: Vec<String> = Vec::new();
+    let mut remedy = String::new();
     let (database, storage) =
         tokio::join!(in_time(service.store.ping()), in_time(service.store.try_write()));
     if let Err(error) = database {
         tracing::warn!(%error, "the database does not answer");
+        if matches!(error, StoreError::DatabaseFile(_)) {
+            remedy = format!("; {error}");
+        }
         failing.push("database".into());
     }
     if let Err(error) = storage {
@@ -58,7 +62,7 @@ async fn readyz(service: Service) -> ApiResult {
     if failing.is_empty() {
         return Ok(json(StatusCode::OK, &Health { status: "ok".into() }));
     }
-    let detail = format!("failing: {}", failing.join(", "));
+    let detail = format!("failing: {}{remedy}", failing.join(", "));
     Err(ApiError::from(Problem::new(ErrorCode::NotReady, detail).with("checks", failing)))
 }
 

@@ -43,16 +43,16 @@ pub struct KeyedRequest {
 }
 
 impl KeyedRequest {
-    /// `content` is that of the request, independent of its encoding.
+    /// `route` is the pattern of its address; `content` is all else that determines what it makes, independent of its encoding.
     pub fn at(
         service: &Service,
         headers: &HeaderMap,
-        address: &str,
+        route: &str,
         content: &[&[u8]],
     ) -> ApiResult<KeyedRequest> {
         let id = uuid::Uuid::now_v7().to_string();
         let Some(key) = key(headers)? else { return Ok(KeyedRequest { id, key: None }) };
-        let key = sha256_hex(format!("{}\n{address}\n{key}", service.store.tenant()).as_bytes());
+        let key = sha256_hex(format!("{}\n{route}\n{key}", service.store.tenant()).as_bytes());
         let hashes: Vec<String> = content.iter().map(|part| sha256_hex(part)).collect();
         let fingerprint = sha256_hex(hashes.concat().as_bytes());
         Ok(KeyedRequest { id, key: Some((key, fingerprint)) })
@@ -95,7 +95,12 @@ impl KeyedRequest {
 }
 
 fn key(headers: &HeaderMap) -> ApiResult<Option<&str>> {
-    let Some(value) = headers.get(HEADER) else { return Ok(None) };
+    let mut values = headers.get_all(HEADER).iter();
+    let Some(value) = values.next() else { return Ok(None) };
+    if values.next().is_some() {
+        let detail = "the header Idempotency-Key is given more than once";
+        return Err(ApiError::invalid_parameter("Idempotency-Key", detail));
+    }
     let text = value.to_str().ok().filter(|text| (1..=LONGEST).contains(&text.len()));
     let detail = format!("an Idempotency-Key has 1 to {LONGEST} visible characters");
     let wrong =

@@ -233,10 +233,7 @@ async fn show(service: Service, Id(id): Id, headers: HeaderMap) -> ApiResult {
     )
 )]
 async fn change(service: Service, Id(id): Id, request: Request) -> ApiResult {
-    if request.headers().contains_key(header::IF_MATCH) {
-        let job = service.store.job(&id).await?.ok_or_else(no_such_job)?;
-        conditional::allow_match(request.headers(), &state_tag(&job)?)?;
-    }
+    allow_match(&service, &id, request.headers()).await?;
     let bytes = body::json(&service, request).await?;
     let change: JobChangeDocument = strict::parse(&bytes, &service.limits)?;
     let mut faults = Faults::default();
@@ -246,6 +243,15 @@ async fn change(service: Service, Id(id): Id, request: Request) -> ApiResult {
     let job = service.store.job(&id).await?.ok_or_else(no_such_job)?;
     let answer = answer(StatusCode::OK, &job, false, None)?;
     conditional::document(&HeaderMap::new(), answer).await
+}
+
+/// Refuses a change of another state of a job than the present one, if the request names one.
+async fn allow_match(service: &Service, id: &str, headers: &HeaderMap) -> ApiResult<()> {
+    if !headers.contains_key(header::IF_MATCH) {
+        return Ok(());
+    }
+    let job = service.store.job(id).await?.ok_or_else(no_such_job)?;
+    conditional::allow_match(headers, &state_tag(&job)?)
 }
 
 /// The hash of the state of a job, as in a GET.
@@ -299,13 +305,19 @@ async fn list(service: Service, Parameters(parameters): Parameters<ListParameter
 
 /// Dismisses a job that has not ended; removes one that has, with its results.
 #[utoipa::path(
-    delete, path = "/v1/jobs/{id}", operation_id = "dismiss_job", tag = "jobs", params(("id" = uuid::Uuid, Path, description = "the job")),
+    delete, path = "/v1/jobs/{id}", operation_id = "dismiss_job", tag = "jobs",
+    params(
+        ("id" = uuid::Uuid, Path, description = "the job"),
+        ("If-Match" = Option<String>, Header, description = "the state to dismiss or remove, or *"),
+    ),
     responses(
         (status = 200, description = "dismissed", body = StatusInfo),
         (status = 204, description = "it had ended, and is removed"),
+        (status = 412, description = "it is in another state"),
     )
 )]
-async fn dismiss(service: Service, Id(id): Id) -> ApiResult<Response> {
+async fn dismiss(service: Service, Id(id): Id, headers: HeaderMap) -> ApiResult<Response> {
+    allow_match(&service, &id, &headers).await?;
     let what = service.store.dismiss(&id).await?;
     tracing::info!(job.id = %id, ?what, "job dismissed");
     match what {

@@ -150,15 +150,36 @@ pub async fn take_in(
 ) -> ApiResult<UploadedMesh> {
     let hash = body.sha256_hex();
     let known = service.store.mesh_by_content(&hash, &statement.identity()).await?;
-    if let Some(row) = known {
-        return Ok(UploadedMesh::Known(row));
+    if let Some(row) = &known
+        && service.store.has_blob(&row.blob).await?
+    {
+        return Ok(UploadedMesh::Known(row.clone()));
     }
     let statement = statement.clone();
     let read = permit.compute(move || -> ApiResult<Upload> {
         let bytes = body.read()?;
         Ok(read_upload(&bytes, hash, &statement, standalone)?)
     });
-    Ok(UploadedMesh::New(Box::new(read.await??)))
+    let upload = Box::new(read.await??);
+    match known {
+        Some(row) => restored(service, row, *upload).await,
+        None => Ok(UploadedMesh::New(upload)),
+    }
+}
+
+/// A known mesh whose stored bytes are lost or damaged, with those of an upload of the same file in their place.
+async fn restored(service: &Service, row: MeshRow, upload: Upload) -> ApiResult<UploadedMesh> {
+    let row = match service.store.restore_mesh(&row.id, &upload.row).await? {
+        Some(row) => row,
+        // It was deleted meanwhile.
+        None => return Ok(UploadedMesh::New(Box::new(upload))),
+    };
+    service.library.keep(&row.blob, upload.mesh.shape);
+    tracing::warn!(
+        mesh.id = %row.id, blob = %row.blob,
+        "the stored bytes of a mesh were lost or damaged, and are stored again from an upload"
+    );
+    Ok(UploadedMesh::Known(row))
 }
 
 /// The row of an upload, and whether it is new. Where others delete the same bytes meanwhile it is tried again.
@@ -310,14 +331,20 @@ async fn content(
 
 /// Deletes a mesh that no case and no job refers to.
 #[utoipa::path(
-    delete, path = "/v1/meshes/{id}", operation_id = "remove_mesh", tag = "meshes", params(("id" = uuid::Uuid, Path, description = "the mesh")),
+    delete, path = "/v1/meshes/{id}", operation_id = "remove_mesh", tag = "meshes",
+    params(
+        ("id" = uuid::Uuid, Path, description = "the mesh"),
+        ("If-Match" = Option<String>, Header, description = "the ETag of the mesh, or *"),
+    ),
     responses(
         (status = 204, description = "deleted"),
         (status = 409, description = "a case, a job or a cohort refers to it: `users` of the problem has the first ten"),
+        (status = 412, description = "its ETag is another"),
     )
 )]
-async fn remove(service: Service, Id(id): Id) -> ApiResult {
+async fn remove(service: Service, Id(id): Id, headers: HeaderMap) -> ApiResult {
     let row = row_of(&service, &id).await?;
+    conditional::allow_match(&headers, &row.sha256)?;
     match service.store.delete_mesh(&id).await? {
         MeshDeletion::Deleted => {
             service.library.forget(&row.blob);

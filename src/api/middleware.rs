@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use axum::extract::{MatchedPath, Request, State};
-use axum::http::{HeaderMap, HeaderValue, Method, header};
+use axum::http::{HeaderMap, HeaderValue, Method, StatusCode, header};
 use axum::middleware::Next;
 use axum::response::{IntoResponse, Response};
 use tracing::Instrument;
@@ -16,6 +16,7 @@ use super::caller::{self, Caller, Identified};
 use super::error::{ApiError, ApiResult, with_problem_body};
 use super::headers::guarded;
 use super::hosts::check_named_once;
+use super::prefer::requested_wait;
 use super::rate::RateAllowance;
 use super::{Service, body};
 use crate::metrics::http;
@@ -160,7 +161,7 @@ struct IncomingRequest {
 }
 
 impl Entry {
-    /// Forwards a request that its key allows. Changes and forbidden requests are audited.
+    /// Forwards a request that its key allows, also when it is answered. Changes and forbidden requests are audited.
     async fn pass(
         self,
         service: &Service,
@@ -169,6 +170,7 @@ impl Entry {
         id: &str,
     ) -> Response {
         let IncomingRequest { mut request, coming } = entering;
+        let waits = requested_wait(request.headers(), u32::MAX).is_some();
         let allowed = self.caller.require(self.scope);
         let is_noted = allowed.is_err() || self.audit == Audit::Noted;
         let audited = is_noted.then(|| audited_action_of(&self.caller, &request, id)).flatten();
@@ -187,10 +189,31 @@ impl Entry {
             }
             (Ok(()), None) => next.run(request).await,
         };
+        if let Err(error) = self.require_key(service, waits, response.status()).await {
+            response = error.into_response();
+        }
         if let Some(left) = self.left {
             left.tell(&mut response);
         }
         response
+    }
+
+    /// Refuses the answer to a request whose key was revoked or has expired while it waited or was worked on. A change of
+    /// keys is answered though it ends its own: a rotation shows the new key once.
+    async fn require_key(
+        &self,
+        service: &Service,
+        waits: bool,
+        status: StatusCode,
+    ) -> ApiResult<()> {
+        let changes_keys = self.scope == Scope::Admin && self.audit == Audit::Noted;
+        if changes_keys || status.is_server_error() {
+            return Ok(());
+        }
+        match waits {
+            true => self.caller.lookup.require(&service.store).await,
+            false => self.caller.lookup.require_if_old(&service.store).await,
+        }
     }
 }
 

@@ -19,6 +19,9 @@ use crate::schema::wire::fault::{Faults, Pointer};
 use crate::schema::wire::strict;
 use crate::store::{Change, PlanRow};
 
+/// The route of new plans.
+const PLANS: &str = "/v1/cases/{id}/plans";
+
 pub fn router() -> Resources {
     Resources::new()
         .reads(Scope::Read, routes!(list))
@@ -96,8 +99,8 @@ async fn read(service: &Service, request: Request) -> ApiResult<String> {
 async fn create(service: Service, Id(case): Id, request: Request) -> ApiResult {
     let headers = request.headers().clone();
     let document = read(&service, request).await?;
-    let address = format!("/v1/cases/{case}/plans");
-    let asked = KeyedRequest::at(&service, &headers, &address, &[document.as_bytes()])?;
+    let content = [case.as_bytes(), document.as_bytes()];
+    let asked = KeyedRequest::at(&service, &headers, PLANS, &content)?;
     let NewId { id, is_known, .. } = asked.reserve(&service).await?;
     let is_there = is_known && service.store.plan(&case, &id).await?.is_some();
     if !is_there && !service.store.add_plan(&case, &id, &document).await? {

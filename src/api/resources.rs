@@ -1,14 +1,21 @@
 //! Routes of the service, each with its scope and audit class.
 
+use std::sync::Arc;
+
 use axum::http::Method;
-use axum::middleware::from_fn;
+use axum::middleware::{from_fn, from_fn_with_state};
 use utoipa::openapi::PathItem;
+use utoipa::openapi::path::Operation;
 use utoipa_axum::router::{OpenApiRouter, UtoipaMethodRouter};
 
 use super::Service;
 use super::access::{Access, Declared};
+use super::known_parameters::{KnownParameters, refuse_unknown};
 use super::middleware;
 use crate::schema::key::Scope;
+
+/// Where the addresses of the interface begin; others are pages and probes.
+const INTERFACE: &str = "/v1";
 
 /// Routes with their descriptions and access requirements.
 pub struct Resources {
@@ -45,12 +52,20 @@ impl Resources {
     }
 
     fn with(mut self, access: Access, routes: UtoipaMethodRouter<Service>) -> Resources {
-        for (path, item) in &routes.1.paths {
-            for method in methods(item) {
+        let (schemas, paths, mut handlers) = routes;
+        for (path, item) in &paths.paths {
+            let mut known = KnownParameters::default();
+            for (method, operation) in operations(item) {
+                known.add(method.clone(), operation);
                 self.declared.add(path, method, access);
             }
+            if path.starts_with(INTERFACE) {
+                handlers =
+                    handlers.route_layer(from_fn_with_state(Arc::new(known), refuse_unknown));
+            }
         }
-        Resources { router: self.router.routes(routes), declared: self.declared }
+        let router = self.router.routes((schemas, paths, handlers));
+        Resources { router, declared: self.declared }
     }
 
     /// The same routes, which produce JSON only.
@@ -65,8 +80,8 @@ impl Resources {
     }
 }
 
-/// The methods of the operations of a path.
-fn methods(item: &PathItem) -> impl Iterator<Item = Method> {
+/// The operations of a path.
+fn operations(item: &PathItem) -> impl Iterator<Item = (Method, &Operation)> {
     let operations = [
         (Method::GET, &item.get),
         (Method::PUT, &item.put),
@@ -77,5 +92,5 @@ fn methods(item: &PathItem) -> impl Iterator<Item = Method> {
         (Method::PATCH, &item.patch),
         (Method::TRACE, &item.trace),
     ];
-    operations.into_iter().filter(|(_, operation)| operation.is_some()).map(|(method, _)| method)
+    operations.into_iter().filter_map(|(method, operation)| Some((method, operation.as_ref()?)))
 }

@@ -4,6 +4,7 @@ use super::budget::{Budget, ByteLimits, ByteReservation, Owner};
 use super::client::Client;
 use super::error::{ApiError, ApiResult};
 use super::hosts::Hosts;
+use super::key_lookup::KeyLookup;
 use super::permits::{FairSemaphore, Permit};
 use super::spool::Ground;
 use crate::config::Config;
@@ -40,6 +41,8 @@ pub struct Service {
     budget: Budget,
     /// The client, for limits on each client.
     client: Client,
+    /// Of the key of the request.
+    pub(super) key_lookup: KeyLookup,
     /// Of a request that may change something.
     intent: Option<AuditIntent>,
     pub(super) rates: Arc<super::rate::Rates>,
@@ -89,6 +92,7 @@ impl Service {
                 of_client: limits.client_bodies_bytes,
             }),
             client: Client::named(""),
+            key_lookup: KeyLookup::of_no_row(),
             intent: None,
             rates: Arc::new(super::rate::Rates::new(limits.requests_per_minute)),
             config: Arc::new(config),
@@ -109,6 +113,7 @@ impl Service {
         &self,
         tenant: &str,
         client: Client,
+        key_lookup: KeyLookup,
         intent: Option<AuditIntent>,
     ) -> Service {
         Service {
@@ -117,6 +122,7 @@ impl Service {
             responses: self.responses.of_tenant(tenant),
             client,
             intent,
+            key_lookup,
             ..self.clone()
         }
     }
@@ -148,6 +154,11 @@ impl Service {
             Some(intent) => intent.left().await,
             None => std::future::pending().await,
         }
+    }
+
+    /// Refuses a request whose key was revoked or has expired while its body arrived.
+    pub(super) async fn require_key(&self) -> ApiResult<()> {
+        self.key_lookup.require_if_old(&self.store).await
     }
 
     /// The bytes of a request, none so far.

@@ -7,7 +7,9 @@ use crate::store;
 /// Prints every setting with its source, or says what is wrong with one.
 pub fn run(arguments: &Arguments) -> Result<(), ConfigError> {
     let given = arguments.given()?;
-    let places = Config::without_listener(|name| given.get(name))?.places;
+    let config = Config::without_listener(|name| given.get(name))?;
+    config.check_listeners()?;
+    let places = config.places;
     places.check_folders()?;
     places.check_address(store::address_fault)?;
     for setting in SETTINGS {

@@ -13,7 +13,6 @@ use crate::schema::Problem;
 use crate::schema::job::ErrorClass;
 use crate::schema::study::report::OutcomeName;
 use crate::schema::wire::numbers::with_short_numbers;
-use crate::store::StoreError;
 use crate::worker::process::SlotError;
 
 /// The job ran and failed.
@@ -69,13 +68,18 @@ impl CommandError {
             CommandError::Demo(error) if error.is_failed_job() => FAILED,
             CommandError::Demo(error) if error.is_setting() => CONFIGURATION,
             CommandError::Demo(error) if error.is_refused() => REFUSED,
+            CommandError::Serve(ServeError::Store(error))
+            | CommandError::Admin(AdminError::Store(error))
+                if error.is_damaged() =>
+            {
+                FAILED
+            }
             CommandError::Serve(error) if error.is_setting() => CONFIGURATION,
             CommandError::Health(error) if error.is_setting() => CONFIGURATION,
             CommandError::Admin(error) if error.is_setting() => CONFIGURATION,
             CommandError::Admin(error) if error.is_refused() => REFUSED,
             CommandError::Admin(
                 AdminError::Findings { .. }
-                | AdminError::Store(StoreError::Damaged { .. })
                 | AdminError::Audit { .. }
                 | AdminError::ClockDoubted(_),
             ) => FAILED,

@@ -169,7 +169,7 @@ pub async fn open(config: &Config) -> Result<Store, ServeError> {
     traces::start(config.traces.as_deref())?;
     let store = Store::connect(&config.places).await?.with_key_limit(config.most_keys);
     match store.check_writable().await {
-        Err(error) if error.is_setting() => return Err(error.into()),
+        Err(error) if error.is_setting() || error.is_damaged() => return Err(error.into()),
         // What is stored is served all the same.
         Err(error) => {
             tracing::warn!(%error, "the database takes no row: /readyz answers 503 until it does");

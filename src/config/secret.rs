@@ -43,6 +43,10 @@ pub enum ConfigError {
     Heartbeat { heartbeat: f64, lease: f64 },
     #[error("database has to begin with postgres:// or postgresql://")]
     Database,
+    #[error(
+        "database has an `@` behind a `/`, `?` or `#`: in a user or password these are written %2F, %3F and %23, an `@` behind them %40"
+    )]
+    DatabasePassword,
     #[error("database is `{address}`, which is no address of a PostgreSQL: {reason}")]
     DatabaseAddress { address: String, reason: String },
     #[error("{name} is `{}`: {} is no folder", folder.display(), at.display())]
@@ -58,4 +62,6 @@ pub enum ConfigError {
         "bind is {0}, which others can reach: set an api-key, or ask-for-keys to true, or bind to 127.0.0.1"
     )]
     OpenWithoutKey(SocketAddr),
+    #[error("bind and admin-bind are both {0}: each needs a port of its own")]
+    SameListeners(SocketAddr),
 }

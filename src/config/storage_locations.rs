@@ -83,6 +83,9 @@ pub(super) fn database(address: String, connections: u32) -> Result<DatabaseLoca
     if !["postgres://", "postgresql://"].iter().any(|scheme| address.starts_with(scheme)) {
         return Err(ConfigError::Database);
     }
+    if has_late_at(&address) {
+        return Err(ConfigError::DatabasePassword);
+    }
     Ok(DatabaseLocation::Server { address: Secret::new(address), connections })
 }
 
@@ -139,9 +142,25 @@ fn aws_variables() -> Vec<(String, Secret)> {
     variables.collect()
 }
 
-/// An address of a database as it may be shown: without its password.
+/// Whether the last `@` of an address comes after what ends user and password, as where these hold a `/`, `?` or `#` as it is: the rest
+/// of the password would be taken for the name of the database.
+fn has_late_at(address: &str) -> bool {
+    let rest = address.split_once("://").map_or(address, |(_, rest)| rest);
+    rest.rsplit_once('@').is_some_and(|(before, _)| before.contains(['/', '?', '#']))
+}
+
+/// An address of a database as it may be shown: without its password. One whose password cannot be told from the rest is hidden.
 pub(super) fn without_password(address: &str) -> String {
     let Some((scheme, rest)) = address.split_once("://") else { return "…".to_owned() };
+    let host = rest.split(['/', '?', '#']).next().unwrap_or_default();
+    // A password without a host behind it is in the place of a port.
+    let port =
+        host.rsplit_once(':').filter(|(name, _)| !name.contains('@') && !host.ends_with(']'));
+    let is_port = |port: &str| port.bytes().all(|byte| byte.is_ascii_digit());
+    if has_late_at(address) || (!host.contains('@') && port.is_some_and(|(_, port)| !is_port(port)))
+    {
+        return format!("{scheme}://…");
+    }
     let end = rest.find(['/', '?']).unwrap_or(rest.len());
     let (authority, path) = rest.split_at(end);
     let authority = match authority.rsplit_once('@') {
@@ -192,6 +211,14 @@ mod tests {
             ("postgres://a:b@c@h/d?sslmode=require", "postgres://a:…@h/d?sslmode=require"),
             ("postgres://a@h/d?password=x&host=y", "postgres://a@h/d?password=…&host=y"),
             ("postgres://h/d", "postgres://h/d"),
+            ("postgres://[::1]:5432/d", "postgres://[::1]:5432/d"),
+            ("postgres://a:b/c@h/d", "postgres://…"),
+            ("postgres://a:b?c@h/d", "postgres://…"),
+            ("postgres://a:b#c@h/d", "postgres://…"),
+            ("postgres://a:1/c@h/d", "postgres://…"),
+            ("postgres://h/d?password=x@y", "postgres://…"),
+            ("postgres://a:b/d", "postgres://…"),
+            ("postgress://a:b@h/d", "postgress://a:…@h/d"),
             ("postgres:x", "…"),
         ] {
             assert_eq!(without_password(address), shown);

@@ -119,9 +119,6 @@ impl JobError {
     pub fn to_document(&self) -> JobErrorDocument {
         let detail = match self {
             JobError::Write { .. } => "a result file could not be written".to_owned(),
-            JobError::Source(SourceError::Unreadable { .. }) => {
-                "a stored mesh could not be read".to_owned()
-            }
             other => with_short_numbers(&other.to_string()),
         };
         let kind = self.kind().name().to_owned();

@@ -73,9 +73,10 @@ pub enum SourceError {
     Unknown { id: String },
     #[error("mesh {id:?} is refused: {detail}")]
     Refused { id: String, code: ErrorCode, detail: String },
-    #[error("mesh {id:?} could not be read: {detail}")]
+    #[error("the mesh or result {id:?} could not be read: {detail}")]
     Unreadable {
         id: String,
+        /// Why, without names of systems.
         detail: String,
         /// Whether it is only temporarily unreachable, so that the same may succeed later.
         may_pass: bool,

@@ -200,10 +200,23 @@ fn found<T>(id: &str, mesh: Result<Option<T>, StoreError>) -> Result<T, SourceEr
     match mesh {
         Ok(Some(mesh)) => Ok(mesh),
         Ok(None) | Err(StoreError::Erased) => Err(SourceError::Unknown { id: id.to_owned() }),
-        Err(error) => Err(SourceError::Unreadable {
-            id: id.to_owned(),
-            detail: error.to_string(),
-            may_pass: error.is_unavailable(),
-        }),
+        Err(error) => {
+            tracing::warn!(input = %id, %error, "a stored mesh or result could not be read");
+            Err(SourceError::Unreadable {
+                id: id.to_owned(),
+                detail: why_unreadable(&error).to_owned(),
+                may_pass: error.is_unavailable(),
+            })
+        }
+    }
+}
+
+/// Why a stored mesh or result could not be read, as clients are told it.
+pub fn why_unreadable(error: &StoreError) -> &'static str {
+    match error {
+        StoreError::Missing { .. } => "its stored bytes are missing",
+        StoreError::Integrity { .. } => "its stored bytes are damaged: they differ from their hash",
+        error if error.is_unavailable() => "the database or the store of blobs does not answer",
+        _ => "the log has the reason",
     }
 }

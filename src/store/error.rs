@@ -1,9 +1,14 @@
 //! Reasons why rows or bytes could not be read or written.
 
+use super::database::{FileFault, fault_of};
+
 #[derive(Debug, thiserror::Error)]
 pub enum StoreError {
     #[error("database: {0}")]
-    Database(#[from] sqlx::Error),
+    Database(sqlx::Error),
+    /// The embedded database is not used any more.
+    #[error("{0}")]
+    DatabaseFile(FileFault),
     #[error(
         "the database {file} cannot be opened or brought up to date: {source}. A full disk, a folder that cannot be written \
          and a limit on the size of files below 1 MB (ulimit -f) end so"
@@ -96,10 +101,26 @@ pub enum StoreError {
     NoRandomness,
 }
 
+impl From<sqlx::Error> for StoreError {
+    fn from(error: sqlx::Error) -> Self {
+        match fault_of(&error) {
+            Some(fault) => StoreError::DatabaseFile(fault.clone()),
+            None => StoreError::Database(error),
+        }
+    }
+}
+
 impl StoreError {
     /// The same error, with the file of the embedded database that it arose from.
     pub(super) fn of_file(self, file: &std::path::Path) -> StoreError {
+        let place = file.display().to_string();
         match self {
+            StoreError::Database(source) if super::database::is_damaged(&source) => {
+                StoreError::Damaged { place, found: vec![source.to_string()] }
+            }
+            StoreError::DatabaseFile(FileFault::Damaged(told)) => {
+                StoreError::Damaged { place, found: vec![told] }
+            }
             StoreError::Database(source) => {
                 StoreError::CannotOpen { file: file.to_owned(), source }
             }
@@ -137,12 +158,23 @@ impl StoreError {
             }
             // A server that does not answer, a disk that errs, no descriptor left.
             StoreError::Blobs(object_store::Error::Generic { .. }) => !self.is_full(),
-            StoreError::Contended
+            StoreError::DatabaseFile(_)
+            | StoreError::Contended
             | StoreError::Busy { .. }
             | StoreError::NoBucket
             | StoreError::NoFolder { .. }
             | StoreError::NoAnswer { .. } => true,
             StoreError::OfMany(error) => error.is_unavailable(),
+            _ => false,
+        }
+    }
+
+    /// True when the file of an embedded database is damaged.
+    pub fn is_damaged(&self) -> bool {
+        match self {
+            StoreError::Damaged { .. } | StoreError::DatabaseFile(FileFault::Damaged(_)) => true,
+            StoreError::Database(error) => super::database::is_damaged(error),
+            StoreError::OfMany(error) => error.is_damaged(),
             _ => false,
         }
     }

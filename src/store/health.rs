@@ -7,18 +7,28 @@ use super::database::{is_read_only, query};
 use super::spare::free_bytes;
 use super::{Store, StoreError};
 
-const CLOCK: &str = "SELECT now_ms FROM clock";
 /// A row that is gone again when it is committed, in a table that nothing refers to.
 const WRITE: &str = "INSERT INTO unfinished_blobs (id, place, begun) VALUES ($1, '', 0)";
 const TAKE_BACK: &str = "DELETE FROM unfinished_blobs WHERE id = $1";
+/// The newest rows of what requests use: where the newest pages of a database are damaged or lost, its other ones may well answer.
+const NEWEST: &str = "SELECT (SELECT updated FROM cases ORDER BY id DESC LIMIT 1), \
+     (SELECT updated FROM plans ORDER BY id DESC LIMIT 1), (SELECT created FROM jobs ORDER BY id DESC LIMIT 1), \
+     (SELECT created FROM meshes ORDER BY id DESC LIMIT 1), (SELECT created FROM keys ORDER BY id DESC LIMIT 1), \
+     (SELECT at FROM deeds ORDER BY id DESC LIMIT 1)";
 
 /// More frequent requests get the last result.
 const WRITTEN_EVERY: Duration = Duration::from_secs(1);
 
 impl Store {
+    /// Whether the newest rows can be read.
+    pub(super) async fn check_readable(&self) -> Result<(), StoreError> {
+        query(NEWEST).execute(self.database.reader()).await?;
+        Ok(())
+    }
+
     /// Whether the database answers and takes a row. A commit that failed may leave a database that answers and does not.
     pub async fn ping(&self) -> Result<(), StoreError> {
-        query(CLOCK).execute(self.database.reader()).await?;
+        self.check_readable().await?;
         let mut last = self.last_written.lock().await;
         if last.is_some_and(|last| last.elapsed() < WRITTEN_EVERY) {
             return Ok(());

@@ -94,7 +94,7 @@ macro_rules! users {
 const USERS: &str = users!("kind, id", " ORDER BY kind, id LIMIT $2");
 const COUNT_USERS: &str = users!("COUNT(*)", "");
 
-fn mesh_row(row: &Row) -> Result<MeshRow, sqlx::Error> {
+pub(super) fn mesh_row(row: &Row) -> Result<MeshRow, sqlx::Error> {
     Ok(MeshRow {
         id: row.try_get("id")?,
         sha256: row.try_get("sha256")?,

@@ -45,6 +45,7 @@ mod queue;
 mod references;
 mod referred;
 mod responses;
+mod restored;
 mod retention;
 mod seen_clock;
 mod spare;

@@ -17,8 +17,9 @@ const COUNT: &str = "SELECT (SELECT COUNT(*) FROM jobs WHERE status = 'accepted'
        AS oldest_ms";
 
 impl Store {
-    /// Counts the jobs that have not ended.
+    /// Counts the jobs that have not ended, of a database that can be read.
     pub async fn queue(&self) -> Result<QueueRow, StoreError> {
+        self.check_readable().await?;
         let row = query(COUNT).fetch_one(self.database.reader()).await?;
         Ok(QueueRow {
             waiting: row.try_get("waiting")?,

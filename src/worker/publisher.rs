@@ -90,7 +90,7 @@ fn wait(
             until = Some(until.map_or(now + GRACE, |until| until.min(now + GRACE)));
         }
         if until.is_some_and(|until| now > until) {
-            return Err(Failure::Storage("the store did not take the result in time".to_owned()));
+            return Err(Failure::of_results("the store did not take the result in time"));
         }
     }
 }
@@ -103,7 +103,7 @@ mod tests {
     fn a_publication_is_waited_for_until_its_time_is_up() {
         let (told, outcome) = channel();
         let past = Some(Instant::now());
-        assert!(matches!(wait(&outcome, past, &|| false), Err(Failure::Storage(_))));
+        assert!(matches!(wait(&outcome, past, &|| false), Err(Failure::Storage { .. })));
         told.send(Ok(true)).unwrap();
         assert!(matches!(wait(&outcome, past, &|| true), Ok(true)));
         drop(told);

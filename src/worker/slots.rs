@@ -189,14 +189,9 @@ impl Shared {
                 tracing::info!(%error, "job failed");
                 ("failed", self.runtime.block_on(self.store.fail(lease, &error.to_string())))
             }
-            Err(Failure::Storage(reason)) => {
+            Err(Failure::Storage { mut error, reason }) => {
                 tracing::error!(%reason, "the storage failed an attempt");
-                let error = json!({
-                    "type": ErrorCode::Storage,
-                    "class": "infrastructure",
-                    "detail": "the results could not be stored",
-                    "attempts": self.attempts,
-                });
+                error["attempts"] = self.attempts.into();
                 ("lost", self.lose(lease, &error.to_string()))
             }
             Err(Failure::Lost(how)) => {

@@ -5,6 +5,8 @@ use std::time::{Duration, Instant};
 
 use super::fail_point::Injected;
 use super::process::protocol::{Effort, MeshFile};
+use crate::schema::ErrorCode;
+use crate::schema::job::ErrorClass;
 use crate::store::{Claim, StoreError};
 use mechanics::progress::Progress;
 
@@ -44,27 +46,39 @@ pub enum Failure {
     Cancelled,
     /// The job's own fault, never tried again: JSON with `type` and `detail`.
     Permanent(serde_json::Value),
-    /// The storage's fault: tried again.
-    Storage(String),
+    /// The storage's fault: tried again. JSON with `type` and `detail`, and the reason for the log.
+    Storage { error: serde_json::Value, reason: String },
     /// Its process died; the reason. Tried again.
     Lost(String),
 }
 
+impl Failure {
+    /// The storage did not take the results, for a reason that is for the log only.
+    pub fn of_results(reason: impl std::fmt::Display) -> Failure {
+        let error = serde_json::json!({
+            "type": ErrorCode::Storage,
+            "class": ErrorClass::Infrastructure,
+            "detail": "the results could not be stored",
+        });
+        Failure::Storage { error, reason: reason.to_string() }
+    }
+}
+
 impl From<StoreError> for Failure {
     fn from(error: StoreError) -> Self {
-        Failure::Storage(error.to_string())
+        Failure::of_results(error)
     }
 }
 
 impl From<Injected> for Failure {
     fn from(_: Injected) -> Self {
-        Failure::Storage("a fail point erred".to_owned())
+        Failure::of_results("a fail point erred")
     }
 }
 
 impl From<std::io::Error> for Failure {
     fn from(error: std::io::Error) -> Self {
-        Failure::Storage(error.to_string())
+        Failure::of_results(error)
     }
 }
 

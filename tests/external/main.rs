@@ -37,6 +37,7 @@ fn main() -> ExitCode {
         store::places::trials(),
         store::queue::trials(),
         store::races::trials(),
+        store::read_only::trials(),
         store::remembered::trials(),
         store::schema_steps::trials(),
         store::storage::trials(),

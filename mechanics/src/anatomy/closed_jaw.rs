@@ -72,7 +72,7 @@ pub fn close(
     let labelled = label_given(&found, &rules.osteotomy, segment_of)?;
     let teeth =
         bone.teeth.as_ref().map(|_| Teeth::new(&found, &labelled.labels, ENAMEL_HU, MUCOSA_MM));
-    let (as_given, wall_voxels) = (bone.as_given, bone.wall_voxels);
+    let (given, wall_voxels) = (bone.given, bone.wall_voxels);
     let mut surfaces = bone.surfaces;
     let way = |point: &Vector| (movement.apply(point) - point).norm();
     let farthest = surfaces[segment].points.iter().map(way).fold(0.0, f64::max);
@@ -80,7 +80,7 @@ pub fn close(
     let overlap = overlap as f64 * scan.voxel_volume();
     let warning = overlapping(&bone.labelled.segments[segment], overlap);
     let labelled = with_scan_report(labelled, bone.labelled);
-    let bone = PartedBone { labelled, surfaces, as_given, teeth, wall_voxels };
+    let bone = PartedBone { labelled, surfaces, given, teeth, wall_voxels };
     Ok(Closed { image, bone, farthest, warning })
 }
 

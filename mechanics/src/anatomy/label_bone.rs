@@ -22,8 +22,8 @@ pub fn part_labels(
             let segments = body.segments();
             let labelled = label_given(&bone, osteotomy, |voxel| segments[voxel])?;
             let surfaces = surfaces_of(&bone, osteotomy, &labelled);
-            let (as_given, wall_voxels) = (false, WALL_VOXELS);
-            PartedBone { labelled, surfaces, as_given, teeth: None, wall_voxels }
+            let (given, wall_voxels) = (Vec::new(), WALL_VOXELS);
+            PartedBone { labelled, surfaces, given, teeth: None, wall_voxels }
         }
         false => parted(&bone, osteotomy)?,
     };

@@ -84,8 +84,8 @@ pub struct PartedBone {
     pub labelled: Labelled,
     /// A closed surface for each segment, in their order.
     pub surfaces: Vec<TriangleSurface>,
-    /// The surfaces are those of a file, with what is open, doubled or hollow in them.
-    pub as_given: bool,
+    /// Volume and centre of each segment where the surfaces are those of a file, with what is open, doubled or hollow in them.
+    pub given: Vec<Enclosed>,
     /// Those that tissue slides on, with the mucosa around them; none where surfaces show no enamel.
     pub teeth: Option<Teeth>,
     /// Nodes of a wall of bone from which all voxels of bone are farther, in edges of voxels, lie on none; infinite where the wall is
@@ -104,7 +104,7 @@ pub struct Anatomy {
     pub classes: NodeClasses,
     /// A closed surface for each segment, in their order.
     pub bones: Vec<TriangleSurface>,
-    /// Volume and centre of each: what its surface encloses; of surfaces of a file their voxels.
+    /// Volume and centre of each: what its surface encloses; of surfaces of a file what lies in them.
     pub solids: Vec<Enclosed>,
     /// Landmarks of the skin on its mid-plane, in mm.
     pub landmarks: BTreeMap<String, Vector>,
@@ -145,17 +145,19 @@ pub fn part_bone(scan: &ImageVolume, rules: &AnatomyRules) -> Result<PartedBone,
 fn parted(bone: &BoneImage<'_>, osteotomy: &Osteotomy) -> Result<PartedBone, AnatomyError> {
     let labelled = label(bone, osteotomy)?;
     let surfaces = surfaces_of(bone, osteotomy, &labelled);
-    let (as_given, wall_voxels) = (false, WALL_VOXELS);
-    Ok(PartedBone { labelled, surfaces, as_given, teeth: None, wall_voxels })
+    let (given, wall_voxels) = (Vec::new(), WALL_VOXELS);
+    Ok(PartedBone { labelled, surfaces, given, teeth: None, wall_voxels })
 }
 
 impl PartedBone {
-    /// Volume, in mm³, and centre, in mm, of each segment: what its surface encloses; of surfaces of a file their voxels.
+    /// Volume, in mm³, and centre, in mm, of each segment: what its surface encloses; of surfaces of a file what lies in them.
     pub fn solids(&self) -> Vec<Enclosed> {
+        if !self.given.is_empty() {
+            return self.given.clone();
+        }
         let solid = |(found, surface): (&FoundSegment, &TriangleSurface)| {
             let of_voxels = Enclosed { volume_mm3: found.volume_mm3, centre: found.centre };
-            let of_surface = if self.as_given { None } else { surface.enclosed() };
-            of_surface.unwrap_or(of_voxels)
+            surface.enclosed().unwrap_or(of_voxels)
         };
         self.labelled.segments.iter().zip(&self.surfaces).map(solid).collect()
     }

@@ -36,12 +36,12 @@ pub fn take_as_segments(
     bones: &[&TriangleSurface],
     segments: &Osteotomy,
 ) -> Result<PartedBone, AnatomyError> {
-    let BoneDepths { image, deepest } = domain.bone_depths();
+    let BoneDepths { image, deepest, solids } = domain.bone_depths();
     let bone = BoneImage { image: &image, threshold: 0.0 };
     let labelled = label_given(&bone, segments, |voxel| Some(usize::from(deepest[voxel])))?;
     let surfaces = bones.iter().map(|&bone| bone.clone()).collect();
-    let (as_given, wall_voxels) = (true, f64::INFINITY);
-    Ok(PartedBone { labelled, surfaces, as_given, teeth: None, wall_voxels })
+    let (given, wall_voxels) = (solids, f64::INFINITY);
+    Ok(PartedBone { labelled, surfaces, given, teeth: None, wall_voxels })
 }
 
 /// Bones of which a part lies outside the skin.

@@ -8,6 +8,7 @@ use super::surface::SurfaceDomain;
 use crate::image::distance::nearest_marked;
 use crate::image::{ImageVolume, Placement, Voxels};
 use crate::mesh::Vector;
+use crate::mesh::enclosed::Enclosed;
 
 /// Voxels of the box of all bone, at most.
 const MOST_VOXELS: f64 = 1.5e6;
@@ -29,6 +30,8 @@ pub struct BoneDepths {
     pub image: ImageVolume,
     /// The number of the bone that each voxel belongs to, or is nearest to.
     pub deepest: Vec<u16>,
+    /// Of each bone, without what belongs to another one that lies in it.
+    pub solids: Vec<Enclosed>,
 }
 
 /// The grid of the voxels.
@@ -44,24 +47,88 @@ impl SurfaceDomain {
         let boxes = self.bone_shells().map(|bone| bone.tree.bounds());
         let around = boxes.reduce(|(low, high), (a, b)| (low.inf(&a), high.sup(&b)));
         let grid = Grid::around(around.unwrap_or_default());
-        let count: usize = grid.size.iter().product();
+        let area = grid.size[0] * grid.size[1];
         let near = NEAR * grid.edge;
         let order = Precedence::of(self);
-        let deepest = |voxel: usize| -> (f32, u16) {
-            let point = grid.centre(voxel);
-            let depths = self.bone_shells().map(|bone| depth(bone, &point, near));
-            let depths: Vec<f64> = depths.collect();
-            let most = depths.iter().copied().reduce(f64::max).unwrap_or(-1.0);
-            let owner = (0..depths.len()).reduce(|own, next| order.owner(&depths, own, next));
-            (most as f32, owner.unwrap_or_default() as u16)
+        let layer = |number: usize| -> Layer {
+            let own = number * area..(number + 1) * area;
+            let mut layer = Layer::default();
+            for voxel in own {
+                let point = grid.centre(voxel);
+                let depths = self.bone_shells().map(|bone| depth(bone, &point, near));
+                let depths: Vec<f64> = depths.collect();
+                let most = depths.iter().copied().reduce(f64::max).unwrap_or(-1.0);
+                let owner = (0..depths.len()).reduce(|own, next| order.owner(&depths, own, next));
+                layer.depths.push(most as f32);
+                layer.deepest.push(owner.unwrap_or_default() as u16);
+                layer.moments.resize(depths.len(), Moments::default());
+                add_shares(&mut layer.moments, &depths, &order, owner, (grid.edge, &point));
+            }
+            layer
         };
-        let (mut depths, deepest): (Vec<f32>, Vec<u16>) =
-            (0..count).into_par_iter().map(deepest).unzip();
+        let layers: Vec<Layer> = (0..grid.size[2]).into_par_iter().map(layer).collect();
+        let mut moments = vec![Moments::default(); self.bone_shells().count()];
+        for layer in &layers {
+            moments.iter_mut().zip(&layer.moments).for_each(|(sum, own)| sum.add(own));
+        }
+        let mut depths: Vec<f32> = layers.iter().flat_map(|layer| &layer.depths).copied().collect();
+        let deepest = layers.into_iter().flat_map(|layer| layer.deepest).collect();
         exact_deep_depths(&mut depths, &grid, near);
         let steps = [Vector::x(), Vector::y(), Vector::z()].map(|axis| axis * grid.edge);
         let placement = Placement { origin: grid.low, steps };
         let image = ImageVolume::new(grid.size, placement, Voxels::F32(depths));
-        BoneDepths { image: image.expect("cubes of finite depths are an image"), deepest }
+        let image = image.expect("cubes of finite depths are an image");
+        let solids = moments.iter().map(|own| own.solid(grid.edge)).collect();
+        BoneDepths { image, deepest, solids }
+    }
+}
+
+/// What is found in a layer of voxels, and in it of each bone.
+#[derive(Default)]
+struct Layer {
+    depths: Vec<f32>,
+    deepest: Vec<u16>,
+    moments: Vec<Moments>,
+}
+
+/// Voxels of a bone, those on its surface by their share, and the sum of their centres in mm.
+#[derive(Clone, Default)]
+struct Moments {
+    voxels: f64,
+    centres: Vector,
+}
+
+impl Moments {
+    fn add(&mut self, other: &Moments) {
+        self.voxels += other.voxels;
+        self.centres += other.centres;
+    }
+
+    fn solid(&self, edge: f64) -> Enclosed {
+        Enclosed {
+            volume_mm3: self.voxels * edge.powi(3),
+            centre: self.centres / self.voxels.max(1.0),
+        }
+    }
+}
+
+/// Adds the share of a voxel that lies in each bone: all of one half an edge deep, none half an edge outside, so that a plane that
+/// moves through the grid has the volume behind it. What one bone has is left out of those after it: bones that lie within others
+/// come first, then the owner.
+fn add_shares(
+    moments: &mut [Moments],
+    depths: &[f64],
+    order: &Precedence,
+    owner: Option<usize>,
+    (edge, point): (f64, &Vector),
+) {
+    let mut bones: Vec<usize> = (0..depths.len()).collect();
+    bones.sort_by_key(|&bone| (!order.within[bone].contains(&true), Some(bone) != owner));
+    let mut left = 1.0;
+    for bone in bones {
+        let share = (0.5 + depths[bone] / edge).clamp(0.0, left);
+        moments[bone].add(&Moments { voxels: share, centres: point * share });
+        left -= share;
     }
 }
 

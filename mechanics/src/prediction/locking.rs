@@ -11,8 +11,12 @@ use crate::model::fem::cell_stiffness::Dilatation;
 /// docs/verification.md#v29).
 const LOCKING: f64 = 0.45;
 
-/// The share of wedges in a mesh from which they lock too, two changes of volume standing where a hexahedron has one.
-const MANY_WEDGES: f64 = 0.25;
+/// Poisson's ratio up to which hexahedra with mean dilatation are corrected by what is estimated of their error.
+const CORRECTED_WELL: f64 = 0.43;
+
+/// The share of cells in a mesh from which what they do counts. So many wedges lock, two changes of volume standing where a
+/// hexahedron has one.
+const MANY: f64 = 0.25;
 
 /// The volume term of a law's second order above which it counts at points.
 const VOLUME_COUNTS: f64 = 5.0;
@@ -58,16 +62,25 @@ impl Scene {
         self.warning_of(locks, &detail)
     }
 
-    /// Whether its wedges lock: what is estimated of their error is then too large, and makes an answer worse.
-    pub(super) fn wedges_lock(&self) -> bool {
-        let is_near = |material: &LinearElastic| material.poisson_ratio() > LOCKING;
-        self.has_many_wedges() && self.materials.iter().any(is_near)
+    /// Whether the estimated discretisation error, added to an answer, often leaves more than four fifths of it: with mean dilatation
+    /// in wedges, and in hexahedra near the incompressible limit (docs/estimates.md, "What is taken").
+    pub(super) fn correction_gains_little(&self) -> bool {
+        let is_near = |own: &LinearElastic| own.poisson_ratio() > CORRECTED_WELL;
+        let is_near: Vec<bool> = self.materials.iter().map(is_near).collect();
+        let gains_little = |shape, material: usize| match shape {
+            CellShape::Tet4 => false,
+            CellShape::Wedge6 => !self.is_pointwise(shape),
+            CellShape::Hex8 => is_near[material] && !self.is_pointwise(shape),
+        };
+        let cells = self.mesh.cells.iter().zip(&self.material_of_cell);
+        let count = cells.filter(|((shape, _), own)| gains_little(*shape, usize::from(**own)));
+        count.count() as f64 >= MANY * self.mesh.cells.len() as f64
     }
 
     fn has_many_wedges(&self) -> bool {
         let cells = &self.mesh.cells;
         let wedges = cells.iter().filter(|(shape, _)| *shape == CellShape::Wedge6).count();
-        wedges as f64 >= MANY_WEDGES * cells.len() as f64
+        wedges as f64 >= MANY * cells.len() as f64
     }
 
     /// Whether linear cells of a shape take volume point by point at first order.

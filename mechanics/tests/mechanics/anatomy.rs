@@ -10,7 +10,7 @@ use mechanics::meshing::{MeshingSettings, SizeField};
 use mechanics::osteotomy::{Cut, CutSide, LabelError, Osteotomy, Plane, SegmentRule, Side};
 use mechanics::progress::Unobserved;
 
-use crate::surfaces::sphere;
+use crate::surfaces::{solid, sphere};
 
 const BONE: f64 = 25.0;
 /// The height of a cut, in mm.
@@ -98,6 +98,34 @@ fn bones_that_are_segments_keep_their_surfaces_and_hold_the_tissue_on_them() {
         }
     }
     assert_eq!(made.classes.without_bone, 0);
+}
+
+#[test]
+fn volumes_of_bones_are_those_of_their_surfaces_wherever_faces_lie_between_voxels_and_where_bones_touch()
+ {
+    for off in [0.0, 0.13, 0.5, 0.77] {
+        let below = ([-20.0 + off, -10.0 + off, -8.0 + off], [20.0 + off, 10.0 + off, 8.0 + off]);
+        let above = ([-10.0, -5.0, 8.0 + off], [10.0, 5.0, 18.0 + off]);
+        let bones = [below, above].map(|(low, high)| solid(low, high));
+        let bones: Vec<&TriangleSurface> = bones.iter().collect();
+        let domain = SurfaceDomain::new(&skin(), &bones, &[]).unwrap();
+        let parted = take_as_segments(&domain, &bones, &named(&["below", "above"])).unwrap();
+        let wanted = [(12_800.0, Vector::repeat(off)), (2000.0, Vector::z() * (13.0 + off))];
+        for (solid, (volume, centre)) in parted.solids().iter().zip(wanted) {
+            // Voxels on a straight edge count half, where a quarter of them lies within: two hundredths of the smaller body.
+            assert!((solid.volume_mm3 / volume - 1.0).abs() < 0.021, "{off}: {solid:?}");
+            assert!((solid.centre - centre).norm() < 0.1, "{off}: {solid:?}");
+        }
+    }
+    // What lies in both belongs to the bone that lies within the other.
+    let bones = [ball(20.0, Vector::zeros()), ball(10.0, Vector::x() * 3.0)];
+    let bones: Vec<&TriangleSurface> = bones.iter().collect();
+    let domain = SurfaceDomain::new(&skin(), &bones, &[]).unwrap();
+    let parted = take_as_segments(&domain, &bones, &named(&["around", "within"])).unwrap();
+    let wanted = [volume(20.0) - volume(10.0), volume(10.0)];
+    for (solid, volume) in parted.solids().iter().zip(wanted) {
+        assert!((solid.volume_mm3 / volume - 1.0).abs() < 0.02, "{volume}: {solid:?}");
+    }
 }
 
 #[test]

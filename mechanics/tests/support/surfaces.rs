@@ -173,3 +173,17 @@ pub fn brute_force_distance(surface: &TriangleSurface, point: &Vector) -> f64 {
     }
     smallest
 }
+
+/// A closed box between two corners.
+pub fn solid(low: [f64; 3], high: [f64; 3]) -> TriangleSurface {
+    let corner =
+        |bits: usize| Vector::from_fn(|k, _| if bits >> k & 1 == 1 { high[k] } else { low[k] });
+    let quads =
+        [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    let triangles = quads.iter().flat_map(|[a, b, c, d]| [[*a, *b, *c], [*a, *c, *d]]);
+    TriangleSurface {
+        points: (0..8).map(corner).collect(),
+        triangles: triangles.collect(),
+        node_ids: None,
+    }
+}

@@ -74,7 +74,7 @@ pub struct AnglesDocument {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct FoundSegmentDocument {
     pub name: String,
-    /// What its surface encloses, that of its file of bone; of a bone that was given as a surface by voxels.
+    /// What its surface encloses; of a bone that was given as a surface without what belongs to a bone that lies in it.
     pub volume_ml: f64,
     /// The centre of mass of what `volume_ml` counts.
     pub centre_mm: Triple,

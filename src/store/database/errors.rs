@@ -1,6 +1,6 @@
 //! Classification of database errors.
 
-use super::{postgres, sqlite};
+use super::{postgres, sqlite_codes as sqlite};
 
 /// True when the error says that the disk or the quota is full.
 pub fn is_full(error: &sqlx::Error) -> bool {
@@ -30,6 +30,11 @@ pub fn is_read_only(error: &sqlx::Error) -> bool {
     matches!(error, sqlx::Error::Database(inner) if inner
         .code()
         .is_some_and(|code| sqlite::is_read_only(&code) || postgres::is_read_only(&code)))
+}
+
+/// True when the file of an embedded database is damaged.
+pub fn is_damaged(error: &sqlx::Error) -> bool {
+    sqlite::damage(error).is_some()
 }
 
 /// True when the server does not let us in, whatever we ask: a wrong user, password or name.

@@ -1,5 +1,6 @@
 //! Database handle for either engine: connections, migration, queries.
 
+use super::file::DatabaseFile;
 use super::run::{Open, Pool, Transaction, Writer};
 use super::schema::{Column, Migrated};
 use super::{postgres, schema, sqlite};
@@ -73,7 +74,7 @@ impl Database {
     /// Opens the database. The embedded one is created where it is not there and brought up to date. One
     /// that many share is refused unless its schema fits: none of them changes it under the others.
     pub async fn open(address: Address) -> Result<Database, StoreError> {
-        let database = Database::connect(address, "write").await?;
+        let database = Database::connect(address, None, "write").await?;
         match &database.address {
             Address::File(file) => {
                 schema::migrate(&database.writer).await.map_err(|error| error.of_file(file))?;
@@ -86,7 +87,7 @@ impl Database {
     /// Brings the schema up to date, each step in a transaction of its own.
     pub async fn migrate(address: Address) -> Result<Migrated, StoreError> {
         let database = match address {
-            Address::File(_) => Database::connect(address, "write").await?,
+            Address::File(_) => Database::connect(address, None, "write").await?,
             // A step may take longer than any request is allowed to.
             Address::Server { options, .. } => {
                 let connected = postgres::unlimited(&options).await;
@@ -112,16 +113,28 @@ impl Database {
             }
             file @ Address::File(_) => file.clone(),
         };
-        Database::connect(address, "write again").await
+        Database::connect(address, self.file().cloned(), "write again").await
     }
 
-    /// `what` is what turns are counted as.
-    async fn connect(address: Address, what: &'static str) -> Result<Database, StoreError> {
+    /// The file of an embedded database.
+    fn file(&self) -> Option<&Arc<DatabaseFile>> {
+        match &*self.writer {
+            Pool::Sqlite(connections) => Some(&connections.file),
+            Pool::Postgres(_) => None,
+        }
+    }
+
+    /// `known` is the file of an embedded database that is open already, `what` is what turns are counted as.
+    async fn connect(
+        address: Address,
+        known: Option<Arc<DatabaseFile>>,
+        what: &'static str,
+    ) -> Result<Database, StoreError> {
         let (writer, reader) = match &address {
             Address::File(file) => {
-                let connected = sqlite::connect(file).await;
-                let (writer, reader) = connected
-                    .map_err(|source| StoreError::CannotOpen { file: file.clone(), source })?;
+                let connected = sqlite::connect(file, known).await;
+                let (writer, reader) =
+                    connected.map_err(|source| StoreError::from(source).of_file(file))?;
                 (Arc::new(Pool::Sqlite(writer)), Arc::new(Pool::Sqlite(reader)))
             }
             Address::Server { options, connections } => {
@@ -200,7 +213,9 @@ impl Database {
     pub async fn begin(&self) -> Result<Transaction, StoreError> {
         let permit = self.permit().await?;
         let open = match &*self.writer {
-            Pool::Sqlite(pool) => Open::Sqlite(sqlite::begin(pool).await?),
+            Pool::Sqlite(connections) => {
+                Open::Sqlite(connections.begin().await?, connections.file.clone())
+            }
             Pool::Postgres(pool) => Open::Postgres(postgres::begin(pool).await?),
         };
         Ok(Transaction::new(open, Some(permit)))
@@ -221,7 +236,9 @@ impl Database {
                 let pool = postgres::unlimited(options).await?;
                 Open::Postgres(postgres::snapshot(&pool).await?)
             }
-            (_, Pool::Sqlite(pool)) => Open::Sqlite(pool.begin().await?),
+            (_, Pool::Sqlite(connections)) => {
+                Open::Sqlite(connections.snapshot().await?, connections.file.clone())
+            }
             (_, Pool::Postgres(pool)) => Open::Postgres(postgres::snapshot(pool).await?),
         };
         Ok(Transaction::new(open, None))
@@ -230,7 +247,7 @@ impl Database {
     /// What is wrong with the pages of an embedded database, all of which are read. A server checks its own.
     pub async fn faults(&self) -> Result<Vec<String>, StoreError> {
         match &*self.reader {
-            Pool::Sqlite(pool) => Ok(sqlite::faults(pool).await?),
+            Pool::Sqlite(connections) => Ok(sqlite::faults(&connections.pool).await?),
             Pool::Postgres(_) => Ok(Vec::new()),
         }
     }
@@ -244,7 +261,11 @@ impl Database {
     /// has files of its own.
     pub async fn empty_log(&self) -> Result<bool, StoreError> {
         match &self.address {
-            Address::File(file) => Ok(sqlite::empty_log(file).await?),
+            Address::File(path) => {
+                let Some(file) = self.file() else { return Ok(true) };
+                file.check()?;
+                Ok(file.watched(sqlite::empty_log(path).await)?)
+            }
             Address::Server { .. } => Ok(true),
         }
     }
@@ -252,7 +273,7 @@ impl Database {
     pub async fn close(&self) {
         for pool in [&self.reader, &self.writer] {
             match &**pool {
-                Pool::Sqlite(pool) => pool.close().await,
+                Pool::Sqlite(connections) => connections.pool.close().await,
                 Pool::Postgres(pool) => pool.close().await,
             }
         }

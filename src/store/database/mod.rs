@@ -6,14 +6,19 @@
 //! `FOR UPDATE`, and one that has to stay with `FOR KEY SHARE`: PostgreSQL locks it, SQLite, whose transactions exclude each other, is handed the text without it.
 
 mod errors;
+mod file;
 mod handle;
 mod postgres;
 mod run;
 pub(crate) mod schema;
 mod sqlite;
+mod sqlite_codes;
 mod value;
 
-pub use errors::{is_duplicate, is_full, is_read_only, is_reference, is_refused, is_unavailable};
+pub use errors::{
+    is_damaged, is_duplicate, is_full, is_read_only, is_reference, is_refused, is_unavailable,
+};
+pub use file::{FileFault, fault_of};
 pub(super) use handle::{Address, BeforeWriting, Database};
 use run::Pool;
 pub(super) use run::{Executor, Transaction};

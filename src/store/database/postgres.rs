@@ -1,7 +1,8 @@
 //! Particulars of PostgreSQL: its limits of time, its clock, its codes.
 
 use std::borrow::Cow;
-use std::time::Duration;
+use std::sync::{Mutex, PoisonError};
+use std::time::{Duration, Instant};
 
 use futures::TryStreamExt;
 use sqlx::pool::PoolConnectionMetadata;
@@ -31,6 +32,11 @@ const ANSWER_TIMEOUT: Duration = Duration::from_secs(10);
 /// A connection that was used within this time is used again without being asked whether it is there: under load the question
 /// would cost as much as what is asked of it. No server is back sooner after a crash.
 const FRESH: Duration = Duration::from_millis(100);
+/// A connection keeps the default of its first moment, to write or only to read (`default_transaction_read_only`). One that only reads
+/// is used for so long, so that what is stored can be read meanwhile, and the next one may write.
+const READS_FOR: Duration = Duration::from_secs(2);
+/// How long after a refused row every connection is asked.
+const DOUBT: Duration = Duration::from_secs(10);
 /// What the server keeps to by itself. A client that was cut off holds its locks no longer than this. Statements take
 /// milliseconds, whatever the planner expects of them: compiling that of a page of 200 jobs took the server 100 to 240 ms,
 /// running it 7 to 19.
@@ -59,15 +65,35 @@ pub async fn connect(options: &PgConnectOptions, connections: u32) -> Result<PgP
         .await
 }
 
-/// Whether the server answers on a connection that was idle for a while.
+/// Whether a connection may be used again: the server answers on it, and it is not one of a time when nothing could be written.
 async fn is_there(
     connection: &mut PgConnection,
     used: PoolConnectionMetadata,
 ) -> Result<bool, sqlx::Error> {
-    if used.idle_for >= FRESH {
-        in_time(connection.ping()).await?;
+    const MODE: &str = "SELECT current_setting('transaction_read_only')";
+    if used.idle_for < FRESH && !was_refused_lately() {
+        return Ok(true);
     }
-    Ok(true)
+    let mode: String = in_time(sqlx::query_scalar(MODE).fetch_one(connection)).await?;
+    Ok(mode == "off" || used.age < READS_FOR)
+}
+
+/// When a row was last refused because the server, or the connection, only reads.
+static REFUSED: Mutex<Option<Instant>> = Mutex::new(None);
+
+fn was_refused_lately() -> bool {
+    let refused = REFUSED.lock().unwrap_or_else(PoisonError::into_inner);
+    refused.is_some_and(|at| at.elapsed() < DOUBT)
+}
+
+/// An answer, of which it is remembered that a row was refused.
+fn watched<T>(answer: Result<T, sqlx::Error>) -> Result<T, sqlx::Error> {
+    if let Err(sqlx::Error::Database(error)) = &answer
+        && error.code().is_some_and(|code| is_read_only(&code))
+    {
+        *REFUSED.lock().unwrap_or_else(PoisonError::into_inner) = Some(Instant::now());
+    }
+    answer
 }
 
 /// Whether a connection that comes back may be used again: the server answers on it, and its transaction is over.
@@ -130,7 +156,7 @@ pub async fn run(
         }
         Ok(changed)
     };
-    if statement.patient { answer.await } else { in_time(answer).await }
+    watched(if statement.patient { answer.await } else { in_time(answer).await })
 }
 
 /// An answer that does not come in time is an error of the connection.

@@ -1,5 +1,6 @@
 //! Statements run on a pool or within a transaction of either engine.
 
+use super::file::DatabaseFile;
 use super::value::Row;
 use super::value::RowSink;
 use super::value::Statement;
@@ -7,12 +8,12 @@ use super::value::Value;
 use super::{postgres, sqlite};
 use crate::fair_semaphore::Permit;
 use sqlx::postgres::{PgPool, Postgres};
-use sqlx::sqlite::{Sqlite, SqlitePool};
+use sqlx::sqlite::Sqlite;
 use std::sync::Arc;
 
 /// Connections of one engine.
 pub(in crate::store) enum Pool {
-    Sqlite(SqlitePool),
+    Sqlite(sqlite::Connections),
     Postgres(PgPool),
 }
 
@@ -24,7 +25,7 @@ pub(in crate::store) struct Transaction {
 }
 
 pub(super) enum Open {
-    Sqlite(sqlx::Transaction<'static, Sqlite>),
+    Sqlite(sqlx::Transaction<'static, Sqlite>, Arc<DatabaseFile>),
     Postgres(sqlx::Transaction<'static, Postgres>),
 }
 
@@ -41,7 +42,11 @@ impl Transaction {
 
     pub async fn commit(self) -> Result<(), sqlx::Error> {
         match self.open {
-            Open::Sqlite(transaction) => transaction.commit().await,
+            Open::Sqlite(transaction, file) => {
+                file.watched(transaction.commit().await)?;
+                // What went into a file that is gone is not there.
+                file.check()
+            }
             Open::Postgres(transaction) => postgres::in_time(transaction.commit()).await,
         }
     }
@@ -50,7 +55,7 @@ impl Transaction {
     /// connection is not used again.
     pub async fn rollback(self) {
         let undone = match self.open {
-            Open::Sqlite(transaction) => transaction.rollback().await,
+            Open::Sqlite(transaction, _) => transaction.rollback().await,
             Open::Postgres(transaction) => postgres::in_time(transaction.rollback()).await,
         };
         if let Err(error) = undone {
@@ -98,8 +103,9 @@ impl Statement {
     /// Hands over the rows as they come; returns how many rows were changed.
     pub async fn run(self, place: Executor<'_>, take: RowSink<'_>) -> Result<u64, sqlx::Error> {
         match place {
-            Executor::Pool(Pool::Sqlite(pool)) => {
-                sqlite::run(&mut *pool.acquire().await?, self, take).await
+            Executor::Pool(Pool::Sqlite(connections)) => {
+                let mut connection = connections.acquire().await?;
+                connections.file.changed(sqlite::run(&mut connection, self, take).await)
             }
             Executor::Pool(Pool::Postgres(pool)) => {
                 let mut connection = pool.acquire().await?;
@@ -110,8 +116,8 @@ impl Statement {
                 }
                 answer
             }
-            Executor::Transaction(Transaction { open: Open::Sqlite(open), .. }) => {
-                sqlite::run(&mut *open, self, take).await
+            Executor::Transaction(Transaction { open: Open::Sqlite(open, file), .. }) => {
+                file.changed(sqlite::run(&mut *open, self, take).await)
             }
             Executor::Transaction(Transaction { open: Open::Postgres(open), .. }) => {
                 postgres::run(&mut *open, self, take).await

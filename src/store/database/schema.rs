@@ -5,6 +5,7 @@ use std::sync::LazyLock;
 use sqlx::migrate::{MigrateError, Migration, MigrationType, Migrator};
 use sqlx::{AssertSqlSafe, SqlSafeStr, SqlStr};
 
+use super::sqlite::Connections;
 use super::value::null_of;
 use super::{Pool, Row, Value, postgres, query, sqlite};
 use crate::store::error::StoreError;
@@ -62,7 +63,7 @@ pub struct Migrated {
 pub async fn migrate(pool: &Pool) -> Result<Migrated, StoreError> {
     let before = applied(pool).await?;
     let (clock, ran) = match pool {
-        Pool::Sqlite(pool) => (sqlite::CLOCK, STEPS.run(pool).await),
+        Pool::Sqlite(Connections { pool, .. }) => (sqlite::CLOCK, STEPS.run(pool).await),
         Pool::Postgres(pool) => (postgres::CLOCK, POSTGRES_STEPS.run(pool).await),
     };
     ran.map_err(schema_error)?;
@@ -138,7 +139,7 @@ fn schema_error(error: MigrateError) -> StoreError {
     match error {
         MigrateError::VersionMissing(found) => StoreError::SchemaTooNew { found, known: newest() },
         MigrateError::Execute(error) | MigrateError::ExecuteMigration(error, _) => {
-            StoreError::Database(error)
+            StoreError::from(error)
         }
         other => StoreError::Schema(other.to_string()),
     }

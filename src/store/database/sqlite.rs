@@ -1,16 +1,20 @@
-//! Particulars of SQLite: its file, its one writer, its clock, its codes.
+//! Particulars of SQLite: its file, its one writer, its clock.
 
 use std::borrow::Cow;
 use std::path::Path;
+use std::sync::Arc;
 use std::time::Duration;
 
 use futures::TryStreamExt;
+use sqlx::pool::PoolConnection;
 use sqlx::sqlite::{
     Sqlite, SqliteConnectOptions, SqliteConnection, SqliteJournalMode, SqlitePool,
     SqlitePoolOptions, SqliteSynchronous,
 };
 use sqlx::{AssertSqlSafe, Connection, Either, Executor, SqlSafeStr};
 
+use super::file::DatabaseFile;
+use super::sqlite_codes::damage;
 use super::{Row, RowSink, Statement, Value};
 
 /// Milliseconds since 1970 by the clock of the database, for `(SELECT now_ms FROM clock)`: leases are
@@ -22,35 +26,73 @@ pub const CLOCK: &str = "CREATE VIEW IF NOT EXISTS clock AS \
 pub const COLUMNS: &str =
     "SELECT name, UPPER(type), \"notnull\" = 1 OR pk > 0 FROM pragma_table_info($1)";
 
-/// The disk is full.
-pub const FULL: &str = "13";
-/// The file cannot be written.
-const READ_ONLY: u32 = 8;
-/// Another process writes, the disk errs, the file cannot be written or opened.
-const PASSING: [u32; 4] = [5, READ_ONLY, 10, 14];
-
 /// How long a statement waits for another process that writes.
 const BUSY_TIMEOUT: Duration = Duration::from_secs(5);
 /// How long a request waits for a connection before it is told to come back.
 pub const ACQUIRE_TIMEOUT: Duration = Duration::from_secs(10);
 const READERS: u32 = 4;
 
-/// One connection that writes, so that writers queue here instead of failing with BUSY, and several that read.
-pub async fn connect(file: &Path) -> Result<(SqlitePool, SqlitePool), sqlx::Error> {
-    let options = options(file);
+/// Connections to the file of a database, which is compared with the one that was opened before each is handed out.
+#[derive(Clone)]
+pub struct Connections {
+    pub pool: SqlitePool,
+    pub file: Arc<DatabaseFile>,
+}
+
+impl Connections {
+    pub async fn acquire(&self) -> Result<PoolConnection<Sqlite>, sqlx::Error> {
+        // Before a connection is opened: SQLite would take the log beside another file for that of this one.
+        self.file.check()?;
+        self.file.watched(self.pool.acquire().await)
+    }
+
+    /// A transaction that takes the write lock at once: one that reads first and writes later fails
+    /// with BUSY, without waiting, when another has written in between.
+    pub async fn begin(&self) -> Result<sqlx::Transaction<'static, Sqlite>, sqlx::Error> {
+        self.begin_with("BEGIN IMMEDIATE").await
+    }
+
+    /// A transaction that sees everything as it is when it reads first.
+    pub async fn snapshot(&self) -> Result<sqlx::Transaction<'static, Sqlite>, sqlx::Error> {
+        self.begin_with("BEGIN").await
+    }
+
+    async fn begin_with(
+        &self,
+        statement: &'static str,
+    ) -> Result<sqlx::Transaction<'static, Sqlite>, sqlx::Error> {
+        self.file.check()?;
+        self.file.watched(self.pool.begin_with(statement).await)
+    }
+}
+
+/// One connection that writes, so that writers queue here instead of failing with BUSY, and several that read. The file is made only
+/// where it is not `known`.
+pub async fn connect(
+    path: &Path,
+    known: Option<Arc<DatabaseFile>>,
+) -> Result<(Connections, Connections), sqlx::Error> {
+    known.iter().try_for_each(|file| file.check())?;
+    let options = options(path);
     let pool = SqlitePoolOptions::new()
         .acquire_timeout(ACQUIRE_TIMEOUT)
         // It is asked when it comes back, and nobody can take it away meanwhile.
         .test_before_acquire(false)
         .after_release(|connection, _| Box::pin(is_free(connection)));
-    let writer = pool.clone().max_connections(1).connect_with(options.clone()).await?;
-    Ok((writer, pool.max_connections(READERS).connect_lazy_with(options)))
+    let first = options.clone().create_if_missing(known.is_none());
+    let writer = pool.clone().max_connections(1).connect_with(first).await?;
+    writer.set_connect_options(options.clone());
+    let file = match known {
+        Some(file) => file,
+        None => Arc::new(DatabaseFile::opened(path)?),
+    };
+    let reader = pool.max_connections(READERS).connect_lazy_with(options);
+    Ok((Connections { pool: writer, file: file.clone() }, Connections { pool: reader, file }))
 }
 
 fn options(file: &Path) -> SqliteConnectOptions {
     SqliteConnectOptions::new()
         .filename(file)
-        .create_if_missing(true)
         .journal_mode(SqliteJournalMode::Wal)
         // A job that was accepted and a result that was announced outlast a power cut: each commit
         // is flushed, which NORMAL leaves to the next checkpoint.
@@ -73,7 +115,7 @@ async fn is_free(connection: &mut SqliteConnection) -> Result<bool, sqlx::Error>
 /// Checkpoints and truncates the write-ahead log; false while a reader or a writer prevents it.
 pub async fn empty_log(file: &Path) -> Result<bool, sqlx::Error> {
     // Waiting here would make those wait who write.
-    let options = options(file).create_if_missing(false).busy_timeout(Duration::ZERO);
+    let options = options(file).busy_timeout(Duration::ZERO);
     let mut connection = SqliteConnection::connect_with(&options).await?;
     let asked = sqlx::query_scalar("PRAGMA wal_checkpoint(TRUNCATE)");
     let is_busy: Result<i64, _> = asked.fetch_one(&mut connection).await;
@@ -86,8 +128,6 @@ const CHECK: &str = "PRAGMA integrity_check(20)";
 /// The same of one table without its indexes' content, where the whole check is broken off.
 const CHECK_TABLE: &str = "SELECT quick_check FROM pragma_quick_check($1)";
 const TABLES: &str = "SELECT name FROM sqlite_schema WHERE type = 'table'";
-/// The file is damaged, or is none of SQLite.
-const DAMAGED: [u32; 2] = [11, 26];
 
 /// Reads every page of the file; returns what is wrong, with its pages, or its table where a check is broken off.
 pub async fn faults(pool: &SqlitePool) -> Result<Vec<String>, sqlx::Error> {
@@ -122,21 +162,11 @@ fn told(
             let faults = lines.filter(|line| *line != "ok" && !line.starts_with("***"));
             Ok(Ok(faults.map(str::to_owned).collect()))
         }
-        Err(sqlx::Error::Database(error)) if error.code().is_some_and(|code| is_damaged(&code)) => {
-            Ok(Err(error.message().to_owned()))
-        }
-        Err(error) => Err(error),
+        Err(error) => match damage(&error) {
+            Some(told) => Ok(Err(told)),
+            None => Err(error),
+        },
     }
-}
-
-fn is_damaged(code: &str) -> bool {
-    kind(code).is_some_and(|kind| DAMAGED.contains(&kind))
-}
-
-/// A transaction that takes the write lock at once: one that reads first and writes later fails
-/// with BUSY, without waiting, when another has written in between.
-pub async fn begin(pool: &SqlitePool) -> Result<sqlx::Transaction<'static, Sqlite>, sqlx::Error> {
-    pool.begin_with("BEGIN IMMEDIATE").await
 }
 
 /// Runs a statement to its end.
@@ -175,33 +205,4 @@ fn without_row_locks(sql: Cow<'static, str>) -> Cow<'static, str> {
         true => Cow::Owned(sql.replace(lock, "")),
         false => sql,
     })
-}
-
-pub fn is_transient(code: &str) -> bool {
-    kind(code).is_some_and(|kind| PASSING.contains(&kind))
-}
-
-pub fn is_read_only(code: &str) -> bool {
-    kind(code) == Some(READ_ONLY)
-}
-
-/// Codes say more in their upper bytes; those of PostgreSQL have five characters.
-fn kind(code: &str) -> Option<u32> {
-    let code: u32 = code.parse().ok().filter(|_| code.len() < 5)?;
-    Some(code & 0xff)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_file_that_cannot_be_written_may_be_so_again_and_codes_of_servers_are_none_of_sqlite() {
-        // Moved away, and plain.
-        for code in ["1032", "8"] {
-            assert!(is_read_only(code) && is_transient(code), "{code}");
-        }
-        assert!(is_transient("5") && !is_read_only("5"));
-        assert!(!is_read_only("25006") && !is_transient("08006") && !is_transient("1"));
-    }
 }

@@ -7,7 +7,7 @@ use tokio::runtime::Handle;
 
 use super::child::Process;
 use super::protocol::{Answer, Order, Question};
-use crate::library::meshes::Library;
+use crate::library::meshes::{Library, why_unreadable};
 use crate::store::StoreError;
 use crate::worker::work::LOOK;
 
@@ -37,7 +37,7 @@ impl Answers<'_> {
                 return self.give_blob(self.asked(async || library.bytes(&blob).await));
             }
         };
-        self.tell(answer.unwrap_or_else(|error| Answer::Unreadable(error.to_string())));
+        self.tell(answer.unwrap_or_else(|error| unreadable(&error)));
     }
 
     /// What the store says, asked again while it is down, unless the job is over.
@@ -74,7 +74,7 @@ impl Answers<'_> {
                 self.process.give(Bytes::copy_from_slice(&(bytes.len() as u64).to_le_bytes()));
                 self.process.give(bytes);
             }
-            Err(error) => self.tell(Answer::Unreadable(error.to_string())),
+            Err(error) => self.tell(unreadable(&error)),
         }
     }
 
@@ -83,4 +83,12 @@ impl Answers<'_> {
             tracing::error!(%error, "an answer could not be written");
         }
     }
+}
+
+fn unreadable(error: &StoreError) -> Answer {
+    // Of a job that is over nobody reads the answer.
+    if !matches!(error, StoreError::Interrupted) {
+        tracing::error!(%error, "an input of a job could not be read");
+    }
+    Answer::Unreadable(why_unreadable(error).to_owned())
 }

@@ -97,7 +97,9 @@ pub(in crate::worker) fn broke_off(class: ErrorClass) -> Value {
 fn failed(error: &JobError) -> Outcome {
     match error.class() {
         ErrorClass::Cancelled => Outcome::Cancelled,
-        ErrorClass::Infrastructure => Outcome::Storage(error.to_string()),
+        ErrorClass::Infrastructure => {
+            Outcome::Storage { error: json!(error.to_document()), reason: error.to_string() }
+        }
         ErrorClass::Numerical | ErrorClass::Input | ErrorClass::Budget => {
             Outcome::Failed(json!(error.to_document()))
         }

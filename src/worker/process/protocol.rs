@@ -64,6 +64,7 @@ pub enum Answer {
     Bytes,
     /// There is nothing of that name.
     Unknown,
+    /// Why, as clients are told it.
     Unreadable(String),
 }
 
@@ -118,8 +119,11 @@ pub enum Outcome {
     /// The job's own fault: JSON with `type` and `detail`.
     Failed(Value),
     Cancelled,
-    /// The fault of a disk or of what is stored.
-    Storage(String),
+    /// The fault of a disk or of what is stored: JSON with `type` and `detail`, and the reason for the log.
+    Storage {
+        error: Value,
+        reason: String,
+    },
     /// A bug: the process is not to be used again.
     Panicked(String),
 }

@@ -42,7 +42,7 @@ impl SlotSource<'_> {
         parse_stored(&bytes).map_err(|error| match error {
             // Too little memory ends a slot in the same way wherever it is noticed.
             FormatError::Memory { values } => out_of_memory(values),
-            error => unreadable(id, error.to_string()),
+            error => unreadable(id, format!("its stored bytes are damaged: {error}")),
         })
     }
 

@@ -341,7 +341,7 @@ fn finished(outcome: Outcome, folder: &Path) -> Result<Finished, Failure> {
         }),
         Outcome::Failed(error) => Err(Failure::Permanent(error)),
         Outcome::Cancelled => Err(Failure::Cancelled),
-        Outcome::Storage(reason) => Err(Failure::Storage(reason)),
+        Outcome::Storage { error, reason } => Err(Failure::Storage { error, reason }),
         Outcome::Panicked(reason) => {
             tracing::error!(%reason, "a job panicked");
             // The same job would meet the same bug: it is the job's own, until somebody shows otherwise.

@@ -10,6 +10,7 @@ pub mod pages;
 pub mod places;
 pub mod queue;
 pub mod races;
+pub mod read_only;
 pub mod remembered;
 pub mod schema_steps;
 pub mod storage;

@@ -61,10 +61,25 @@ async fn requests_with_one_key_that_come_together_make_one_thing() {
     assert_eq!(ids.len(), 1, "{ids:?}");
     let kept = ask(server.get(&path)).await.json();
     assert_eq!(kept["items"].as_array().unwrap().len(), 1);
-    // The same key at another address is another key.
+    // The case is part of the request; another route has keys of its own.
     let other = server.case(&SMALL).await;
-    let elsewhere = post(&server, &format!("/v1/cases/{other}/plans"), "p", &plan).await;
-    assert_ne!(elsewhere.expect(StatusCode::CREATED)["id"], ids[0]);
+    let elsewhere = format!("/v1/cases/{other}/plans");
+    post(&server, &elsewhere, "p", &plan).await.problem(422, "idempotency-mismatch");
+    assert_eq!(ask(server.get(&elsewhere)).await.json()["items"], json!([]));
+    post(&server, "/v1/jobs", "p", &spec(&case, 1.0)).await.expect(StatusCode::CREATED);
+}
+
+#[tokio::test]
+async fn two_keys_in_one_request_are_refused() {
+    let server = Server::start();
+    let case = server.case(&SMALL).await;
+    for second in ["one", "two"] {
+        let request = server.post("/v1/jobs").header(KEY, "one").header(KEY, second);
+        let refused = ask(request.json(&spec(&case, 1.0))).await;
+        let problem = refused.problem(400, "invalid-parameter");
+        assert_eq!(problem["parameter"], "Idempotency-Key");
+    }
+    assert_eq!(ask(server.get("/v1/jobs")).await.json()["items"], json!([]));
 }
 
 #[tokio::test]

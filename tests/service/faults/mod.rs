@@ -2,5 +2,6 @@
 
 mod failed_commits;
 mod outages;
+mod replaced;
 mod storage;
 mod unmounted;

@@ -1,15 +1,16 @@
 //! Things that break under the service: nothing accepted is lost, nothing half done is left.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use reqwest::StatusCode;
 use serde_json::json;
+use tempfile::TempDir;
 use tokio::io::AsyncWriteExt;
 use tokio::net::TcpStream;
 
 use crate::helpers::{SMALL, Server, ask, spec};
 use crate::invariants::{MEDIUM, accepted, tagged};
-use crate::processes::{faulty, until};
+use crate::processes::{faulty, faulty_with_log, until};
 
 /// Keeps a job at work until it is told to stop, so that a test meets it there.
 const HELD: &str = "solve:iteration:3:hold:attempt=1:tag=slow";
@@ -107,4 +108,73 @@ async fn an_upload_that_breaks_off_leaves_nothing() {
     let blobs = std::fs::read_dir(server.path().join("blobs")).unwrap().count();
     assert_eq!((blobs, temporary(server.path())), (0, 0));
     server.upload(bytes).await.expect(StatusCode::CREATED);
+}
+
+/// The files with stored bytes.
+fn blobs(folder: &Path) -> Vec<PathBuf> {
+    let within =
+        |folder: &Path| std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+    let folders = within(&folder.join("blobs")).filter(|path| path.is_dir());
+    folders.flat_map(|folder| within(&folder).collect::<Vec<_>>()).collect()
+}
+
+#[tokio::test]
+async fn lost_and_damaged_meshes_are_stored_again_when_they_are_uploaded_again() {
+    let folder = TempDir::new().unwrap();
+    let log = folder.path().join("log");
+    let server = faulty_with_log("", &["--workers", "0", "--mesh-cache-mib", "0"], &log);
+    let upload = async || server.upload(SMALL.vtu()).await;
+    let mesh = upload().await.expect(StatusCode::CREATED);
+    let id = mesh["id"].as_str().unwrap();
+    let content = format!("/v1/meshes/{id}/content");
+    let right = ask(server.get(&content)).await;
+    assert_eq!(right.status, StatusCode::OK);
+
+    let [blob] = blobs(server.path()).try_into().unwrap();
+    std::fs::remove_file(&blob).unwrap();
+    ask(server.get(&content)).await.problem(500, "integrity");
+    assert_eq!(upload().await.expect(StatusCode::OK)["id"], id);
+    assert_eq!(ask(server.get(&content)).await.bytes, right.bytes);
+
+    // A case that brings the file heals it as well.
+    let case = ask(server.post("/v1/cases").multipart(SMALL.form(&SMALL.case()))).await;
+    let case = case.expect(StatusCode::CREATED)["case"]["volume"].clone();
+    let content = format!("/v1/meshes/{}/content", case.as_str().unwrap());
+    for path in blobs(server.path()) {
+        std::fs::write(path, "cut").unwrap();
+    }
+    ask(server.get(&content)).await.problem(500, "integrity");
+    let again = ask(server.post("/v1/cases").multipart(SMALL.form(&SMALL.case()))).await;
+    assert_eq!(again.expect(StatusCode::CREATED)["case"]["volume"], case);
+    assert_eq!(ask(server.get(&content)).await.status, StatusCode::OK);
+
+    assert!(server.terminate().1);
+    let told = std::fs::read_to_string(&log).unwrap();
+    let told = told.lines().filter(|line| line.contains("stored again from an upload"));
+    let told: Vec<&str> = told.filter(|line| line.contains("WARN")).collect();
+    assert!(told.len() == 2 && told[0].contains(id), "{told:?}");
+}
+
+#[tokio::test]
+async fn a_job_whose_mesh_is_lost_or_damaged_names_it_and_says_which() {
+    for (what, why) in [(None, "missing"), (Some("cut"), "damaged")] {
+        let server = Server::start_with(&["--workers", "0"]);
+        let form = server.post("/v1/cases").multipart(SMALL.form(&SMALL.case()));
+        let case = ask(form).await.expect(StatusCode::CREATED);
+        let job = accepted(&server, &spec(case["id"].as_str().unwrap(), 1.0)).await;
+        let folder = server.kill();
+        for path in blobs(folder.path()) {
+            match what {
+                None => std::fs::remove_file(path).unwrap(),
+                Some(bytes) => std::fs::write(path, bytes).unwrap(),
+            }
+        }
+        let server = Server::start_in(folder, &["--workers", "1", "--attempts", "1"]);
+        let error = server.ended(&job).await["error"].clone();
+        let (kind, class) = (&error["type"], &error["class"]);
+        assert_eq!((kind, class), (&json!("storage"), &json!("infrastructure")), "{error}");
+        let (detail, mesh) = (error["detail"].as_str().unwrap(), case["case"]["volume"].as_str());
+        assert!(detail.contains(mesh.unwrap()) && detail.contains(why), "{detail}");
+        assert_eq!(error["attempts"], 1, "{error}");
+    }
 }

@@ -32,9 +32,9 @@ impl Work for Scripted {
             "panic" => panic!("a bug"),
             "stored at last" if self.storage_faults < 2 => {
                 self.storage_faults += 1;
-                Err(Failure::Storage("disk full".into()))
+                Err(Failure::of_results("disk full"))
             }
-            "never stored" => Err(Failure::Storage("disk full".into())),
+            "never stored" => Err(Failure::of_results("disk full")),
             "until stopped" => {
                 while !progress.is_cancelled() {
                     std::thread::yield_now();

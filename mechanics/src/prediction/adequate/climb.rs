@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::accepted::{Accepted, MeanErrors, not_met};
-use super::duration::{SECOND_ORDER_TAKES, newton_relative_time};
+use super::duration::{SECOND_ORDER_TAKES, least_det_f, newton_relative_time};
 use super::finite_strain::{self, NoAnswer};
 use super::objection::{CandidateAnswer, Objection};
 use super::rung::{
@@ -11,7 +11,6 @@ use super::rung::{
     error_over_estimate_at_rest,
 };
 use crate::mesh::Vector;
-use crate::model::fem::strain::determinants;
 use crate::model::problem::ModelError;
 use crate::prediction::answer::{self, Answer, Linear};
 use crate::prediction::case::{Case, Plan};
@@ -63,6 +62,7 @@ pub fn predict_adequately(
         linear_s: 0.0,
         newton_relative_time: newton_relative_time(1.0),
         in_contact: false,
+        gains_little: linear.correction_gains_little(),
         moving: linear.skin.points(),
         errors: Errors::default(),
         considered: Vec::new(),
@@ -89,6 +89,8 @@ struct Climb<'a> {
     newton_relative_time: f64,
     /// Whether tissue presses on something in the linear answer: what linearity leaves out is not estimated then.
     in_contact: bool,
+    /// Whether a correction is expected to leave too much.
+    gains_little: bool,
     /// Points of the skin that the linear answer moves.
     moving: Vec<u32>,
     errors: Errors,
@@ -154,7 +156,7 @@ impl Climb<'_> {
         case: &Case,
         plan: &Plan,
     ) -> Result<Option<(Scene, Answer)>, ModelError> {
-        let expected = self.errors.expected(Rung::FiniteStrainCorrected);
+        let expected = self.errors.expected(self.best_of(Rung::FiniteStrain));
         if !self.is_affordable(Rung::FiniteStrain, expected) {
             return Ok(None);
         }
@@ -208,7 +210,8 @@ impl Climb<'_> {
         };
         let displacement = &first.equilibrium.displacement;
         self.moving = self.scene.skin.moving_points(displacement);
-        self.newton_relative_time = newton_relative_time(least_det_f(self.scene, displacement));
+        self.newton_relative_time =
+            newton_relative_time(least_det_f(&self.scene.mesh, displacement));
         self.errors.mesh = first.missing.map(|missing| self.mesh_means(missing));
         self.errors.linearity = linearity.as_ref().ok().map(|left| self.means(&left.left_out));
     }
@@ -271,7 +274,14 @@ impl Climb<'_> {
         let second = self.errors.linearity.as_ref()?;
         let share = (THIRD * second.skin_mm / first).min(1.0);
         let third_order = Some(second.map(|error| error * share));
-        Errors { third_order, ..self.errors.clone() }.on(Rung::SecondOrderCorrected)
+        Errors { third_order, ..self.errors.clone() }.on(self.best_of(Rung::SecondOrder))
+    }
+
+    /// The better of a solution and its correction.
+    fn best_of(&self, solution: Rung) -> Rung {
+        let may_be_taken = |rung: &Rung| !(rung.is_corrected() && self.gains_little);
+        let own = |rung: &Rung| rung.solution() == solution && may_be_taken(rung);
+        Rung::ALL.into_iter().rfind(own).unwrap_or(solution)
     }
 
     /// Whether the third order is small beside the second.
@@ -340,17 +350,13 @@ impl Climb<'_> {
     /// Why the estimate is not added to an answer.
     fn why_not_corrected(&self, found: &CandidateAnswer) -> Option<&'static str> {
         if found.contact.is_some() {
-            return Some(
-                "the estimated discretisation error is not added where tissue is in contact",
-            );
+            Some("an estimate is not added where tissue is in contact")
+        } else if self.gains_little {
+            Some("an estimate of wedges, or of nearly incompressible hexahedra, is not added")
+        } else {
+            let collapses = collapses(self.scene, found.equilibrium);
+            collapses.then_some("an estimate is not added where cells collapse")
         }
-        if self.scene.wedges_lock() {
-            return Some(
-                "the estimated discretisation error of wedges that lock is not added: it makes results worse",
-            );
-        }
-        let collapses = collapses(self.scene, found.equilibrium);
-        collapses.then_some("the estimated discretisation error is not added where cells collapse: nothing is gained by it")
     }
 
     fn pass_over(&mut self, solution: Rung, why: String) {
@@ -388,9 +394,4 @@ impl Climb<'_> {
         }
         cheapest(&self.shares().collect::<Vec<_>>()).unwrap_or(Rung::Linear)
     }
-}
-
-/// Of the cell that a displacement presses most, or turns inside out.
-fn least_det_f(scene: &Scene, displacement: &[Vector]) -> f64 {
-    determinants(&scene.mesh, displacement).into_iter().fold(f64::INFINITY, f64::min)
 }

@@ -5,7 +5,9 @@
 //! answer, 17 for -3.7, 36 for -8.5, 57 for -10 (docs/finite-strain.md#measured). A step assembles the tangent anew, every second one a
 //! hierarchy, and iterates with pressures: a third of a linear answer.
 
+use crate::mesh::{Vector, VolumeMesh};
 use crate::model::fem::finite_strain::MOST_STEPS;
+use crate::model::fem::strain::determinants;
 
 /// The second order.
 pub const SECOND_ORDER_TAKES: f64 = 0.7;
@@ -24,6 +26,11 @@ pub const NEWTON_MAY_TAKE: [f64; 2] = [STEP_TAKES * STEPS, STEP_TAKES * MOST_STE
 pub(super) fn newton_relative_time(least_det_f: f64) -> f64 {
     let steps = STEPS + STEPS_TURNED * (-least_det_f).max(0.0);
     STEP_TAKES * steps.min(MOST_STEPS as f64)
+}
+
+/// Det F of the cell that a displacement presses most, or turns inside out.
+pub(super) fn least_det_f(mesh: &VolumeMesh, displacement: &[Vector]) -> f64 {
+    determinants(mesh, displacement).into_iter().fold(f64::INFINITY, f64::min)
 }
 
 #[cfg(test)]

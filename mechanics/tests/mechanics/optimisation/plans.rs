@@ -71,7 +71,7 @@ fn any_plan_within_the_limits_of_the_service_is_found_from_rest() {
     let response = response(&skin());
     let mut random = Random(1);
     for (points, degrees) in [(100, 85.0), (8, 60.0)] {
-        for draw in 0..200 {
+        for draw in 0..75 {
             let plan = random_plan(&mut random, degrees);
             let mut target = every_node(&moved_skin(&response, &plan), 1.0);
             while target.goals.len() > points {
@@ -111,17 +111,10 @@ fn variance_ratio(plan: [[f64; 6]; 2], draws: usize, seed: u64) -> Vec<f64> {
 
 #[test]
 fn the_error_that_noise_causes_is_as_large_as_the_variance_says() {
-    // 200 draws scatter by a tenth, so with some seeds one of the 24 ratios falls outside by chance:
-    // with 6, for one. 2000 draws scatter by three hundredths, and any seed does.
-    const SEED: u64 = 1;
+    // 800 draws scatter by a twentieth: each of the 24 ratios is four times that from its bounds, with any seed.
     for plan in [planted([[0.0; 6]; 2]), planted(SURGERY)] {
-        for (draws, low, high) in [(200, 0.8, 1.25), (2000, 0.9, 1.1)] {
-            let ratios = variance_ratio(plan, draws, SEED);
-            assert!(
-                ratios.iter().all(|ratio| (low..high).contains(ratio)),
-                "{draws}: {ratios:.3?}"
-            );
-        }
+        let ratios = variance_ratio(plan, 800, 1);
+        assert!(ratios.iter().all(|ratio| (0.8..1.25).contains(ratio)), "{ratios:.3?}");
     }
 }
 
@@ -370,7 +363,7 @@ fn targets_far_from_any_skin_have_a_nearest_plan_or_say_that_it_was_not_found() 
     let mut random = Random(5);
     let mut without = 0;
     for points in [1, 2, 5, 100] {
-        for _ in 0..50 {
+        for _ in 0..20 {
             let wanted: Vec<Vector> =
                 (0..points).map(|_| Vector::from_fn(|_, _| 60.0 * random.normal())).collect();
             let (bounds, targets) = (bounds(25.0, 90.0), [every_node(&wanted, 1.0)]);
@@ -388,5 +381,5 @@ fn targets_far_from_any_skin_have_a_nearest_plan_or_say_that_it_was_not_found() 
         }
     }
     // The residual is larger than the skin is curved, and steps become short before the minimum.
-    assert!(without <= 2, "{without} of 200");
+    assert!(without <= 1, "{without} of 80");
 }

@@ -6,9 +6,9 @@ use mechanics::mesh::sample::hard_block;
 use mechanics::mesh::{CellShape, Vector};
 use mechanics::plan::RigidMovement;
 use mechanics::prediction::{
-    Accepted, Adequate, Case, CaseSegment, Considered, ContactKind, ElementChoice, FibreDirection,
-    MeanErrors, Method, Plan, Prediction, Rung, Scene, Settings, SkinMembrane, TimedProgress,
-    predict, predict_adequately,
+    Accepted, Adequate, Case, CaseSegment, ContactKind, ElementChoice, FibreDirection, MeanErrors,
+    Method, Plan, Prediction, Rung, Scene, Settings, SkinMembrane, TimedProgress, predict,
+    predict_adequately,
 };
 use mechanics::progress::{Progress, Unobserved};
 
@@ -86,16 +86,32 @@ fn an_answer_that_only_its_mesh_spoils_is_corrected() {
 }
 
 #[test]
-fn an_answer_of_wedges_that_lock_is_not_corrected() {
-    let taken = |nu: f64| {
-        let case = slab(CellShape::Wedge6, nu);
+fn answers_of_wedges_and_of_nearly_incompressible_hexahedra_are_not_corrected() {
+    let is_corrected = |shape: CellShape, nu: f64| {
+        let case = slab(shape, nu);
         let plan = plan_of(&case, &movements(0.1));
         let found = adequate(&case, &plan, &Settings::default(), within(1e-3));
-        let is_corrected = |one: &&Considered| one.rung == Rung::Corrected;
-        found.considered.iter().find(is_corrected).unwrap().passed_over.clone()
+        let passed_over = |rung: Rung| {
+            let considered = found.considered.iter().find(|one| one.rung == rung);
+            considered.unwrap().passed_over.clone()
+        };
+        match passed_over(Rung::Corrected) {
+            None => true,
+            Some(why) => {
+                assert!(why.contains("nearly incompressible hexahedra"), "{why}");
+                assert_ne!(found.rung, Rung::Corrected);
+                false
+            }
+        }
     };
-    assert_eq!(taken(0.45), None);
-    assert!(taken(0.49).is_some_and(|why| why.contains("wedges that lock")));
+    for (shape, nu, wanted) in [
+        (CellShape::Tet4, 0.49, true),
+        (CellShape::Hex8, 0.43, true),
+        (CellShape::Hex8, 0.45, false),
+        (CellShape::Wedge6, 0.3, false),
+    ] {
+        assert_eq!(is_corrected(shape, nu), wanted, "{shape:?} {nu}");
+    }
 }
 
 #[test]

@@ -129,3 +129,39 @@ fn flat_layers_over_bone_that_moves_are_estimated_within_a_factor_of_two() {
         asserted(&format!("{layers} layers"), &question(case, plan, Method::FemLinear), [0.5, 2.1]);
     }
 }
+
+/// What a correction leaves, as a share of the estimate that is added: `auto` expects four fifths.
+#[test]
+fn a_correction_leaves_four_fifths_of_the_estimate_at_most_where_it_is_made() {
+    use ElementChoice::{MeanDilatation, Stabilised};
+    let rows = [
+        (CellShape::Tet4, Stabilised, 0.3, true),
+        (CellShape::Tet4, Stabilised, 0.49, true),
+        (CellShape::Hex8, MeanDilatation, 0.3, true),
+        (CellShape::Hex8, MeanDilatation, 0.43, true),
+        (CellShape::Hex8, MeanDilatation, 0.49, false),
+        (CellShape::Wedge6, MeanDilatation, 0.3, false),
+        (CellShape::Wedge6, MeanDilatation, 0.49, false),
+    ];
+    let mut too_much = Vec::new();
+    for (shape, truth, nu, is_made) in rows {
+        for (method, mm) in [(Method::FemLinear, 0.5), (Method::FemNonlinear, 4.0)] {
+            let shares = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [-0.6, 0.0, 0.8]];
+            let shares = shares.map(|way| {
+                let case = case_of(
+                    block(Vector::new(40.0, 32.0, 16.0), [5, 4, 2], shape),
+                    material(15.0, nu),
+                );
+                let (case, plan) = half_moved(case, Vector::from(way) * mm);
+                let settings =
+                    Settings { element: truth, method: method.clone(), ..Settings::default() };
+                let found = Question { case, plan, settings, halved: 2, truth }.effectivity();
+                found.left / found.mean
+            });
+            let row = format!("{shape:?} nu {nu} {method:?}: {shares:.2?} of the estimate left");
+            println!("{row}");
+            too_much.extend((is_made && shares.iter().any(|share| *share > 0.8)).then_some(row));
+        }
+    }
+    assert!(too_much.is_empty(), "{too_much:?}");
+}

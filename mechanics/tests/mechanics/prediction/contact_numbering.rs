@@ -68,7 +68,8 @@ fn contact_is_the_same_however_a_mesh_is_numbered() {
             let settings = Settings { method: method.clone(), ..unilateral() };
             let off = difference(&blocks, &pressed, &settings);
             println!("blocks {shape:?} {method:?}: {off:.1e}");
-            assert!(off < 3e-3, "blocks {shape:?} {method:?}: {off:.1e}");
+            let most = if method == Method::FemLinear { 3e-3 } else { 5e-3 };
+            assert!(off < most, "blocks {shape:?} {method:?}: {off:.1e}");
         }
         let off = difference(&jaws_of(shape, 2.5), &raised(6.0), &unilateral());
         println!("jaws {shape:?}: {off:.1e}");

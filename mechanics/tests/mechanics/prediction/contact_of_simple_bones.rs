@@ -10,9 +10,8 @@ use mechanics::plan::{PlannedSegment, RigidMovement};
 use mechanics::prediction::{Bone, Case, CaseSegment, Method, Plan, Prediction, Settings};
 
 use super::contact::{at, together, unilateral};
-use super::contact_on_bone::solid;
 use crate::scenes::{case_of, material, set, solve};
-use crate::surfaces::{map, movement, sphere};
+use crate::surfaces::{map, movement, solid, sphere};
 
 /// The slab.
 const SIDE: f64 = 30.0;

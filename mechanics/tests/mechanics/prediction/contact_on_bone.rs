@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use mechanics::mesh::sample::block;
-use mechanics::mesh::{CellShape, TriangleSurface, Vector};
+use mechanics::mesh::{CellShape, Vector};
 use mechanics::plan::{PlannedSegment, RigidMovement};
 use mechanics::prediction::{
     Bone, Case, CaseSegment, Method, Plan, Prediction, Prescribed, Settings,
@@ -11,6 +11,7 @@ use mechanics::prediction::{
 
 use super::contact::{PRESSING, at, together, unilateral};
 use crate::scenes::{case_of, constraint, material, set, solve};
+use crate::surfaces::solid;
 
 const LENGTHS: [f64; 3] = [20.0, 16.0, 12.0];
 const GAP: f64 = 0.5;
@@ -18,20 +19,6 @@ const PRESSED: f64 = 0.7;
 
 fn both() -> [Settings; 2] {
     [unilateral(), Settings { method: Method::FemNonlinear, ..unilateral() }]
-}
-
-/// A closed box between two corners.
-pub(super) fn solid(low: [f64; 3], high: [f64; 3]) -> TriangleSurface {
-    let corner =
-        |bits: usize| Vector::from_fn(|k, _| if bits >> k & 1 == 1 { high[k] } else { low[k] });
-    let quads =
-        [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
-    let triangles = quads.iter().flat_map(|[a, b, c, d]| [[*a, *b, *c], [*a, *c, *d]]);
-    TriangleSurface {
-        points: (0..8).map(corner).collect(),
-        triangles: triangles.collect(),
-        node_ids: None,
-    }
 }
 
 /// A slab between planes of symmetry that slides at its bottom, a plate of bone half a millimetre above it, and a block of tissue

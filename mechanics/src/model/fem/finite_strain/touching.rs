@@ -46,7 +46,7 @@ pub(super) struct Touching<'a> {
     exact_rounds: usize,
     /// Rows that said something new in the last round.
     new: usize,
-    /// The displacement of the last round, and by how much it differs from that of the round before, in mm.
+    /// The displacement of the last round, and by how much it differs from that of the round before, in mm; infinite in the first.
     last: Vec<Vector>,
     last_moved_mm: f64,
     /// Whether the set that presses repeated at the last step.
@@ -98,7 +98,7 @@ impl<'a> Touching<'a> {
             exact_rounds: 0,
             new: 0,
             last: Vec::new(),
-            last_moved_mm: 0.0,
+            last_moved_mm: f64::INFINITY,
             repeats: true,
             changed: None,
             effort: Effort::default(),
@@ -138,16 +138,21 @@ impl<'a> Touching<'a> {
     fn half_way(&mut self, displacement: &[Vector]) -> Option<Vec<Vector>> {
         let last = std::mem::replace(&mut self.last, displacement.to_vec());
         let pairs = || displacement.iter().zip(&last);
-        let moved_mm = pairs().map(|(u, last)| (u - last).norm()).fold(0.0, f64::max);
+        let moved_mm = match last.is_empty() {
+            true => f64::INFINITY,
+            false => pairs().map(|(u, last)| (u - last).norm()).fold(0.0, f64::max),
+        };
         let before_mm = std::mem::replace(&mut self.last_moved_mm, moved_mm);
         let alternates = self.late_rounds > FIRST_ROUNDS && moved_mm > ALTERNATES * before_mm;
         alternates.then(|| pairs().map(|(u, last)| (u + last) * 0.5).collect())
     }
 
-    /// Whether nothing of contact is left to do after a displacement and a share of the movement of bones.
+    /// Whether nothing of contact is left to do after a displacement and a share of the movement of bones. Where nothing moves any
+    /// more, rows that others determine, as of two nodes that face each other, keep what their normals differ by.
     pub fn rests(&self, displacement: &[Vector], share: f64) -> bool {
+        let stands = self.last_moved_mm <= CLOSED_MM;
         let is_met = || self.deepest(displacement, share) <= CLOSED_MM;
-        self.new == 0 && self.repeats && is_met()
+        self.new == 0 && self.repeats && (stands || is_met())
     }
 
     /// What presses on each node, in mN.

@@ -1,0 +1,115 @@
+//! The file of an embedded database: whether what is open is what its path names, and whether it is damaged.
+
+use std::ffi::OsString;
+use std::fs::Metadata;
+use std::io::{Error, ErrorKind};
+use std::os::unix::fs::MetadataExt;
+use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
+use std::time::SystemTime;
+
+use super::sqlite_codes::damage;
+
+/// Why nothing is read from the file of an embedded database and nothing written to it, until the service is started again.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum FileFault {
+    #[error(
+        "the file of the database is another or gone since it was opened, and what is written would be lost: put the right file in its \
+         place and restart the service"
+    )]
+    Replaced,
+    #[error(
+        "the log of the database, `facies.db-wal`, is gone while it is in use, and what is written would be lost: restart the service"
+    )]
+    LogRemoved,
+    #[error(
+        "the database is damaged ({0}): nothing is read or written until the service is restarted; if `facies admin fsck` finds damage \
+         then, restore it from a backup"
+    )]
+    Damaged(String),
+}
+
+impl From<FileFault> for sqlx::Error {
+    fn from(fault: FileFault) -> Self {
+        sqlx::Error::Io(Error::other(fault))
+    }
+}
+
+/// The fault that an error of a connection is about, if it is about one.
+pub fn fault_of(error: &sqlx::Error) -> Option<&FileFault> {
+    let sqlx::Error::Io(error) = error else { return None };
+    error.get_ref()?.downcast_ref()
+}
+
+/// Device, number and birth of a file: the number alone is given again to a file that is made after another was removed.
+type Identity = (u64, u64, Option<SystemTime>);
+
+fn identity(file: &Metadata) -> Identity {
+    (file.dev(), file.ino(), file.created().ok())
+}
+
+/// The file that was opened at the start. Its first fault stays.
+#[derive(Debug)]
+pub struct DatabaseFile {
+    path: PathBuf,
+    log: PathBuf,
+    opened: Identity,
+    fault: OnceLock<FileFault>,
+}
+
+impl DatabaseFile {
+    /// The file at this path, which has just been opened.
+    pub fn opened(path: &Path) -> Result<DatabaseFile, Error> {
+        let mut log = OsString::from(path);
+        log.push("-wal");
+        let opened = identity(&path.metadata()?);
+        Ok(DatabaseFile { path: path.into(), log: log.into(), opened, fault: OnceLock::new() })
+    }
+
+    /// Refuses a file that had a fault, or that is not at its path any more.
+    pub fn check(&self) -> Result<(), sqlx::Error> {
+        if let Some(fault) = self.fault.get() {
+            return Err(fault.clone().into());
+        }
+        match self.path.metadata() {
+            Ok(found) if identity(&found) == self.opened => Ok(()),
+            Err(error) if error.kind() != ErrorKind::NotFound => Err(error.into()),
+            _ => Err(self.gives_up(FileFault::Replaced)),
+        }
+    }
+
+    /// How many rows a statement changed on a connection that is still held. One that has changed a row has a write-ahead log, unless
+    /// that was removed.
+    pub fn changed(&self, answer: Result<u64, sqlx::Error>) -> Result<u64, sqlx::Error> {
+        let changed = self.watched(answer)?;
+        if changed > 0 {
+            self.check_log()?;
+        }
+        Ok(changed)
+    }
+
+    fn check_log(&self) -> Result<(), sqlx::Error> {
+        match self.log.metadata() {
+            Err(error) if error.kind() == ErrorKind::NotFound => {
+                Err(self.gives_up(FileFault::LogRemoved))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// An answer of the database. One that tells of damage is the last: what else is read may be wrong, and what is written lost.
+    pub fn watched<T>(&self, answer: Result<T, sqlx::Error>) -> Result<T, sqlx::Error> {
+        answer.map_err(|error| match damage(&error) {
+            Some(told) => self.gives_up(FileFault::Damaged(told)),
+            None => error,
+        })
+    }
+
+    fn gives_up(&self, fault: FileFault) -> sqlx::Error {
+        let first = self.fault.get_or_init(|| {
+            tracing::error!(file = %self.path.display(), %fault, "the database is given up");
+            fault
+        });
+        first.clone().into()
+    }
+}
