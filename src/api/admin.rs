@@ -27,6 +27,7 @@ use super::content_digest::ContentDigest;
 use super::error::{ApiError, ApiResult};
 use super::hosts::{Hosts, check_named_once};
 use super::key_lookup::unauthorized;
+use super::known_parameters::{KnownParameters, refuse_unknown};
 use super::middleware::named;
 use super::paging::PageParameters;
 use super::parameters::Parameters;
@@ -139,7 +140,13 @@ impl AdminRoutes {
     ) -> AdminRoutes {
         // A method that the router does not know gets no route.
         if let Ok(filter) = MethodFilter::try_from(method.clone()) {
-            self.router = self.router.route(path, on(filter, handler));
+            let mut route = on(filter, handler);
+            if method != Method::GET {
+                // What is to change stands in the path and the body.
+                let none = Arc::new(KnownParameters::default());
+                route = route.route_layer(from_fn_with_state(none, refuse_unknown));
+            }
+            self.router = self.router.route(path, route);
             self.declared.add(path, method, access);
         }
         self

@@ -66,6 +66,11 @@ impl DatabaseFile {
         Ok(DatabaseFile { path: path.into(), log: log.into(), opened, fault: OnceLock::new() })
     }
 
+    /// Whether it had a fault.
+    pub fn is_given_up(&self) -> bool {
+        self.fault.get().is_some()
+    }
+
     /// Refuses a file that had a fault, or that is not at its path any more.
     pub fn check(&self) -> Result<(), sqlx::Error> {
         if let Some(fault) = self.fault.get() {

@@ -273,6 +273,11 @@ impl Database {
     pub async fn close(&self) {
         for pool in [&self.reader, &self.writer] {
             match &**pool {
+                // The last connection that is closed writes its log into the file, which may be the last good copy: these stay
+                // open until the process ends.
+                Pool::Sqlite(connections) if connections.file.is_given_up() => {
+                    std::mem::forget(connections.clone());
+                }
                 Pool::Sqlite(connections) => connections.pool.close().await,
                 Pool::Postgres(pool) => pool.close().await,
             }

@@ -339,6 +339,23 @@ async fn keys_above_the_limit_are_refused_with_the_numbers() {
 }
 
 #[tokio::test]
+async fn a_change_of_administration_with_an_unknown_parameter_changes_nothing() {
+    let hospital = Hospital::open();
+    let key = hospital.key("a", &["read"]).await;
+    let id = key.split('_').nth(1).unwrap();
+    for (method, path) in [
+        (Method::POST, "/tenants/a/keys?days=1".to_owned()),
+        (Method::PUT, "/tenants/a?retention_days=5".to_owned()),
+        (Method::POST, format!("/tenants/a/keys/{id}/rotation?overlap_h=48")),
+        (Method::DELETE, format!("/tenants/a/keys/{id}?dry_run=true")),
+    ] {
+        let wanted = json!({"label": "test", "scopes": ["read"]});
+        ask(hospital.admin(method, &path).json(&wanted)).await.problem(400, "invalid-parameter");
+    }
+    hospital.get(&key, "/v1/cases").await.expect(StatusCode::OK);
+}
+
+#[tokio::test]
 async fn who_only_looks_at_administration_is_not_noted() {
     let hospital = Hospital::open();
     ask(hospital.admin(Method::HEAD, "/tenants")).await;
