@@ -8,11 +8,14 @@ const READ_ONLY: u32 = 8;
 const PASSING: [u32; 4] = [5, READ_ONLY, 10, 14];
 /// The file is damaged, or is none of SQLite.
 const DAMAGED: [u32; 2] = [11, 26];
+/// A page ends before its length (SQLITE_IOERR_SHORT_READ): the file or its log was cut.
+const SHORT_READ: &str = "522";
 
 /// What SQLite says of a damaged file, where the error tells of one.
 pub fn damage(error: &sqlx::Error) -> Option<String> {
     let sqlx::Error::Database(error) = error else { return None };
-    let is_damaged = |code: &str| kind(code).is_some_and(|kind| DAMAGED.contains(&kind));
+    let is_damaged =
+        |code: &str| code == SHORT_READ || kind(code).is_some_and(|kind| DAMAGED.contains(&kind));
     error.code().filter(|code| is_damaged(code)).map(|_| error.message().to_owned())
 }
 
