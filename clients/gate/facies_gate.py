@@ -372,7 +372,7 @@ def run(arguments: argparse.Namespace) -> int:
     largest = "" if worst is None else f", largest p95 {worst:.4g} mm"
     say(f"{verdict['rows']} row{'' if verdict['rows'] == 1 else 's'}, {verdict['worse']} worse{largest}; outcome {verdict['outcome']}")
     if verdict["outcome"] == "pass":
-        put_on(service, job, later)
+        put_on(service, job, later, arguments.baseline_tag)
         if baseline and baseline > job["id"] and arguments.baseline_tag in later:
             say(f"study {baseline} is newer and stays the baseline of {arguments.baseline_tag!r}")
     elif later:
@@ -383,11 +383,12 @@ def run(arguments: argparse.Namespace) -> int:
     return EXIT_CODES[verdict["outcome"]]
 
 
-def put_on(service: Service, job: dict, tags: list[str]) -> None:
-    """Puts tags on a study that has not got them."""
+def put_on(service: Service, job: dict, tags: list[str], baseline_tag: str) -> None:
+    """Puts tags on a study that has not got them. One too many takes the place of the oldest, which is not to be that of the baseline."""
     missing = [tag for tag in tags if tag not in job["tags"]]
     if missing:
-        service.document("PATCH", f"/v1/jobs/{job['id']}", {"tags": {"add": missing}})
+        kept = [tag for tag in job["tags"] if tag == baseline_tag]
+        service.document("PATCH", f"/v1/jobs/{job['id']}", {"tags": {"add": kept + missing}})
         say(f"it gets the tag {' and '.join(map(repr, missing))}")
 
 

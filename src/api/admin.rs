@@ -11,12 +11,13 @@ use axum::handler::Handler;
 use axum::http::{HeaderMap, Method, StatusCode, header};
 use axum::middleware::{Next, from_fn_with_state};
 use axum::response::{IntoResponse, Response};
-use axum::routing::{MethodFilter, on};
+use axum::routing::{MethodFilter, MethodRouter, on};
 use bytes::Bytes;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use tokio::net::TcpListener;
 use tokio::time::timeout;
+use utoipa::IntoParams;
 
 use super::access::{Access, Audit, Declared, RouteAccess};
 use super::audit::{self, AuditParameters};
@@ -27,7 +28,7 @@ use super::content_digest::ContentDigest;
 use super::error::{ApiError, ApiResult};
 use super::hosts::{Hosts, check_named_once};
 use super::key_lookup::unauthorized;
-use super::known_parameters::{KnownParameters, refuse_unknown};
+use super::known_parameters::KnownParameters;
 use super::middleware::named;
 use super::paging::PageParameters;
 use super::parameters::Parameters;
@@ -92,15 +93,15 @@ pub(super) fn admin_routes() -> AdminRoutes {
         .open("/metrics", counted)
         .open("/healthz", async || "ok\n")
         .open("/errors", async || super::error_page::page())
-        .reads("/tenants", tenants)
+        .lists::<PageParameters, _>("/tenants", tenants)
         .changes(Method::PUT, "/tenants/{tenant}", set_tenant)
-        .reads("/tenants/{tenant}/keys", list_keys)
+        .lists::<PageParameters, _>("/tenants/{tenant}/keys", list_keys)
         .changes(Method::POST, "/tenants/{tenant}/keys", create_key)
         .changes(Method::DELETE, "/tenants/{tenant}/keys/{id}", revoke_key)
         .changes(Method::POST, "/tenants/{tenant}/keys/{id}/rotation", rotate_key)
-        .reads("/audit", list_audit)
+        .lists::<AuditParameters, _>("/audit", list_audit)
         .reads("/audit/check", check_audit)
-        .reads("/lost-jobs", lost_jobs)
+        .lists::<PageParameters, _>("/lost-jobs", lost_jobs)
         .changes(Method::POST, "/lost-jobs/{id}/requeue", requeue)
 }
 
@@ -114,41 +115,47 @@ pub(super) struct AdminRoutes {
 impl AdminRoutes {
     /// Open GET routes.
     fn open<T: 'static>(self, path: &str, handler: impl Handler<T, AdminListener>) -> AdminRoutes {
-        self.with(Method::GET, path, Access::Open, handler)
+        self.with(Method::GET, path, Access::Open, on(MethodFilter::GET, handler))
     }
 
-    /// Read-only GET routes.
+    /// Read-only GET routes without parameters.
     fn reads<T: 'static>(self, path: &str, handler: impl Handler<T, AdminListener>) -> AdminRoutes {
-        self.with(Method::GET, path, Access::reads(Scope::Admin), handler)
+        let route = KnownParameters::default().guard(on(MethodFilter::GET, handler));
+        self.with(Method::GET, path, Access::reads(Scope::Admin), route)
     }
 
+    /// Read-only GET routes with parameters.
+    fn lists<P: IntoParams, T: 'static>(
+        self,
+        path: &str,
+        handler: impl Handler<T, AdminListener>,
+    ) -> AdminRoutes {
+        let route = KnownParameters::of::<P>().guard(on(MethodFilter::GET, handler));
+        self.with(Method::GET, path, Access::reads(Scope::Admin), route)
+    }
+
+    /// What is to change stands in the path and the body.
     fn changes<T: 'static>(
         self,
         method: Method,
         path: &str,
         handler: impl Handler<T, AdminListener>,
     ) -> AdminRoutes {
-        self.with(method, path, Access::changes(Scope::Admin), handler)
+        // A method that the router does not know gets no route.
+        let Ok(filter) = MethodFilter::try_from(method.clone()) else { return self };
+        let route = KnownParameters::default().guard(on(filter, handler));
+        self.with(method, path, Access::changes(Scope::Admin), route)
     }
 
-    fn with<T: 'static>(
+    fn with(
         mut self,
         method: Method,
         path: &str,
         access: Access,
-        handler: impl Handler<T, AdminListener>,
+        route: MethodRouter<AdminListener>,
     ) -> AdminRoutes {
-        // A method that the router does not know gets no route.
-        if let Ok(filter) = MethodFilter::try_from(method.clone()) {
-            let mut route = on(filter, handler);
-            if method != Method::GET {
-                // What is to change stands in the path and the body.
-                let none = Arc::new(KnownParameters::default());
-                route = route.route_layer(from_fn_with_state(none, refuse_unknown));
-            }
-            self.router = self.router.route(path, route);
-            self.declared.add(path, method, access);
-        }
+        self.router = self.router.route(path, route);
+        self.declared.add(path, method, access);
         self
     }
 }

@@ -46,7 +46,6 @@ pub struct AuditList {
 }
 
 #[derive(Deserialize, IntoParams)]
-#[serde(deny_unknown_fields)]
 #[into_params(parameter_in = Query)]
 pub struct AuditParameters {
     /// Rows with a larger number; default: 0.

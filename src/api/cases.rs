@@ -83,7 +83,6 @@ struct CaseList {
 }
 
 #[derive(Deserialize, IntoParams)]
-#[serde(deny_unknown_fields)]
 #[into_params(parameter_in = Query)]
 struct CreateParameters {
     /// Accepts meshes smaller or larger than any head. Default: false.
@@ -91,7 +90,6 @@ struct CreateParameters {
 }
 
 #[derive(Deserialize, IntoParams)]
-#[serde(deny_unknown_fields)]
 #[into_params(parameter_in = Query)]
 struct ListParameters {
     /// Only cases with this tag.

@@ -22,12 +22,12 @@ use crate::schema::job_change::JobChangeDocument;
 use crate::schema::key::Scope;
 use crate::schema::wire::canonical::sha256_hex;
 use crate::schema::wire::strict;
-use crate::schema::{ErrorCode, Faults, Pointer};
+use crate::schema::{ErrorCode, Faults};
 
 use super::{Service, body, conditional, job_input, json, with_header};
 use crate::schema::job::{JobStatus, StatusInfo};
 use crate::schema::job_document::{JobDocument, JobKind};
-use crate::store::{Dismissal, Enqueued, JobFilter, JobRow, NewJob, Tagged};
+use crate::store::{Dismissal, Enqueued, JobFilter, JobRow, NewJob};
 use crate::traces::TraceParent;
 
 /// Equal jobs that are found and gone again before one more is tried.
@@ -52,7 +52,6 @@ struct JobList {
 }
 
 #[derive(Deserialize, IntoParams)]
-#[serde(deny_unknown_fields)]
 #[into_params(parameter_in = Query)]
 struct ListParameters {
     /// Only jobs in this state.
@@ -152,8 +151,7 @@ async fn enqueued(service: &Service, accepted: &NewJob, new: &NewId) -> ApiResul
 
 /// Begins the retention of a job anew that is asked for again; false where there is none.
 async fn renewed(service: &Service, id: &str) -> ApiResult<bool> {
-    let tagged = service.store.change_tags(id, &[], &[], 0).await?;
-    Ok(tagged != Tagged::NotFound)
+    Ok(service.store.change_tags(id, &[], &[], 0).await?)
 }
 
 /// Gives a job that was found the tags of the request; false where it was removed meanwhile.
@@ -217,8 +215,8 @@ async fn show(service: Service, Id(id): Id, headers: HeaderMap) -> ApiResult {
     conditional::document(&headers, answer).await
 }
 
-/// Changes the tags of a job, in any state. Adds the tags of `add` and removes those of `remove`; all
-/// others stay; redundant changes are no mistake. So changes of several clients do not overwrite each other, and need no
+/// Changes the tags of a job, in any state. Adds the tags of `add` and removes those of `remove`;
+/// others stay, but beyond the limit of tags those put on longest ago go; redundant changes are no mistake. So changes of several clients do not overwrite each other, and need no
 /// If-Match; one that is sent has to name the present state of the job.
 #[utoipa::path(
     patch, path = "/v1/jobs/{id}", operation_id = "change_job", tag = "jobs",
@@ -264,14 +262,8 @@ fn state_tag(job: &JobRow) -> ApiResult<String> {
 async fn tag(service: &Service, id: &str, add: &[String], remove: &[String]) -> ApiResult<()> {
     let most = service.limits.tags as usize;
     match service.store.change_tags(id, add, remove, most).await? {
-        Tagged::Done => Ok(()),
-        Tagged::NotFound => Err(no_such_job()),
-        Tagged::TooMany(count) => {
-            let detail = format!("job {id} would have {count} tags, at most {most} are allowed");
-            let mut faults = Faults::default();
-            faults.add(&Pointer::root().key("tags"), ErrorCode::TooMany, detail);
-            faults.into_result().map_err(ApiError::from)
-        }
+        true => Ok(()),
+        false => Err(no_such_job()),
     }
 }
 

@@ -6,8 +6,10 @@ use std::sync::Arc;
 
 use axum::extract::{Query, Request, State};
 use axum::http::{Method, Uri};
-use axum::middleware::Next;
+use axum::middleware::{Next, from_fn_with_state};
 use axum::response::{IntoResponse, Response};
+use axum::routing::MethodRouter;
+use utoipa::IntoParams;
 use utoipa::openapi::RefOr;
 use utoipa::openapi::path::{Operation, Parameter, ParameterIn};
 
@@ -18,6 +20,12 @@ use super::error::{ApiError, ApiResult};
 pub struct KnownParameters(HashMap<Method, Vec<String>>);
 
 impl KnownParameters {
+    /// The parameters of a route without a description, for GET.
+    pub fn of<P: IntoParams>() -> KnownParameters {
+        let names = P::into_params(|| Some(ParameterIn::Query));
+        KnownParameters([(Method::GET, names.into_iter().map(|own| own.name).collect())].into())
+    }
+
     /// Takes the parameters of an operation from its description.
     pub fn add(&mut self, method: Method, operation: &Operation) {
         let of_query = |parameter: &RefOr<Parameter>| match parameter {
@@ -28,6 +36,14 @@ impl KnownParameters {
         };
         let all = operation.parameters.iter().flatten();
         self.0.insert(method, all.filter_map(of_query).collect());
+    }
+
+    /// A route that refuses other parameters.
+    pub fn guard<S: Clone + Send + Sync + 'static>(
+        self,
+        route: MethodRouter<S>,
+    ) -> MethodRouter<S> {
+        route.route_layer(from_fn_with_state(Arc::new(self), refuse_unknown))
     }
 
     fn check(&self, method: &Method, uri: &Uri) -> ApiResult<()> {
@@ -49,8 +65,7 @@ impl KnownParameters {
     }
 }
 
-/// The layer of each route.
-pub async fn refuse_unknown(
+async fn refuse_unknown(
     State(known): State<Arc<KnownParameters>>,
     request: Request,
     next: Next,

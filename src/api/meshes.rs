@@ -41,7 +41,6 @@ pub fn router() -> Resources {
 
 /// Parameters of an upload.
 #[derive(Clone, Default, Deserialize, IntoParams)]
-#[serde(deny_unknown_fields)]
 #[into_params(parameter_in = Query)]
 pub struct UploadParameters {
     /// The frame of the coordinates; a `SPACE=` mark in the file has to agree. The `space` of an image takes
@@ -247,7 +246,6 @@ async fn show(service: Service, Id(id): Id, headers: HeaderMap) -> ApiResult {
 }
 
 #[derive(Deserialize, IntoParams)]
-#[serde(deny_unknown_fields)]
 #[into_params(parameter_in = Query)]
 struct ContentParameters {
     /// `vtu` (volumes only), `vtp`, `stl` or `ply`; of a volume the last three have the boundary. `nrrd` (images

@@ -16,7 +16,6 @@ const USUAL_PAGE: u32 = 50;
 
 /// The parameters of a list without others.
 #[derive(Deserialize, IntoParams)]
-#[serde(deny_unknown_fields)]
 #[into_params(parameter_in = Query)]
 pub struct PageParameters {
     cursor: Option<String>,

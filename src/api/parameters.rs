@@ -12,7 +12,7 @@ use crate::schema::key::is_key_id;
 /// The most rows of a page of a list.
 pub const LONGEST_PAGE: u32 = 200;
 
-/// The query, without unknown parameters: a misspelt one would be a silent default.
+/// The query; who reads it has a layer that refuses unknown parameters (`known_parameters`).
 pub struct Parameters<T>(pub T);
 
 impl<T: DeserializeOwned, S: Sync> FromRequestParts<S> for Parameters<T> {

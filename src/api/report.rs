@@ -64,7 +64,6 @@ impl ReportFormat {
 }
 
 #[derive(Deserialize, IntoParams)]
-#[serde(deny_unknown_fields)]
 #[into_params(parameter_in = Query)]
 struct ReportParameters {
     /// Default: the preferred type of the header Accept, else `json`.

@@ -1,16 +1,14 @@
 //! Routes of the service, each with its scope and audit class.
 
-use std::sync::Arc;
-
 use axum::http::Method;
-use axum::middleware::{from_fn, from_fn_with_state};
+use axum::middleware::from_fn;
 use utoipa::openapi::PathItem;
 use utoipa::openapi::path::Operation;
 use utoipa_axum::router::{OpenApiRouter, UtoipaMethodRouter};
 
 use super::Service;
 use super::access::{Access, Declared};
-use super::known_parameters::{KnownParameters, refuse_unknown};
+use super::known_parameters::KnownParameters;
 use super::middleware;
 use crate::schema::key::Scope;
 
@@ -60,8 +58,7 @@ impl Resources {
                 self.declared.add(path, method, access);
             }
             if path.starts_with(INTERFACE) {
-                handlers =
-                    handlers.route_layer(from_fn_with_state(Arc::new(known), refuse_unknown));
+                handlers = known.guard(handlers);
             }
         }
         let router = self.router.routes((schemas, paths, handlers));

@@ -39,7 +39,6 @@ pub fn router() -> Resources {
 }
 
 #[derive(Deserialize, IntoParams)]
-#[serde(deny_unknown_fields)]
 #[into_params(parameter_in = Query)]
 struct ResponseParameters {
     /// The job that built the response. Default: the newest for the present version of the case, by `fem_linear` with the usual element, the
@@ -68,7 +67,6 @@ impl ResponseParameters {
 }
 
 #[derive(Deserialize, IntoParams)]
-#[serde(deny_unknown_fields)]
 #[into_params(parameter_in = Query)]
 struct ApplyParameters {
     /// The job that built the response. Default: the newest for the present version of the case, by `fem_linear` with the usual element, the

@@ -42,7 +42,6 @@ async fn manifest(service: Service, Id(id): Id, headers: HeaderMap) -> ApiResult
 }
 
 #[derive(Deserialize, IntoParams)]
-#[serde(deny_unknown_fields)]
 #[into_params(parameter_in = Query)]
 struct FileParameters {
     /// The language of a drawn report. Default: the preferred one of the header Accept-Language, else `en`.

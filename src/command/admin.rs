@@ -55,7 +55,7 @@ enum Command {
         #[command(flatten)]
         settings: Settings,
     },
-    /// Tell whether retention trusts the clock; exits with 1 while it erases nothing because the clock is far ahead
+    /// Tell whether retention trusts the clock; exits with 1 while it erases nothing because the clock is far off
     Clock {
         /// The clock is right
         #[arg(long)]

@@ -24,12 +24,7 @@ pub enum AdminError {
     Io(#[from] std::io::Error),
     #[error("{0}")]
     Refused(String),
-    #[error(
-        "retention erases nothing: the clock is {} h ahead of when this deployment ran last, and is trusted after {} h more of service; \
-         `facies admin clock --trust` confirms it",
-        .0.ahead_h,
-        .0.trusted_in_h
-    )]
+    #[error("retention erases nothing: {0}; `facies admin clock --trust` confirms it")]
     ClockDoubted(ClockDoubt),
     #[error("the audit log was changed: row {at} does not follow from those before it")]
     Audit { at: i64 },

@@ -341,15 +341,13 @@ async fn sweep(store: &Store) {
     }
 }
 
-/// Tells that retention erases nothing because the clock is far ahead.
+/// Tells that retention erases nothing because the clock is far off.
 async fn tell_doubt(store: &Store) -> Result<(), StoreError> {
     let doubt = store.clock_doubt().await?;
     metrics::retention_withheld(doubt.is_some());
     if let Some(doubt) = doubt {
         tracing::error!(
-            ahead_h = doubt.ahead_h,
-            trusted_in_h = doubt.trusted_in_h,
-            "retention erases nothing: the clock is far ahead of when this deployment ran last; `facies admin clock --trust` confirms it"
+            "retention erases nothing: {doubt}; `facies admin clock --trust` confirms it"
         );
     }
     Ok(())

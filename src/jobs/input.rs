@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::cohort::CohortInput;
 use super::compare::CompareInput;
 use super::conform::ConformInput;
+use super::failure::JobError;
 use super::learn::LearnInput;
 use super::meshing::MeshingInput;
 use super::optimise::OptimiseInput;
@@ -48,6 +49,18 @@ impl JobInput {
                 StudyKind::Study => JobKind::Study,
                 StudyKind::Batch => JobKind::Batch,
             },
+        }
+    }
+
+    /// An error of the job with its places in the document that was posted: the parts of an input have them in theirs. The meshing of a
+    /// case is a member of that.
+    pub fn as_posted(&self, error: JobError) -> JobError {
+        let is_of_case = matches!(self, JobInput::Meshing(meshing) if meshing.case.is_some());
+        match error {
+            JobError::Refused(problem) => {
+                JobError::Refused(problem.moved("/spec", if is_of_case { "/meshing" } else { "" }))
+            }
+            other => other,
         }
     }
 

@@ -150,26 +150,27 @@ pub fn response_job(
     let mut provenance = origin.provenance(&clock);
     let mesh = mesh_summary(&prepared.scene.mesh, &prepared.quality);
     add_method(&mut provenance, input.spec.method, mesh, solver);
-    let warnings = warnings_of(&prepared, &columns, order);
+    let warnings = warnings_of(input, &prepared, &columns);
     let result = ResultDocument::new(input.job.clone(), &folder.files, provenance, warnings);
     folder.add(OutputName::ResultJson, &encode_result(&result)?)?;
     Ok(JobOutput { result, files: folder.files, meshes: Vec::new() })
 }
 
-/// Of the case and its mesh, of what its law makes of the second order, and of how its columns were solved.
+/// Of the case and its mesh, of muscles without a column, of what its law makes of the second order, and of how its columns were solved.
 fn warnings_of(
+    input: &ResponseInput,
     prepared: &Prepared,
     columns: &Columns,
-    order: ResponseOrder,
 ) -> Vec<WarningDocument> {
-    let of_order = match order {
+    let left_out = input.spec.left_out(&prepared.scene);
+    let of_order = match input.spec.response_order() {
         ResponseOrder::First => None,
         ResponseOrder::Second => prepared.scene.second_order_locking(),
     };
     let of_case = prepared.warnings.iter().chain(&prepared.scene.warnings);
     let wanted = prepared.scene.settings.relative_residual;
     let loosely = solved_loosely(wanted, columns.solver.relative_residual);
-    warnings_after(&prepared.told, of_case.chain(&of_order).chain(&loosely))
+    warnings_after(&prepared.told, of_case.chain(&left_out).chain(&of_order).chain(&loosely))
 }
 
 /// The columns and their description.
@@ -204,7 +205,7 @@ fn write_columns(
             sha256: canonical::sha256_hex(&bytes),
         },
         second_order,
-        warnings: warnings_of(prepared, columns, input.spec.response_order()),
+        warnings: warnings_of(input, prepared, columns),
     };
     let description = ResponseDescription::new(columns, origin);
     let text = serde_json::to_vec(&description)

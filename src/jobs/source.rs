@@ -6,6 +6,7 @@ use std::sync::Arc;
 use crate::schema::ErrorCode;
 use crate::schema::WarningDocument;
 use crate::schema::case::document::LengthUnit;
+use crate::schema::mesh::content_in_case;
 use mechanics::format::{Mesh, ReadMesh, SurfaceArrays};
 use mechanics::image::ImageVolume;
 use mechanics::mesh::{Frame, TriangleSurface, VolumeMesh, Warning};
@@ -98,12 +99,10 @@ impl StoredMesh {
         StoredMesh { shape, of_points, frame, units, warnings, told, sha256, identity }
     }
 
-    /// What it is to a case, whose meshes are in the case's frame and unit or refused: an image is turned from its own frame.
+    /// What it is to a case.
     pub fn content_in_case(&self) -> String {
-        match self.shape {
-            StoredShape::Image(_) => self.identity.clone(),
-            StoredShape::Volume(_) | StoredShape::Surface(_) => self.sha256.clone(),
-        }
+        let is_image = matches!(self.shape, StoredShape::Image(_));
+        content_in_case(is_image, &self.sha256, &self.identity)
     }
 
     /// The surface, or the boundary of the volume; an image has none.

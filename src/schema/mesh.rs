@@ -43,13 +43,15 @@ impl MeshDocument {
         stated.fold(self.sha256.clone(), |identity, own| format!("{identity} {own}"))
     }
 
-    /// What it is to a case, whose meshes are in the case's frame and unit or refused: an image is turned from its own frame.
+    /// What it is to a case.
     pub fn content_in_case(&self) -> String {
-        match self.report.image {
-            Some(_) => self.identity(),
-            None => self.sha256.clone(),
-        }
+        content_in_case(self.report.image.is_some(), &self.sha256, &self.identity())
     }
+}
+
+/// What a mesh is to a case, whose meshes are in the case's frame and unit or refused: an image is turned from its own frame.
+pub fn content_in_case(is_image: bool, sha256: &str, identity: &str) -> String {
+    if is_image { identity.to_owned() } else { sha256.to_owned() }
 }
 
 /// Content of a mesh file. Lengths are in the units of the file.

@@ -15,6 +15,8 @@ use crate::schema::wire::canonical;
 use crate::schema::wire::fault::{Faults, Pointer};
 use crate::schema::wire::limits::Limits;
 use crate::schema::wire::problem::Problem;
+use mechanics::mesh::Warning;
+use mechanics::mesh::ignored::listed;
 use mechanics::prediction::Scene;
 use mechanics::response::{InnerLoad, ResponseError, ResponseOrder, inner_loads};
 
@@ -59,7 +61,7 @@ pub struct ResponseDocument {
     /// Regions whose growth plans may state, a column each; `*`: all tissue. Default: none.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub growth: Vec<String>,
-    /// Muscles that plans may activate, a column each. Default: all of the case for order 1, none for order 2.
+    /// Muscles that plans may activate, a column each. Default: all of the case without `stiffening` for order 1, none for order 2.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub muscles: Option<Vec<String>>,
@@ -155,8 +157,9 @@ impl ResponseDocument {
 
     /// The requested columns of growth and muscles of a scene.
     pub fn inner_loads(&self, scene: &Scene) -> Result<Vec<InnerLoad>, ResponseError> {
+        let linear = scene.muscles.iter().filter(|own| !own.stiffens);
         let usual = match self.response_order() {
-            ResponseOrder::First => scene.muscles.iter().map(|own| own.name.clone()).collect(),
+            ResponseOrder::First => linear.map(|own| own.name.clone()).collect(),
             ResponseOrder::Second => Vec::new(),
         };
         let trimmed = |names: &[String]| -> Vec<String> {
@@ -168,6 +171,26 @@ impl ResponseDocument {
             true => Err(ResponseError::NoSecondOrderInside),
             false => Ok(loads),
         }
+    }
+
+    /// The warning of muscles that have no column since they stiffen, where no muscles are stated.
+    pub fn left_out(&self, scene: &Scene) -> Option<Warning> {
+        if self.muscles.is_some() || self.response_order() == ResponseOrder::Second {
+            return None;
+        }
+        let stiff: Vec<&String> =
+            scene.muscles.iter().filter(|own| own.stiffens).map(|own| &own.name).collect();
+        let (count, names) = (stiff.len(), listed(stiff.into_iter()));
+        let detail = format!(
+            "muscles whose stiffness grows with their activation have no column, and applied plans cannot activate them: {names}"
+        );
+        (count > 0).then(|| Warning::new("muscle-not-linear", detail).with("muscles", count as f64))
+    }
+
+    fn place_of_muscle(&self, name: &str) -> Pointer {
+        let mut names = self.muscles.iter().flatten();
+        let place = names.position(|other| other.trim() == name);
+        Pointer::root().key("spec").key("muscles").index(place.unwrap_or_default())
     }
 
     /// The refusal of a scene that has no response.
@@ -194,14 +217,9 @@ impl ResponseDocument {
                 (at, ErrorCode::UnknownRegion)
             }
             ResponseError::UnknownMuscle { name, .. } => {
-                let mut names = self.muscles.iter().flatten();
-                let place = names.position(|other| other.trim() == name);
-                let at = root.key("spec").key("muscles").index(place.unwrap_or_default());
-                (at, ErrorCode::UnknownMuscle)
+                (self.place_of_muscle(name), ErrorCode::UnknownMuscle)
             }
-            ResponseError::Stiffens { .. } => {
-                (root.key("spec").key("muscles"), ErrorCode::NotLinear)
-            }
+            ResponseError::Stiffens { name } => (self.place_of_muscle(name), ErrorCode::NotLinear),
             ResponseError::NoSecondOrder | ResponseError::NoSecondOrderInside => {
                 (root.key("spec").key("order"), ErrorCode::MethodNotAvailable)
             }

@@ -13,7 +13,7 @@ use super::second_order::{ColumnsDocument, LinearityDocument, SecondOrderDocumen
 use super::{CornerPair, Triple, WarningDocument};
 use crate::schema::case::document::FrameName;
 use crate::schema::engine::EngineDocument;
-use crate::schema::plan::document::{PlanContext, PlanDocument};
+use crate::schema::plan::document::{PlanContext, PlanDocument, PlanSegmentDocument};
 use crate::schema::wire::fault::{Faults, Pointer};
 use crate::schema::wire::limits::Limits;
 use crate::schema::wire::problem::Problem;
@@ -21,7 +21,7 @@ use mechanics::boundary::ConnectedPart;
 use mechanics::mesh::ignored::listed;
 use mechanics::mesh::{Frame, Vector, Warning};
 use mechanics::plan::RigidMovement;
-use mechanics::plan::doubt::{MovedSegment, beyond_face, nothing_moves, suspect_units};
+use mechanics::plan::doubt::{MovedSegment, nothing_moves, suspect_units, too_far};
 use mechanics::prediction::{RigidlyCarried, is_normal_turned, normal_turned, rigidly_carried};
 use mechanics::response::linearity::LINEAR_RANGE_MM;
 use mechanics::response::{Columns, InnerLoad, Linearity, ResponseSegment, SampledSecond};
@@ -230,17 +230,25 @@ impl ResponseDescription {
         let of = |segment: &ResponseSegmentDocument| by_name.get(segment.name.trim()).copied();
         let movements: Vec<RigidMovement> =
             self.segments.iter().map(|segment| of(segment).unwrap_or_default()).collect();
-        self.check_whole(&movements, &at)?;
+        self.check_whole(plan, &movements, &at)?;
         let doubts = plan.doubts().into_iter().chain(suspect).collect();
         Ok(PlanAmounts { movements, inner, doubts })
     }
 
-    /// Refuses what a prediction of the same plan refuses: segments that leave the face, and a face that moves rigidly.
-    fn check_whole(&self, movements: &[RigidMovement], at: &Pointer) -> Result<(), Problem> {
-        let beyond = beyond_face(&self.moved(movements), self.mesh_diagonal_mm);
-        if let Some(beyond) = beyond.filter(|_| self.mesh_diagonal_mm > 0.0) {
-            let at = at.key("segments");
-            return Err(Problem::at(&at, ErrorCode::PlanOutOfRange, beyond.to_string()));
+    /// Refuses what a prediction of the same plan refuses: segments that go too far, and a face that moves rigidly.
+    fn check_whole(
+        &self,
+        plan: &PlanDocument,
+        movements: &[RigidMovement],
+        at: &Pointer,
+    ) -> Result<(), Problem> {
+        let is_known = self.mesh_diagonal_mm > 0.0;
+        let diagonal = if is_known { self.mesh_diagonal_mm } else { f64::INFINITY };
+        if let Some(far) = too_far(&self.moved(movements), diagonal) {
+            let named = |own: &PlanSegmentDocument| own.name.trim() == far.name().trim();
+            let index = plan.segments.iter().position(named).unwrap_or_default();
+            let at = at.key("segments").index(index);
+            return Err(Problem::at(&at, ErrorCode::PlanOutOfRange, far.to_string()));
         }
         match self.rigidly_carried(movements).refused.into_iter().next() {
             Some(detail) => Err(Problem::at(at, ErrorCode::NothingHeld, detail)),

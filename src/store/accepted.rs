@@ -93,7 +93,7 @@ const INSERT: &str = "INSERT INTO jobs (id, kind, case_id, document, spec_hash, 
      traceparent, numerics, rows_key, truths, waits_for, status, progress, attempt, losses, claimable_from, \
        created, updated) \
      VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11, $12, $13, 'accepted', 0, 0, 0, 0, \
-       (SELECT now_ms FROM clock), (SELECT now_ms FROM clock)) \
+       (SELECT now_ms FROM clock), (SELECT now_ms FROM age_clock)) \
      ON CONFLICT (spec_hash) DO NOTHING";
 
 impl Store {

@@ -74,7 +74,7 @@ const LIST: &str = "SELECT cases.id, cases.document, report, version, cases.crea
        (SELECT 1 FROM case_tags WHERE case_tags.case_id = cases.id AND case_tags.tag = $2)) \
      ORDER BY cases.id DESC LIMIT $3";
 const INSERT: &str = "INSERT INTO cases (id, document, report, tenant, meshing, version, created, updated) \
-     VALUES ($1, $2, $3, $4, $5, 1, (SELECT now_ms FROM clock), (SELECT now_ms FROM clock))";
+     VALUES ($1, $2, $3, $4, $5, 1, (SELECT now_ms FROM clock), (SELECT now_ms FROM age_clock))";
 const REFER: &str =
     "INSERT INTO case_meshes (case_id, mesh_id) VALUES ($1, $2) ON CONFLICT DO NOTHING";
 /// What a case leaves when it goes: the files of its jobs.

@@ -32,7 +32,7 @@ const IN_TURN: &str = "SELECT name FROM tenants WHERE EXISTS (SELECT 1 FROM jobs
 const CLAIM: &str = "UPDATE jobs SET status = 'running', attempt = attempt + 1, lease_token = $1, \
      lease_expires = (SELECT now_ms FROM clock) + $2, heartbeat = (SELECT now_ms FROM clock), \
      phase = NULL, iteration = NULL, residual = NULL, \
-     started = COALESCE(started, (SELECT now_ms FROM clock)), updated = (SELECT now_ms FROM clock) \
+     started = COALESCE(started, (SELECT now_ms FROM clock)), updated = (SELECT now_ms FROM age_clock) \
      WHERE id = (SELECT id FROM jobs WHERE status = 'accepted' AND tenant = $3 AND waits_for = '' AND numerics <= $4 \
        AND claimable_from <= (SELECT now_ms FROM clock) ORDER BY priority, id LIMIT 1 \
        FOR UPDATE SKIP LOCKED) \

@@ -29,7 +29,7 @@ const MOVE: &str = "INSERT INTO blobs (sha256, place, announced) \
      VALUES ($1, $2, (SELECT now_ms FROM clock)) \
      ON CONFLICT (sha256) DO UPDATE SET place = excluded.place";
 const RUN_AGAIN: &str = "UPDATE jobs SET status = 'accepted', result = NULL, progress = 0, losses = 0, \
-     claimable_from = 0, finished = NULL, updated = (SELECT now_ms FROM clock) \
+     claimable_from = 0, finished = NULL, updated = (SELECT now_ms FROM age_clock) \
      WHERE id = $1 AND status = 'successful'";
 
 /// Inconsistencies.

@@ -105,7 +105,7 @@ const CASES: &str = "SELECT case_id FROM jobs WHERE id = $1 AND tenant = $2 AND 
 const WITH_ROWS: &str = "SELECT id FROM jobs WHERE rows_key = $1 AND tenant = $2 AND status = 'successful' \
      ORDER BY id DESC LIMIT 8";
 const DISMISS: &str = "UPDATE jobs SET status = 'dismissed', lease_token = NULL, lease_expires = NULL, \
-     finished = (SELECT now_ms FROM clock), updated = (SELECT now_ms FROM clock) \
+     finished = (SELECT now_ms FROM clock), updated = (SELECT now_ms FROM age_clock) \
      WHERE id = $1 AND tenant = $2 AND status IN ('accepted', 'running')";
 const FILES: &str = "SELECT blob FROM job_files WHERE job_id = $1";
 /// Locked before the cohorts that it leaves.

@@ -71,20 +71,20 @@ pub struct LostJob {
 }
 
 const RENEW: &str = "UPDATE jobs SET lease_expires = (SELECT now_ms FROM clock) + $3, \
-     heartbeat = (SELECT now_ms FROM clock), updated = (SELECT now_ms FROM clock), phase = $4, \
+     heartbeat = (SELECT now_ms FROM clock), updated = (SELECT now_ms FROM age_clock), phase = $4, \
      progress = CASE WHEN $5 > progress THEN $5 ELSE progress END, iteration = $6, residual = $7 \
      WHERE id = $1 AND status = 'running' AND lease_token = $2";
 const HELD: &str = "SELECT 1 FROM jobs WHERE id = $1 AND status = 'running' AND lease_token = $2";
 const SUCCEED: &str = "UPDATE jobs SET status = 'successful', result = $3, progress = 100, \
      lease_token = NULL, lease_expires = NULL, phase = NULL, \
-     finished = (SELECT now_ms FROM clock), updated = (SELECT now_ms FROM clock) \
+     finished = (SELECT now_ms FROM clock), updated = (SELECT now_ms FROM age_clock) \
      WHERE id = $1 AND status = 'running' AND lease_token = $2";
 const FAIL: &str = "UPDATE jobs SET status = 'failed', error = $3, error_class = $4, \
      lease_token = NULL, lease_expires = NULL, \
-     finished = (SELECT now_ms FROM clock), updated = (SELECT now_ms FROM clock) \
+     finished = (SELECT now_ms FROM clock), updated = (SELECT now_ms FROM age_clock) \
      WHERE id = $1 AND status = 'running' AND lease_token = $2";
 const RELEASE: &str = "UPDATE jobs SET status = 'accepted', lease_token = NULL, lease_expires = NULL, \
-     updated = (SELECT now_ms FROM clock) \
+     updated = (SELECT now_ms FROM age_clock) \
      WHERE id = $1 AND status = 'running' AND lease_token = $2";
 /// An attempt that failed through no fault of the job: accepted again after a pause, or failed for good.
 const LOSE: &str = "UPDATE jobs SET losses = losses + 1, lease_token = NULL, lease_expires = NULL, \
@@ -93,14 +93,14 @@ const LOSE: &str = "UPDATE jobs SET losses = losses + 1, lease_token = NULL, lea
      error_class = CASE WHEN losses + 1 >= $3 THEN $6 END, \
      finished = CASE WHEN losses + 1 >= $3 THEN (SELECT now_ms FROM clock) END, \
      claimable_from = (SELECT now_ms FROM clock) + $5 * (losses + 1), \
-     updated = (SELECT now_ms FROM clock) \
+     updated = (SELECT now_ms FROM age_clock) \
      WHERE id = $1 AND status = 'running' AND lease_token = $2";
 const REAP: &str = "UPDATE jobs SET losses = losses + 1, lease_token = NULL, lease_expires = NULL, \
      status = CASE WHEN losses + 1 >= $1 THEN 'failed' ELSE 'accepted' END, \
      error = CASE WHEN losses + 1 >= $1 THEN $2 END, \
      error_class = CASE WHEN losses + 1 >= $1 THEN $3 END, \
      finished = CASE WHEN losses + 1 >= $1 THEN (SELECT now_ms FROM clock) END, \
-     updated = (SELECT now_ms FROM clock) \
+     updated = (SELECT now_ms FROM age_clock) \
      WHERE id IN (SELECT id FROM jobs WHERE status = 'running' \
        AND lease_expires < $4 FOR UPDATE SKIP LOCKED) \
      RETURNING id, attempt, status";
@@ -111,7 +111,7 @@ const CLOCK_WENT_BACK: [&str; 2] = [
      WHERE id IN (SELECT id FROM jobs \
        WHERE status = 'running' AND heartbeat > (SELECT now_ms FROM clock) ORDER BY id FOR UPDATE)",
     "UPDATE jobs SET claimable_from = claimable_from - updated + (SELECT now_ms FROM clock), \
-     updated = (SELECT now_ms FROM clock) \
+     updated = (SELECT now_ms FROM age_clock) \
      WHERE id IN (SELECT id FROM jobs WHERE status = 'accepted' AND claimable_from > updated \
        AND updated > (SELECT now_ms FROM clock) ORDER BY id FOR UPDATE)",
 ];

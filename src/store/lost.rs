@@ -20,7 +20,7 @@ pub struct LostRow {
 const LOST: &str = "SELECT id, tenant, kind, attempt, finished, error FROM jobs \
      WHERE status = 'failed' AND error_class = 'infrastructure' AND waits_for = '' AND id > $1 ORDER BY id LIMIT $2";
 const REQUEUE: &str = "UPDATE jobs SET status = 'accepted', error = NULL, error_class = NULL, losses = 0, \
-     finished = NULL, claimable_from = 0, updated = (SELECT now_ms FROM clock) \
+     finished = NULL, claimable_from = 0, updated = (SELECT now_ms FROM age_clock) \
      WHERE id = $1 AND status = 'failed' AND error_class = 'infrastructure' AND waits_for = ''";
 
 impl Store {

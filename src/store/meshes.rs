@@ -70,9 +70,9 @@ const BY_ID: &str = "SELECT id, sha256, blob, report, created FROM meshes \
 const BY_CONTENT: &str = "SELECT id, sha256, blob, report, created FROM meshes \
      WHERE sha256 = $1 AND options = $2 AND tenant = $3";
 const INSERT: &str = "INSERT INTO meshes (id, sha256, options, blob, standalone, report, tenant, created) \
-     VALUES ($1, $2, $3, $4, $5, $6, $7, (SELECT now_ms FROM clock))";
+     VALUES ($1, $2, $3, $4, $5, $6, $7, (SELECT now_ms FROM age_clock))";
 
-const KEEP: &str = "UPDATE meshes SET standalone = 1, created = (SELECT now_ms FROM clock) \
+const KEEP: &str = "UPDATE meshes SET standalone = 1, created = (SELECT now_ms FROM age_clock) \
      WHERE id = $1 AND tenant = $2 RETURNING id, sha256, blob, report, created";
 const DELETE: &str = "DELETE FROM meshes WHERE id = $1 AND tenant = $2 \
      AND ($3 = 0 OR created < (SELECT now_ms FROM clock) - $3) RETURNING blob";

@@ -69,7 +69,6 @@ pub use files::FoundBlob;
 pub use fsck::{Dangling, Findings, Repaired, Unreached};
 pub use handle::{DEFAULT_TENANT, Store, address_fault};
 pub use idempotency::Reserved;
-pub use job_tags::Tagged;
 pub use jobs::{Dismissal, JobFilter, JobRow};
 pub use keys::KeyRow;
 pub use leases::{FileRow, Lease, LostJob, Point, Published, PublishedFile};

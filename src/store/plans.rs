@@ -22,10 +22,10 @@ const LIST: &str = "SELECT id, case_id, document, version, created, updated FROM
        (SELECT 1 FROM cases WHERE cases.id = plans.case_id AND cases.tenant = $4) \
      ORDER BY id DESC LIMIT $3";
 const INSERT: &str = "INSERT INTO plans (id, case_id, document, version, created, updated) \
-     SELECT $1, id, $3, 1, (SELECT now_ms FROM clock), (SELECT now_ms FROM clock) \
+     SELECT $1, id, $3, 1, (SELECT now_ms FROM clock), (SELECT now_ms FROM age_clock) \
      FROM cases WHERE id = $2 AND tenant = $4";
 const UPDATE: &str = "UPDATE plans SET document = $1, version = version + 1, \
-     updated = (SELECT now_ms FROM clock) \
+     updated = (SELECT now_ms FROM age_clock) \
      WHERE id = $2 AND case_id = $3 AND ($4 = 0 OR version = $4) AND EXISTS \
        (SELECT 1 FROM cases WHERE cases.id = plans.case_id AND cases.tenant = $5)";
 const DELETE: &str = "DELETE FROM plans WHERE id = $1 AND case_id = $2 AND ($3 = 0 OR version = $3) \

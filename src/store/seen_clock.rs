@@ -1,14 +1,17 @@
-//! The clock of the database as retention sees it: once an hour its time is stored. A clock that is suddenly far ahead, as that of a
-//! machine which starts without a battery may be, would make everything too old, so that nothing is erased by it until it is confirmed,
-//! goes back, or has run on for long.
+//! The clock of the database as retention sees it: once an hour its time is stored. One that is suddenly far from it, as that of a machine
+//! which starts without a battery may be, is doubted: ahead it would make everything too old, until it goes back, has run on for
+//! long, or is confirmed. What is stored while it is behind counts from the newest time (the view `age_clock`), else it would be too old as
+//! soon as the clock is right again.
+
+use std::fmt::{Display, Formatter};
 
 use super::database::{Row, query};
 use super::{Store, StoreError};
 
 const HOUR_MS: i64 = 3600 * 1000;
 const DAY_MS: i64 = 24 * HOUR_MS;
-/// A time so far beyond the newest one is doubted.
-const AHEAD_MS: i64 = 2 * DAY_MS;
+/// A time so far from the newest one is doubted.
+const FAR_MS: i64 = 2 * DAY_MS;
 /// A doubted clock that has gone on for so long is trusted.
 const CONTINUOUS_MS: i64 = 7 * DAY_MS;
 
@@ -29,21 +32,41 @@ struct ClockRecord {
     doubted: Option<i64>,
 }
 
-/// A clock that is far ahead of the newest time at which this deployment was seen to run.
+/// A clock that is so many hours from the newest time at which this deployment was seen to run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct ClockDoubt {
-    pub ahead_h: i64,
-    /// After so many hours it is trusted, if it goes on as it does.
-    pub trusted_in_h: i64,
+pub enum ClockDoubt {
+    Ahead {
+        hours: i64,
+        /// After so many hours it is trusted, if it goes on as it does.
+        trusted_in_h: i64,
+    },
+    Behind {
+        hours: i64,
+    },
+}
+
+impl Display for ClockDoubt {
+    fn fmt(&self, to: &mut Formatter<'_>) -> std::fmt::Result {
+        match self {
+            ClockDoubt::Ahead { hours, trusted_in_h } => write!(
+                to,
+                "the clock is {hours} h ahead of when this deployment ran last, and is trusted after {trusted_in_h} h more of service"
+            ),
+            ClockDoubt::Behind { hours } => write!(
+                to,
+                "the clock is {hours} h behind the newest time at which this deployment ran, from which the age of what is stored now counts"
+            ),
+        }
+    }
 }
 
 impl ClockRecord {
     fn at(self, now: i64) -> ClockRecord {
         let trusted = ClockRecord { trusted: self.trusted.max(now), latest: now, doubted: None };
-        if now <= self.trusted.saturating_add(AHEAD_MS) {
+        if now <= self.trusted.saturating_add(FAR_MS) {
             return trusted;
         }
-        let goes_on = now.abs_diff(self.latest) <= AHEAD_MS as u64;
+        let goes_on = now.abs_diff(self.latest) <= FAR_MS as u64;
         let from = self.doubted.filter(|_| goes_on).map_or(now, |from| from.min(now));
         if now - from >= CONTINUOUS_MS {
             return trusted;
@@ -52,10 +75,16 @@ impl ClockRecord {
     }
 
     fn doubt(self) -> Option<ClockDoubt> {
-        self.doubted.map(|from| ClockDoubt {
-            ahead_h: (self.latest - self.trusted) / HOUR_MS,
-            trusted_in_h: (CONTINUOUS_MS - (self.latest - from) + HOUR_MS - 1) / HOUR_MS,
-        })
+        let ahead = self.latest - self.trusted;
+        match self.doubted {
+            Some(from) => {
+                let left = CONTINUOUS_MS - (self.latest - from);
+                let trusted_in_h = (left + HOUR_MS - 1) / HOUR_MS;
+                Some(ClockDoubt::Ahead { hours: ahead / HOUR_MS, trusted_in_h })
+            }
+            None if ahead < -FAR_MS => Some(ClockDoubt::Behind { hours: -ahead / HOUR_MS }),
+            None => None,
+        }
     }
 }
 
@@ -125,7 +154,7 @@ mod tests {
     fn a_clock_a_year_ahead_is_doubted_until_it_goes_back_or_has_gone_on_for_a_week() {
         let year = START + 366 * DAY_MS;
         let ahead = right().at(year);
-        let told = ClockDoubt { ahead_h: 366 * 24, trusted_in_h: 7 * 24 };
+        let told = ClockDoubt::Ahead { hours: 366 * 24, trusted_in_h: 7 * 24 };
         assert_eq!(ahead.doubt(), Some(told));
         let back = ahead.at(START + HOUR_MS);
         assert_eq!((back.doubt(), back.trusted), (None, START + HOUR_MS));
@@ -138,16 +167,20 @@ mod tests {
     fn a_doubted_clock_that_stands_still_or_jumps_again_is_doubted_anew() {
         let year = START + 366 * DAY_MS;
         let days = run(right(), year, 6 * 24);
-        assert_eq!(days.doubt().map(|doubt| doubt.trusted_in_h), Some(24));
+        let told = |hours, trusted_in_h| Some(ClockDoubt::Ahead { hours, trusted_in_h });
+        assert_eq!(days.doubt(), told(372 * 24, 24));
         let later = days.at(year + 10 * DAY_MS);
-        assert_eq!(later.doubt().map(|doubt| doubt.trusted_in_h), Some(7 * 24));
+        assert_eq!(later.doubt(), told(376 * 24, 7 * 24));
     }
 
     #[test]
-    fn a_clock_that_goes_on_after_a_night_or_was_behind_for_a_while_is_not_doubted() {
+    fn a_clock_far_behind_is_doubted_for_as_long_as_it_is_and_one_after_a_night_is_not() {
         assert_eq!(right().at(START + 2 * DAY_MS).doubt(), None);
-        let behind = right().at(DAY_MS);
-        assert_eq!((behind.doubt(), behind.trusted), (None, START));
-        assert_eq!(behind.at(START + DAY_MS).doubt(), None);
+        assert_eq!(right().at(START - 2 * DAY_MS).doubt(), None);
+        let behind = run(right(), DAY_MS, 30 * 24);
+        let hours = 24 * (START / DAY_MS - 31);
+        assert_eq!((behind.doubt(), behind.trusted), (Some(ClockDoubt::Behind { hours }), START));
+        let back = behind.at(START + DAY_MS);
+        assert_eq!((back.doubt(), back.trusted), (None, START + DAY_MS));
     }
 }

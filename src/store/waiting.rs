@@ -22,16 +22,16 @@ const LOCK: &str = "SELECT 1 FROM cases WHERE meshing = $1 FOR UPDATE";
 const LOCK_OVERDUE: &str = "SELECT 1 FROM cases WHERE meshing IN \
      (SELECT id FROM jobs WHERE status = 'running' AND lease_expires < $1) ORDER BY id FOR UPDATE";
 const COMPLETE: &str = "UPDATE cases SET document = $2, report = $3, version = version + 1, \
-     updated = (SELECT now_ms FROM clock) WHERE meshing = $1 RETURNING id";
+     updated = (SELECT now_ms FROM age_clock) WHERE meshing = $1 RETURNING id";
 const GO_ON: &str = "UPDATE jobs SET waits_for = '' WHERE case_id = $1 AND waits_for = $2";
 /// A meshing of a case that has ended and made no mesh.
 const WITHOUT: &str = "SELECT cases.id, jobs.status, jobs.error FROM cases JOIN jobs ON jobs.id = cases.meshing \
      WHERE cases.meshing = $1 AND jobs.status IN ('failed', 'dismissed')";
 const FAIL: &str = "UPDATE jobs SET status = 'failed', error = $3, error_class = $4, \
-     finished = (SELECT now_ms FROM clock), updated = (SELECT now_ms FROM clock) \
+     finished = (SELECT now_ms FROM clock), updated = (SELECT now_ms FROM age_clock) \
      WHERE case_id = $1 AND waits_for = $2 AND status = 'accepted' RETURNING id";
 const WAIT_AGAIN: &str = "UPDATE jobs SET status = 'accepted', error = NULL, error_class = NULL, finished = NULL, \
-     updated = (SELECT now_ms FROM clock) \
+     updated = (SELECT now_ms FROM age_clock) \
      WHERE case_id = (SELECT id FROM cases WHERE meshing = $1) AND waits_for = $1 AND status = 'failed' RETURNING id";
 /// The states of the jobs that wait for a meshing, of those that are not in their last event.
 const RECORD: &str = "INSERT INTO job_events \

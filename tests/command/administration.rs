@@ -187,3 +187,18 @@ async fn a_new_database_beside_old_blobs_is_refused_and_one_that_was_served_is_n
     let found = facies(&["admin", "fsck", "--data", path(&data)]);
     assert_eq!(text(&found.stdout), "known to no row: ab/abcd\n");
 }
+
+#[tokio::test]
+async fn a_clock_far_behind_is_told_until_it_is_confirmed() {
+    let folder = tempfile::tempdir().unwrap();
+    let data = folder.path().join("data");
+    made(&data);
+    let clock = ["admin", "clock", "--data", path(&data)];
+    assert_eq!(text(&facies(&clock).stdout), "retention trusts the clock\n");
+    let seen = "INSERT INTO seen_clock (number, trusted, latest) VALUES (1, 4102444800000, 4102444800000 - 73 * 3600000)";
+    changed(&data, seen).await;
+    refused(&facies(&clock), 1, "the clock is 73 h behind");
+    let trusted = facies(&["admin", "clock", "--trust", "--data", path(&data)]);
+    assert_eq!(text(&trusted.stdout), "retention trusts the clock\n");
+    assert_eq!(text(&facies(&clock).stdout), "retention trusts the clock\n");
+}

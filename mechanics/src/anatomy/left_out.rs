@@ -91,6 +91,20 @@ pub(super) fn gaps_closed(report: &MeshingReport) -> Option<Warning> {
     (!gaps.is_empty()).then(warning)
 }
 
+/// A boundary without coincident nodes that touches or crosses itself all the same.
+pub(super) fn touching_itself(report: &MeshingReport) -> Option<Warning> {
+    let MeshingReport { crossings, voids_touching, .. } = report;
+    let detail = format!(
+        "no nodes coincide, but {crossings} pairs of triangles of the boundary cross, and it touches itself at {voids_touching} nodes: \
+         programs that fill a boundary with cells may refuse it"
+    );
+    let warning = || {
+        let warning = Warning::new("boundary-touches-itself", detail);
+        warning.with("crossings", *crossings as f64).with("nodes", *voids_touching as f64)
+    };
+    (*crossings > 0 || *voids_touching > 0).then(warning)
+}
+
 fn place(at: &Vector) -> String {
     format!("{:.0}, {:.0}, {:.0}", at.x, at.y, at.z)
 }

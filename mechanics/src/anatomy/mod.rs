@@ -198,6 +198,7 @@ pub fn build(
     warnings.extend(left_out::left_out_of_mesh(&tissue.report));
     warnings.extend(left_out::thinner_than_cells(&tissue.report));
     warnings.extend(left_out::gaps_closed(&tissue.report));
+    warnings.extend(left_out::touching_itself(&tissue.report));
     warnings.extend(bare);
     if rules.teeth_slide && teeth.is_none() && !bone.segments.is_empty() {
         warnings.push(teeth_joined());

@@ -11,30 +11,41 @@ pub const SAME_WALL: f64 = std::f64::consts::FRAC_1_SQRT_2;
 /// and sets whose normals differ by less hold a node once.
 pub const SAME_DIRECTION: f64 = 0.9962;
 
+/// What walls end at, by node.
+pub struct Beside {
+    pub on_bone: Vec<bool>,
+    /// On the skin that is stated.
+    pub on_skin: Vec<bool>,
+}
+
 /// For each of the nodes the unit normals of its walls: at most three, none where no face is near.
 ///
 /// The walls are the boundary faces all of whose nodes are listed, and beside these, less than 45 degrees apart, the faces whose
-/// other nodes are on bone: so it makes no difference whether a set has the nodes where its wall ends in bone. A node without such
-/// a face takes all boundary faces that touch it.
+/// other nodes are on bone: so it makes no difference whether a set has the nodes where its wall ends in bone. Faces of the skin,
+/// as triangles of it at a corner between two sides, are walls of nodes without other ones. A node without such a face takes all
+/// boundary faces that touch it.
 pub fn wall_normals(
     mesh: &VolumeMesh,
     boundary: &[BoundaryFace],
     nodes: &[u32],
-    on_bone: &[bool],
+    Beside { on_bone, on_skin }: &Beside,
 ) -> Vec<(u32, Vec<Vector>)> {
     let mut listed = vec![false; mesh.nodes.len()];
     for &node in nodes {
         listed[node as usize] = true;
     }
     let mut on_walls: Vec<Vec<Vector>> = vec![Vec::new(); mesh.nodes.len()];
-    let (mut ending, mut touching) = (on_walls.clone(), on_walls.clone());
+    let [mut of_skin, mut ending, mut touching] = [(); 3].map(|()| on_walls.clone());
     for face in boundary {
         let normal = face.area_vector(&mesh.nodes);
         let whole = face.nodes().iter().all(|&node| listed[node as usize]);
+        let is_skin = face.nodes().iter().all(|&node| on_skin[node as usize]);
         let ends = face.nodes().iter().all(|&node| listed[node as usize] || on_bone[node as usize]);
         for &node in face.nodes().iter().filter(|&&node| listed[node as usize]) {
             touching[node as usize].push(normal);
-            if whole {
+            if whole && is_skin {
+                of_skin[node as usize].push(normal);
+            } else if whole {
                 on_walls[node as usize].push(normal);
             } else if ends {
                 ending[node as usize].push(normal);
@@ -44,7 +55,8 @@ pub fn wall_normals(
     nodes
         .iter()
         .map(|&node| {
-            let walls = &on_walls[node as usize];
+            let others = &on_walls[node as usize];
+            let walls = if others.is_empty() { &of_skin[node as usize] } else { others };
             let is_of_wall =
                 |face: &&Vector| walls.iter().any(|wall| cosine(wall, face) > SAME_WALL);
             let ends = ending[node as usize].iter().filter(is_of_wall);
@@ -106,14 +118,40 @@ mod tests {
         let (beside, _): (Vec<u32>, Vec<u32>) =
             floor.iter().partition(|&&node| !is_on_bone[node as usize]);
         let boundary = mesh.boundary_faces();
+        let nowhere = vec![false; mesh.nodes.len()];
         let normals = |nodes: &[u32], on_bone: &[bool]| -> Vec<(u32, Vec<Vector>)> {
-            let found = wall_normals(&mesh, &boundary, nodes, on_bone).into_iter();
+            let beside = Beside { on_bone: on_bone.to_vec(), on_skin: nowhere.clone() };
+            let found = wall_normals(&mesh, &boundary, nodes, &beside).into_iter();
             found.filter(|(node, _)| !is_on_bone[*node as usize]).collect()
         };
-        let nowhere = vec![false; mesh.nodes.len()];
         let whole = normals(&floor, &nowhere);
         assert_eq!(normals(&beside, &is_on_bone), whole);
         assert_ne!(normals(&beside, &nowhere), whole);
+    }
+
+    /// At corners of a block of tetrahedra triangles of its top have all their nodes on its sides.
+    #[test]
+    fn skin_between_two_walls_is_no_wall_unless_it_is_one_alone() {
+        let mesh = block(Vector::new(4.0, 4.0, 2.0), [4, 4, 2], CellShape::Tet4);
+        let boundary = mesh.boundary_faces();
+        let set = |name: &str| mesh.node_sets[name].clone();
+        let mut sides: Vec<u32> = ["x_min", "x_max", "y_min", "y_max"].map(set).concat();
+        sides.sort_unstable();
+        sides.dedup();
+        let mut beside = Beside {
+            on_bone: vec![false; mesh.nodes.len()],
+            on_skin: vec![false; mesh.nodes.len()],
+        };
+        let upright = |beside: &Beside| {
+            let found = wall_normals(&mesh, &boundary, &sides, beside);
+            found.iter().flat_map(|(_, walls)| walls).filter(|wall| wall.z > 0.9).count()
+        };
+        assert!(upright(&beside) > 0);
+        set("z_max").iter().for_each(|&node| beside.on_skin[node as usize] = true);
+        assert_eq!(upright(&beside), 0);
+        beside.on_skin.fill(true);
+        let top = wall_normals(&mesh, &boundary, &set("z_max"), &beside);
+        assert!(top.iter().all(|(_, walls)| walls[..] == [Vector::z()]));
     }
 
     #[test]

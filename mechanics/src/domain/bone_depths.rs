@@ -113,8 +113,8 @@ impl Moments {
 }
 
 /// Adds the share of a voxel that lies in each bone: all of one half an edge deep, none half an edge outside, so that a plane that
-/// moves through the grid has the volume behind it. What one bone has is left out of those after it: bones that lie within others
-/// come first, then the owner.
+/// moves through the grid has the volume behind it. What one bone has is left out of those after it: bones that lie within the owner
+/// come first, then the owner, then the others, inner ones first.
 fn add_shares(
     moments: &mut [Moments],
     depths: &[f64],
@@ -122,10 +122,11 @@ fn add_shares(
     owner: Option<usize>,
     (edge, point): (f64, &Vector),
 ) {
-    let mut bones: Vec<usize> = (0..depths.len()).collect();
-    bones.sort_by_key(|&bone| (!order.within[bone].contains(&true), Some(bone) != owner));
+    let is_in_owner = |bone: &usize| owner.is_some_and(|own| order.within[*bone][own]);
+    let is_other = |bone: &usize| Some(*bone) != owner && !is_in_owner(bone);
+    let bones = order.innermost_first.iter().copied();
     let mut left = 1.0;
-    for bone in bones {
+    for bone in bones.clone().filter(is_in_owner).chain(owner).chain(bones.filter(is_other)) {
         let share = (0.5 + depths[bone] / edge).clamp(0.0, left);
         moments[bone].add(&Moments { voxels: share, centres: point * share });
         left -= share;
@@ -139,6 +140,8 @@ struct Precedence {
     volumes: Vec<f64>,
     /// For each bone those that it lies within.
     within: Vec<Vec<bool>>,
+    /// The bones, those that lie within most others first.
+    innermost_first: Vec<usize>,
 }
 
 impl Precedence {
@@ -151,9 +154,15 @@ impl Precedence {
                 && bones[one].share(|point| bones[other].value(point) > 0.0) > WITHIN
         };
         let all = 0..bones.len();
-        let within =
-            all.clone().map(|one| all.clone().map(|other| lies_within(one, other)).collect());
-        Precedence { within: within.collect(), volumes }
+        let within: Vec<Vec<bool>> = all
+            .clone()
+            .map(|one| all.clone().map(|other| lies_within(one, other)).collect())
+            .collect();
+        let mut innermost_first: Vec<usize> = all.collect();
+        let others_around =
+            |bone: usize| within[bone].iter().filter(|is_within| **is_within).count();
+        innermost_first.sort_by_key(|&bone| std::cmp::Reverse(others_around(bone)));
+        Precedence { volumes, within, innermost_first }
     }
 
     fn owner(&self, depths: &[f64], one: usize, other: usize) -> usize {

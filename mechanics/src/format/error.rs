@@ -43,7 +43,7 @@ pub enum FormatError {
     Degenerate { what: &'static str, count: u64 },
     #[error("{count} of {of} {shape} cells are inverted or flat")]
     InvertedElements { shape: &'static str, count: u64, of: u64, first: Vec<u64> },
-    #[error("the arrays decode to {declared} bytes, and {limit} bytes is the limit")]
+    #[error("the arrays decode to {declared} bytes or more, and {limit} bytes is the limit")]
     DecompressionLimit { declared: u64, limit: u64 },
     #[error("not a mesh file that is read here: {detail}")]
     UnsupportedFormat { detail: &'static str },

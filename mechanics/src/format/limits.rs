@@ -103,6 +103,15 @@ pub(super) struct DecodeBudget {
 }
 
 impl DecodeBudget {
+    /// Of bytes that are in the file as they are.
+    pub fn of_stored() -> DecodeBudget {
+        DecodeBudget { limit: u64::MAX, used: 0 }
+    }
+
+    pub fn remaining(&self) -> u64 {
+        self.limit - self.used
+    }
+
     /// Takes `bytes` from the budget, before they are allocated.
     pub fn charge(&mut self, bytes: u64) -> Result<(), FormatError> {
         let declared = self.used.saturating_add(bytes);

@@ -4,15 +4,13 @@ use std::io::Read;
 
 use super::cursor::Cursor;
 use super::error::FormatError;
-use super::limits::{MOST_BYTES_OF_ONE, ReadLimits, room_for};
+use super::limits::{DecodeBudget, MOST_BYTES_OF_ONE, ReadLimits, room_for};
 use super::scalar::{ByteOrder, Scalar};
 use crate::image::Voxels;
 use crate::mesh::Warning;
 
 /// Bytes that are taken up at a time, a multiple of the size of every number.
 const PIECE: usize = 1 << 16;
-/// Bytes behind the last number that are counted.
-const MOST_COUNTED: u64 = 1 << 20;
 
 /// Scaling of stored numbers: slope times number plus intercept.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -128,16 +126,17 @@ impl VoxelBuilder {
 /// What a source gave.
 pub(super) struct Decoded {
     pub voxels: Voxels,
-    /// How many bytes follow the last number, counted up to 1 MiB.
+    /// How many bytes follow the last number.
     pub followed_by: u64,
 }
 
 /// Reads as many numbers as the header promises. The end of a compressed source is read as well, because its check sum
-/// stands there.
+/// stands there; what follows the numbers is charged to `budget`, which has paid for the numbers.
 pub(super) fn decode(
     mut source: impl Read,
     storage: &Storage,
     place: &Cursor<'_>,
+    mut budget: DecodeBudget,
 ) -> Result<Decoded, FormatError> {
     let room = storage.count as usize;
     let mut builder = match storage.scalar.is_integer() {
@@ -159,25 +158,28 @@ pub(super) fn decode(
         }
         builder.push_bytes(&piece, storage)?;
     }
-    let rest = std::io::copy(&mut source.take(MOST_COUNTED), &mut std::io::sink());
+    let refused_at = budget.remaining().saturating_add(1);
+    let rest = std::io::copy(&mut source.take(refused_at), &mut std::io::sink());
     let followed_by = rest.map_err(|error| place.bad_bytes(error.to_string()))?;
+    budget.charge(followed_by)?;
     Ok(Decoded { voxels: builder.finish(), followed_by })
 }
 
-/// Refuses compressed bytes that cannot hold what they promise, before memory is taken.
+/// Refuses compressed bytes that cannot hold what they promise, before memory is taken; else what is left to decode.
 pub(super) fn check_promise(
     wanted: u64,
     place: &Cursor<'_>,
     file_bytes: usize,
     limits: &ReadLimits,
-) -> Result<(), FormatError> {
-    limits.image_budget(file_bytes).charge(wanted)?;
+) -> Result<DecodeBudget, FormatError> {
+    let mut budget = limits.image_budget(file_bytes);
+    budget.charge(wanted)?;
     let have = place.remaining();
     if wanted / MOST_BYTES_OF_ONE > have {
         let detail = format!("{wanted} bytes declared in {have} compressed ones");
         return Err(place.bad_bytes(detail));
     }
-    Ok(())
+    Ok(budget)
 }
 
 /// The warning about bytes behind the last voxel.
@@ -194,7 +196,8 @@ mod tests {
     #[test]
     fn a_promise_beyond_what_deflate_can_keep_is_refused_before_memory_is_taken() {
         let cursor = Cursor::new("NRRD", b"few bytes");
-        let error = check_promise(16 << 20, &cursor, 100, &ReadLimits::default()).unwrap_err();
+        let refused = check_promise(16 << 20, &cursor, 100, &ReadLimits::default());
+        let error = refused.err().unwrap();
         let place = FilePosition::Offset(0);
         let detail = "16777216 bytes declared in 9 compressed ones".to_owned();
         assert_eq!(error, FormatError::Parse { format: "NRRD", place, detail });

@@ -10,6 +10,7 @@
 //! Source: Labelle, Shewchuk, Isosurface stuffing: fast tetrahedral meshes with good dihedral angles, ACM Transactions on
 //! Graphics 26 (2007).
 
+mod apart;
 mod boundary_set;
 mod check;
 mod climb;
@@ -42,6 +43,7 @@ mod star;
 mod stencils;
 mod target;
 mod tissue;
+mod touching_voids;
 mod warp;
 mod watch;
 

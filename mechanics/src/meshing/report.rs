@@ -52,6 +52,10 @@ pub struct MeshingReport {
     pub dropped: Vec<Piece>,
     /// Gaps of air that are thinner than a cell and have been filled, the largest first.
     pub gaps_closed: Vec<Gap>,
+    /// Pairs of triangles of the boundary that still cross where copies of nodes are moved apart; 0 where they are not.
+    pub crossings: u64,
+    /// Nodes at which two voids still touch where copies of nodes are moved apart; 0 where they are not.
+    pub voids_touching: usize,
     /// Of all tissue that is thinner than cells and in none, in mm³.
     pub volume_lost: f64,
     /// The largest connected pieces of it, the largest first.

@@ -20,7 +20,10 @@ use super::settings::MeshingSettings;
 use super::size::SizeField;
 use super::warp::Warp;
 use super::watch::Watch;
-use super::{creases, edge_copies, fitting, pieces, pinches, regions, stencils, target};
+use super::{
+    apart, creases, edge_copies, fitting, pieces, pinches, regions, stencils, target,
+    touching_voids,
+};
 use crate::domain::{Boundary, Domain};
 use crate::mesh::{CellShape, VolumeMesh};
 use crate::progress::{Phase, Progress};
@@ -79,6 +82,7 @@ pub fn mesh(
     let dropped = dropped.unwrap_or_default();
     refuse_remnant(&draft, &dropped.pieces)?;
     refuse_too_few(&draft, settings, size.finest)?;
+    let voids_touching = if settings.part_copies { touching_voids::part(&mut draft) } else { 0 };
     watch.stage()?;
     let raw_angles = Angles::of(&draft);
     let mut climb = Climb::new(&mut draft, domain);
@@ -87,9 +91,7 @@ pub fn mesh(
     climb.settle(&watch)?;
     let regions = regions::part(&mut climb, &watch)?;
     let fitted = fitting::fit(&mut climb, &watch)?;
-    if settings.part_copies {
-        climb.part_copies();
-    }
+    let crossings = if settings.part_copies { apart::part(&mut climb, &watch)? } else { 0 };
     watch.stage()?;
     let faces = check(&draft, !settings.keep_pieces)?;
     clear_inner(&mut draft, &faces);
@@ -115,6 +117,8 @@ pub fn mesh(
         fitted,
         dropped: dropped.pieces,
         gaps_closed: counts.gaps,
+        crossings,
+        voids_touching,
         volume_lost: lost.volume,
         pieces_lost: lost.pieces,
     };

@@ -12,6 +12,9 @@ const RADIANS_DEG: f64 = 0.2;
 /// Up to this many degrees a matrix is no turn but the rounding of one without.
 pub const ROUNDING_DEG: f64 = 1e-3;
 
+/// In mm: the middle of no segment is moved farther.
+pub const FARTHEST_MM: f64 = 100.0;
+
 /// The code of the warning of numbers that another unit explains.
 pub const PLAN_UNITS_SUSPECT: &str = "plan-units-suspect";
 /// The code of the warning of a plan that moves nothing.
@@ -25,13 +28,24 @@ pub struct MovedSegment<'a> {
     pub corners: [Vector; 2],
 }
 
-/// A segment that goes farther than the face is long; distances in mm.
+/// A segment whose middle goes too far; distances in mm.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("segment {name:?} moves by {distance:.3} mm, and the mesh is {diagonal:.3} mm across")]
-pub struct BeyondFace {
-    pub name: String,
-    pub distance: f64,
-    pub diagonal: f64,
+pub enum TooFar {
+    #[error("segment {name:?} moves by {distance:.3} mm, and the mesh is {diagonal:.3} mm across")]
+    BeyondFace { name: String, distance: f64, diagonal: f64 },
+    #[error(
+        "segment {name:?} moves by {distance:.3} mm in all, at most {FARTHEST_MM} mm are allowed"
+    )]
+    BeyondLimit { name: String, distance: f64 },
+}
+
+impl TooFar {
+    /// Of the segment.
+    pub fn name(&self) -> &str {
+        match self {
+            TooFar::BeyondFace { name, .. } | TooFar::BeyondLimit { name, .. } => name,
+        }
+    }
 }
 
 impl MovedSegment<'_> {
@@ -106,10 +120,17 @@ fn in_metres(said: &str, shift: f64) -> Warning {
     warning.with("if_metres_mm", meant)
 }
 
-/// The first segment whose middle goes farther than the mesh is across.
-pub fn beyond_face(segments: &[MovedSegment], diagonal: f64) -> Option<BeyondFace> {
-    let far = segments.iter().find(|segment| segment.distance() > diagonal)?;
-    Some(BeyondFace { name: far.name.to_owned(), distance: far.distance(), diagonal })
+/// The first segment whose middle the total movement takes farther than the mesh is across, or than [`FARTHEST_MM`]. The translation of
+/// a movement is no measure of that: a rotation about a far pivot has a long one.
+pub fn too_far(segments: &[MovedSegment], diagonal: f64) -> Option<TooFar> {
+    segments.iter().find_map(|segment| {
+        let (name, distance) = (segment.name.to_owned(), segment.distance());
+        if distance > diagonal {
+            return Some(TooFar::BeyondFace { name, distance, diagonal });
+        }
+        // The distance carries rounding of the composed movement in its last digits.
+        (distance > FARTHEST_MM * (1.0 + 1e-9)).then_some(TooFar::BeyondLimit { name, distance })
+    })
 }
 
 #[cfg(test)]
@@ -175,8 +196,25 @@ mod tests {
     #[test]
     fn a_movement_beyond_the_size_of_the_face_is_reported_with_both_lengths() {
         let (near, far) = (shifted(59.0), shifted(61.0));
-        assert_eq!(beyond_face(&moved(&near), 60.0), None);
-        let beyond = beyond_face(&moved(&far), 60.0).unwrap();
-        assert_eq!((beyond.distance, beyond.diagonal), (61.0, 60.0));
+        assert_eq!(too_far(&moved(&near), 60.0), None);
+        let name = "jaw".to_owned();
+        let beyond = TooFar::BeyondFace { name, distance: 61.0, diagonal: 60.0 };
+        assert_eq!(too_far(&moved(&far), 60.0), Some(beyond));
+    }
+
+    #[test]
+    fn a_total_movement_is_limited_however_it_is_composed_and_wherever_its_pivot_is() {
+        let twice = shifted(75.0).then(&shifted(75.0));
+        let refused = too_far(&moved(&twice), 300.0);
+        let Some(TooFar::BeyondLimit { distance, .. }) = refused else { panic!("{refused:?}") };
+        assert!((distance - 150.0).abs() < 1e-9, "{distance}");
+        // There and back, the full length, and a turn of 5 degrees about a pivot 1 m away, whose shift of the origin is 122 mm.
+        let angles = Vector::new(0.0, 0.0, 5_f64.to_radians());
+        let pivot = Vector::new(0.0, 1000.0, 0.0);
+        let far_pivot = RigidMovement::about_pivot(angles, pivot, Vector::zeros());
+        let back = shifted(75.0).then(&shifted(-60.0));
+        for movement in [back, shifted(100.0), far_pivot] {
+            assert_eq!(too_far(&moved(&movement), 300.0), None, "{movement:?}");
+        }
     }
 }

@@ -105,7 +105,7 @@ impl Scene {
         // 2. What every node is held to.
         let sound = check.problems.count();
         let (segments, held) = check.held_nodes(plan, settings);
-        let conditions = check.conditions(&held);
+        let conditions = check.conditions(&held, (plan, &segments));
         let is_sound = check.problems.count() == sound;
         part_cells_of_bone(&mut tissue.pressure_of_cell, &case.volume, &conditions.constraints);
         check.plan_size(plan, &segments, &held);

@@ -10,9 +10,8 @@ use super::problem::Problems;
 use super::scene::Scene;
 use super::skin::{self, Skin};
 use super::stated::StatedCondition;
-use crate::boundary::conditions::combine;
 use crate::boundary::support::loose_parts;
-use crate::boundary::{Conditions, Constraint, HeldNodes, NodeClass, NodeSelection};
+use crate::boundary::{Conditions, Constraint, NodeSelection};
 use crate::material::LinearElastic;
 use crate::mesh::ignored::missing_region;
 use crate::mesh::volume::BoundaryFace;
@@ -123,20 +122,6 @@ impl<'a> Check<'a> {
             }
         }
         materials
-    }
-
-    pub(super) fn conditions(&mut self, held: &HeldNodes) -> Conditions {
-        combine(&self.case.volume.nodes, held).unwrap_or_else(|error| {
-            self.problems.add("/plan", SceneErrorCode::PlanConflict, error.to_string());
-            let classes = vec![NodeClass::Free; self.case.volume.nodes.len()];
-            Conditions {
-                classes,
-                constraints: Vec::new(),
-                walls: BTreeMap::new(),
-                shared: Vec::new(),
-                warnings: Vec::new(),
-            }
-        })
     }
 
     pub(super) fn skin(&mut self, conditions: &Conditions) -> Skin {

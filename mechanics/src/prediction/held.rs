@@ -4,18 +4,30 @@ use super::case::{Plan, Prescribed, Settings};
 use super::check::Check;
 use super::error_code::SceneErrorCode;
 use super::stated::{StatedCondition, StatedHold};
-use crate::boundary::{HeldNodes, NodeSelection, Selector};
+use crate::boundary::{HeldNodes, NodeSelection, SelectionError, Selector};
 use crate::mesh::ignored::listed;
 use crate::mesh::volume::BoundaryFace;
 use crate::mesh::{ArrayUse, bounds_of};
-use crate::plan::doubt::{MovedSegment, beyond_face, suspect_units};
+use crate::plan::doubt::{MovedSegment, suspect_units, too_far};
 use crate::plan::{PlannedSegment, RigidMovement};
 
 impl Check<'_> {
     /// The selected nodes, ascending; none where they cannot be selected, which is noted as a problem, or after a stop.
     pub(super) fn select(&mut self, selection: &NodeSelection, pointer: &str) -> Vec<u32> {
+        let selected = self.selected(selection);
+        selected.unwrap_or_else(|error| {
+            self.problems.selection(pointer, &error);
+            Vec::new()
+        })
+    }
+
+    /// The nodes of a selection, ascending; none once the check is to stop.
+    pub(super) fn selected(
+        &mut self,
+        selection: &NodeSelection,
+    ) -> Result<Vec<u32>, SelectionError> {
         if self.stop.is_asked() {
-            return Vec::new();
+            return Ok(Vec::new());
         }
         let mut selector = Selector {
             mesh: &self.case.volume,
@@ -25,11 +37,7 @@ impl Check<'_> {
             distances: &mut self.distances,
             stop: self.stop,
         };
-        let selected = selector.select(selection);
-        selected.unwrap_or_else(|error| {
-            self.problems.selection(pointer, &error);
-            Vec::new()
-        })
+        selector.select(selection)
     }
 
     /// The boundary faces all of whose nodes are listed.
@@ -117,7 +125,7 @@ impl Check<'_> {
         segments
     }
 
-    /// Refuses segments that go farther than the face is long, and warns of movements in other units.
+    /// Refuses segments that go farther than the face is long or than is allowed, and warns of movements in other units.
     pub(super) fn plan_size(&mut self, plan: &Plan, segments: &[PlannedSegment], held: &HeldNodes) {
         let place = |node: &u32| self.case.volume.nodes[*node as usize];
         let corners = |nodes: &[u32]| bounds_of(nodes.iter().map(place));
@@ -126,10 +134,10 @@ impl Check<'_> {
         });
         let moved: Vec<MovedSegment> = moved.collect();
         let [low, high] = self.case.volume.bounds();
-        if let Some(beyond) = beyond_face(&moved, (high - low).norm()) {
-            let index = plan.segments.iter().position(|planned| planned.name == beyond.name);
+        if let Some(far) = too_far(&moved, (high - low).norm()) {
+            let index = plan.segments.iter().position(|planned| planned.name == far.name());
             let pointer = format!("/plan/segments/{}", index.unwrap_or_default());
-            self.problems.add(pointer, SceneErrorCode::PlanOutOfRange, beyond.to_string());
+            self.problems.add(pointer, SceneErrorCode::PlanOutOfRange, far.to_string());
         }
         self.warnings.extend(suspect_units(&moved));
     }

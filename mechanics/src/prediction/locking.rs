@@ -48,7 +48,7 @@ impl Scene {
         if self.settings.method.properties().unknowns != Unknowns::Elements {
             return None;
         }
-        let has_many_wedges = self.has_many_wedges();
+        let has_many_wedges = self.are_many(|shape, _| shape == CellShape::Wedge6);
         let locks = |shape, material: usize| {
             let is_quadratic =
                 shape == CellShape::Tet4 && self.tetrahedron() == Tetrahedron::Quadratic;
@@ -72,15 +72,17 @@ impl Scene {
             CellShape::Wedge6 => !self.is_pointwise(shape),
             CellShape::Hex8 => is_near[material] && !self.is_pointwise(shape),
         };
-        let cells = self.mesh.cells.iter().zip(&self.material_of_cell);
-        let count = cells.filter(|((shape, _), own)| gains_little(*shape, usize::from(**own)));
-        count.count() as f64 >= MANY * self.mesh.cells.len() as f64
+        self.are_many(gains_little)
     }
 
-    fn has_many_wedges(&self) -> bool {
-        let cells = &self.mesh.cells;
-        let wedges = cells.iter().filter(|(shape, _)| *shape == CellShape::Wedge6).count();
-        wedges as f64 >= MANY * cells.len() as f64
+    fn are_many(&self, counts: impl Fn(CellShape, usize) -> bool) -> bool {
+        self.cells_that(counts) as f64 >= MANY * self.mesh.cells.len() as f64
+    }
+
+    /// How many cells count, by their shape and the number of their material.
+    fn cells_that(&self, counts: impl Fn(CellShape, usize) -> bool) -> usize {
+        let cells = self.mesh.cells.iter().zip(&self.material_of_cell);
+        cells.filter(|((shape, _), own)| counts(*shape, usize::from(**own))).count()
     }
 
     /// Whether linear cells of a shape take volume point by point at first order.
@@ -100,10 +102,7 @@ impl Scene {
         detail: &str,
     ) -> Option<Warning> {
         let ratios: Vec<f64> = self.materials.iter().map(LinearElastic::poisson_ratio).collect();
-        let cells = self.mesh.cells.iter().zip(&self.material_of_cell);
-        let cells = cells.map(|((shape, _), material)| (shape, usize::from(*material)));
-        let count =
-            cells.filter(|&(shape, own)| ratios[own] > LOCKING && locks(shape, own)).count();
+        let count = self.cells_that(|shape, own| ratios[own] > LOCKING && locks(shape, own));
         let largest = ratios.into_iter().fold(0.0, f64::max);
         let warning = || {
             Warning::new("locking", format!("{count} cells {detail}"))

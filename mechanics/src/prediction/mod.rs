@@ -32,6 +32,7 @@ mod muscle_pieces;
 mod muscle_tissue;
 mod muscle_work;
 mod no_rest;
+mod node_conditions;
 mod nonlinearity;
 mod numerical_error;
 mod numerics_revision;

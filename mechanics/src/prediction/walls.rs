@@ -10,7 +10,7 @@ use super::check::Check;
 use super::error_code::SceneErrorCode;
 use super::scene::Scene;
 use super::stated::StatedHold;
-use crate::boundary::sliding::{SAME_DIRECTION, SAME_WALL};
+use crate::boundary::sliding::{Beside, SAME_DIRECTION, SAME_WALL};
 use crate::boundary::{HeldNodes, NodeSelection, WallNode, sliding};
 use crate::mesh::ignored::listed;
 use crate::mesh::{Vector, Warning};
@@ -54,7 +54,11 @@ impl Check<'_> {
         let mut on_bone = vec![false; self.case.volume.nodes.len()];
         let of_segments = held.joined.iter().flat_map(|(nodes, _)| nodes);
         held.fixed.iter().chain(of_segments).for_each(|&node| on_bone[node as usize] = true);
-        let walls = self.with_normals(&carriers, &on_bone);
+        let skin = self.case.skin.as_ref().map(|skin| self.selected(skin));
+        let mut on_skin = vec![false; self.case.volume.nodes.len()];
+        let skin = skin.and_then(Result::ok).unwrap_or_default();
+        skin.into_iter().for_each(|node| on_skin[node as usize] = true);
+        let walls = self.with_normals(&carriers, &Beside { on_bone, on_skin });
         self.two_carriers(&walls, segments);
         self.two_bones(&walls, segments, held);
         self.warn_of_walls_at_moving_bone(&walls, segments, held);
@@ -105,14 +109,14 @@ impl Check<'_> {
 
     /// The walls of all sets. Sets with the normals of their faces and the same carrier are one surface: it makes no difference
     /// whether a wall is stated in one piece or in several.
-    fn with_normals(&mut self, carriers: &[Option<u32>], on_bone: &[bool]) -> Vec<Wall> {
+    fn with_normals(&mut self, carriers: &[Option<u32>], beside: &Beside) -> Vec<Wall> {
         let entries = self.case.sliding.iter().enumerate().zip(carriers);
         let mut walls: Vec<Wall> = entries
             .map(|((index, entry), &carrier)| {
                 let nodes = self.select(&entry.nodes, &format!("/case/sliding/{index}/nodes"));
                 let nodes = match entry.normal {
                     SlidingNormal::Surface => {
-                        sliding::wall_normals(&self.case.volume, self.boundary, &nodes, on_bone)
+                        sliding::wall_normals(&self.case.volume, self.boundary, &nodes, beside)
                     }
                     SlidingNormal::Direction(direction) => {
                         let unit: Vec<Vector> =
@@ -133,7 +137,7 @@ impl Check<'_> {
             let nodes = walls.iter().filter(own).flat_map(|wall| &wall.nodes);
             let nodes: BTreeSet<u32> = nodes.map(|(node, _)| *node).collect();
             let nodes: Vec<u32> = nodes.into_iter().collect();
-            let whole = sliding::wall_normals(&self.case.volume, self.boundary, &nodes, on_bone);
+            let whole = sliding::wall_normals(&self.case.volume, self.boundary, &nodes, beside);
             let whole: BTreeMap<u32, Vec<Vector>> = whole.into_iter().collect();
             for (node, normals) in
                 walls.iter_mut().filter(|wall| own(&&**wall)).flat_map(|wall| &mut wall.nodes)

@@ -45,6 +45,57 @@ pub fn align_base(
     fit(base, after, progress)
 }
 
+/// Beyond this share of the base farther than [`FAR`](super::closest_point::FAR) from its partner, other starts are tried: bone that was
+/// not operated on leaves a tenth of it.
+const MUCH_FAR: f64 = 0.05;
+
+/// Another start is taken where it leaves less than this share of the median distance: the same place found again leaves as much.
+const MUCH_NEARER: f64 = 0.5;
+
+/// The same where no start is stated, and the start from which it was found: as the scans lie. If that finds nothing or leaves much of the
+/// base far, also from the boxes and from the principal axes of both scans; of these three the one after which half of the base is
+/// nearest to the bone after the operation.
+pub fn align_base_from_any(
+    base: &BoneBefore,
+    after: &TriangleSurface,
+    progress: &dyn Progress,
+) -> Result<(SurfaceAlignment, Start), AlignmentError> {
+    let from = |start| fit(&BoneBefore { start, ..base.clone() }, after, progress);
+    let as_it_lies = from(Start::AsItLies);
+    let (mut least, mut best) = match &as_it_lies {
+        Ok(found) if found.share_far <= MUCH_FAR => return Ok((*found, Start::AsItLies)),
+        Ok(found) => (MUCH_NEARER * left(base, after, found)?, Some((*found, Start::AsItLies))),
+        Err(AlignmentError::NoOverlap { .. } | AlignmentError::NotConverged { .. }) => {
+            (f64::INFINITY, None)
+        }
+        Err(_) => return as_it_lies.map(|found| (found, Start::AsItLies)),
+    };
+    for start in [Start::Boxes, Start::Inertia] {
+        let found = match from(start) {
+            Err(stopped @ AlignmentError::Cancelled { .. }) => return Err(stopped),
+            Err(_) => continue,
+            Ok(found) => found,
+        };
+        let distance = left(base, after, &found)?;
+        if distance < least {
+            (least, best) = (distance, Some((found, start)));
+        }
+    }
+    match best {
+        Some(best) => Ok(best),
+        None => as_it_lies.map(|found| (found, Start::AsItLies)),
+    }
+}
+
+/// The median distance in mm of the base from the bone after the operation, once that is registered.
+fn left(
+    base: &BoneBefore,
+    after: &TriangleSurface,
+    found: &SurfaceAlignment,
+) -> Result<f64, AlignmentError> {
+    median_distance(base, after, &found.transform.inverse())
+}
+
 /// The movement of one segment. A start as the surfaces lie is that of the base.
 pub fn performed(
     segment: &BoneBefore,

@@ -27,7 +27,7 @@ pub enum ResponseError {
     #[error("the case has no muscle {name:?}; its muscles: {known}")]
     UnknownMuscle { name: String, known: String },
     #[error(
-        "muscle {name:?} becomes stiffer as it pulls, so that what it does is no multiple of a column: leave it out of the response"
+        "muscle {name:?} becomes stiffer as it pulls, so that what it does is no multiple of a column: leave it out here, or give it in the case the stiffness at one activation as its `material`, without `stiffening`"
     )]
     Stiffens { name: String },
     #[error(

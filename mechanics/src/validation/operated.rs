@@ -4,13 +4,17 @@
 use super::suspicion::{MOVED, SKIN_MEDIAN, told_before_operation};
 use crate::mesh::{Vector, Warning};
 use crate::registration::mirror::MirrorCheck;
-use crate::registration::{PointAlignment, align_points};
+use crate::registration::{PointAlignment, RigidTransform, align_points};
 
 /// A rigid movement explains what it makes so much smaller.
 const EXPLAINED: f64 = 0.5;
 
 /// In mm: predictions nearer than this to what was measured are of the case, whatever other cases are like.
 const NEAR: f64 = 0.5;
+
+/// In mm: skin that a plan moves less lies where it lay, if it is this share of all.
+const STILL: f64 = 0.1;
+const STILL_SHARE: f64 = 0.1;
 
 /// In degrees: heads in one frame are not turned so far from each other.
 const TURNED: f64 = 45.0;
@@ -59,16 +63,35 @@ impl OperatedSkin {
         skin.fold(self.bone_movement, f64::max)
     }
 
+    /// Root of the mean squared distance from the prediction of what was measured of skin that hardly moves, as it lies and once it is moved;
+    /// zeros where that is less than a tenth of the skin.
+    fn at_rest_off(&self, moved: &RigidTransform) -> [f64; 2] {
+        let rest = self.at_rest.iter().zip(&self.predicted).zip(&self.actual);
+        let still = rest.filter(|((rest, predicted), _)| (*predicted - *rest).norm() < STILL);
+        let [mut as_it_lies, mut once_moved, mut count] = [0.0; 3];
+        for ((_, predicted), actual) in still {
+            as_it_lies += (actual - predicted).norm_squared();
+            once_moved += (moved.apply(actual) - predicted).norm_squared();
+            count += 1.0;
+        }
+        let is_enough = count >= STILL_SHARE * self.actual.len() as f64;
+        [as_it_lies, once_moved].map(|sum| if is_enough { (sum / count).sqrt() } else { 0.0 })
+    }
+
     /// A warning where what was measured is farther from the prediction than anything moves, or a rigid movement brings it there.
     fn elsewhere(&self) -> Option<Warning> {
         let apart = || self.actual.iter().zip(&self.predicted).map(|(a, b)| (a - b).norm());
         let count = self.actual.len().max(1) as f64;
         let mean = apart().sum::<f64>() / count;
         let rms = (apart().map(|own| own * own).sum::<f64>() / count).sqrt();
-        let left = align_points(&self.actual, &self.predicted).map_or(rms, |found| found.rms);
+        let found = align_points(&self.actual, &self.predicted).ok();
+        let left = found.as_ref().map_or(rms, |found| found.rms);
+        let [still, still_left] =
+            found.map_or([0.0; 2], |found| self.at_rest_off(&found.transform));
         let largest = self.largest_movement();
-        let is_far = mean > largest.max(SKIN_MEDIAN);
+        let is_far = mean > largest.max(NEAR);
         let is_rigid = left < EXPLAINED * rms && rms - left > SKIN_MEDIAN;
+        let is_still_off = still_left < EXPLAINED * still && still - still_left > NEAR;
         let detail = format!(
             "the skin measured after the operation is {mean:.2} mm from the prediction in the mean, where the plan moves nothing by more than {largest:.2} mm, and {left:.2} mm (rms) once it is moved rigidly onto it: is it of this patient, in the frame and unit of the case, and registered onto it (`matrix4x4`)?"
         );
@@ -77,7 +100,7 @@ impl OperatedSkin {
             .with("largest_movement_mm", largest)
             .with("rms_mm", rms)
             .with("rms_aligned_mm", left);
-        (is_far || is_rigid).then_some(warning)
+        (is_far || is_rigid || is_still_off).then_some(warning)
     }
 
     fn mirrored(&self) -> Option<Warning> {
@@ -183,6 +206,8 @@ mod tests {
         assert_eq!(codes(|own| own.actual = own.at_rest.clone()), ["before-operation-suspect"]);
         let far = |own: &mut OperatedSkin| own.actual.iter_mut().for_each(|p| p.x += 60.0);
         assert_eq!(codes(far), ["unregistered-suspect"]);
+        let near = |own: &mut OperatedSkin| own.actual.iter_mut().for_each(|p| p.y += 0.9);
+        assert_eq!(codes(near), ["unregistered-suspect"]);
         let turn = Rotation3::from_axis_angle(&Vector::z_axis(), 0.17);
         let turned = |own: &mut OperatedSkin| own.actual.iter_mut().for_each(|p| *p = turn * *p);
         assert_eq!(codes(turned), ["unregistered-suspect"]);

@@ -3,7 +3,7 @@
 use mechanics::mesh::{TriangleSurface, Vector};
 use mechanics::progress::Unobserved;
 use mechanics::registration::mirror::check_mirror;
-use mechanics::registration::performed::{BoneBefore, align_base, performed};
+use mechanics::registration::performed::{BoneBefore, align_base, align_base_from_any, performed};
 use mechanics::registration::{
     AlignmentError, IterativeClosestPoint, RigidTransform, SphereOrBox, Start, ThinPlateSpline,
     align_points, align_weighted_points,
@@ -403,4 +403,26 @@ fn a_planted_operation_comes_back_from_bone_before_and_after_it() {
         assert!(found.fit.rms < 0.05 && found.fit.share_far < 0.05, "{found:?}");
         assert!((found.centre.z + 60.0).abs() < 15.0, "{}", found.centre);
     }
+}
+
+#[test]
+fn a_base_that_lies_too_far_off_for_its_place_is_found_from_another_start() {
+    let before = skull(5);
+    let whole = joined(&before.base, &before.jaw);
+    let mask =
+        SphereOrBox::Box { lower: Vector::new(-200.0, -200.0, 10.0), upper: Vector::repeat(200.0) };
+    let base = BoneBefore { surface: &whole, mask: Some(mask), start: Start::AsItLies };
+    let from_any = |scan: &RigidTransform| {
+        let after = map(&whole, |point| scan.inverse().apply(point));
+        let (found, start) = align_base_from_any(&base, &after, &Unobserved).unwrap();
+        let (angle, shift) = difference(&found.transform, scan, &Vector::zeros());
+        assert!(angle < 0.02 && shift < 0.03, "{angle} degrees, {shift} mm from {start:?}");
+        (align_base(&base, &after, &Unobserved), found, start)
+    };
+    let (as_it_lies, found, start) = from_any(&movement([8.0, 5.0, -12.0], [2.0, -1.5, 0.9]));
+    // Where the scans lie near enough nothing else is tried.
+    assert_eq!((as_it_lies.unwrap(), Start::AsItLies), (found, start));
+    let (as_it_lies, _, start) = from_any(&movement([10.0, 160.0, -20.0], [20.0, -15.0, 9.0]));
+    assert!(as_it_lies.is_err() || as_it_lies.unwrap().share_far > 0.2, "it lies near enough");
+    assert_eq!(start, Start::Inertia);
 }

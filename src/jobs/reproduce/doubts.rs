@@ -47,7 +47,7 @@ pub(super) fn base_warnings(
     let mut warnings = Vec::new();
     if found.share_far > MISFIT {
         let detail = format!(
-            "{:.0} % of the base remains more than 1 mm from the bone after the operation, rms {:.2} mm: another person, or was the base moved?",
+            "{:.0} % of the base remains more than 1 mm from the bone after the operation, rms {:.2} mm: another person, was the base moved, or does it need a `start` of `landmarks`?",
             100.0 * found.share_far,
             found.rms
         );

@@ -30,7 +30,9 @@ use crate::schema::{Faults, Limits, Matrix4x4, PlanDocument, Pointer};
 use mechanics::mesh::{Frame, TriangleSurface, Vector, Warning};
 use mechanics::plan::{PlannedSegment, RigidMovement};
 use mechanics::progress::{Phase, Progress};
-use mechanics::registration::performed::{BoneBefore, Performed, align_base, performed};
+use mechanics::registration::performed::{
+    BoneBefore, Performed, align_base, align_base_from_any, performed,
+};
 use mechanics::registration::{AlignmentError, RigidTransform, Start};
 use mechanics::validation::LandmarkPair;
 
@@ -153,10 +155,15 @@ impl Scans<'_> {
         let at = Pointer::root().key("spec");
         let before = self.surface(&spec.before.mesh, &at.key("before"))?;
         let after = self.surface(&spec.after.mesh, &at.key("after"))?;
-        let start = start(spec.base.start, &spec.base.landmarks)?;
+        let start = start(spec.base.start.unwrap_or_default(), &spec.base.landmarks)?;
         let mask = spec.base.mask.as_ref().and_then(place_of);
         let bone = BoneBefore { surface: &before, mask, start };
-        let base = align_base(&bone, &after, self.clock).map_err(|error| self.failed(&error))?;
+        let (base, start) = match spec.base.start {
+            Some(name) => align_base(&bone, &after, self.clock).map(|found| (found, name)),
+            None => align_base_from_any(&bone, &after, self.clock)
+                .map(|(found, start)| (found, name_of(start))),
+        }
+        .map_err(|error| self.failed(&error))?;
         let mut warnings = base_warnings(&bone, &after, &base);
         warnings.extend(unmasked(spec, &base));
         let scans = [&before, &after];
@@ -190,7 +197,8 @@ impl Scans<'_> {
             ..PlanDocument::default()
         };
         let matrix4x4 = Matrix4x4(base.transform.matrix4());
-        let base = BaseFitDocument { matrix4x4, fit: FitDocument::from(&base) };
+        let fit = FitDocument::from(&base);
+        let base = BaseFitDocument { matrix4x4, start: Some(start), fit };
         Ok((ReproductionDocument { plan, base, segments }, warnings))
     }
 
@@ -267,6 +275,15 @@ fn start(
             Start::Known(by_landmarks(&landmarks.values().map(pair).collect::<Vec<_>>())?)
         }
     })
+}
+
+fn name_of(start: Start) -> StartName {
+    match start {
+        Start::AsItLies => StartName::None,
+        Start::Boxes => StartName::Boxes,
+        Start::Inertia => StartName::Inertia,
+        Start::Known(_) => StartName::Landmarks,
+    }
 }
 
 /// The axis of the rotation of a movement, right-handed.

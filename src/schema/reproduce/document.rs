@@ -61,8 +61,11 @@ pub struct BaseDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub mask: Option<PlaceDocument>,
-    #[serde(default)]
-    pub start: StartName,
+    /// Initial position of the scan after the operation; it alone is tried. Absent: as it lies (`none`), and where that leaves more than
+    /// a twentieth of the base 1 mm away, `boxes` and `inertia` too; `reproduction.base.start` has the one taken.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub start: Option<StartName>,
     /// At least three, for a `start` of `landmarks`.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub landmarks: BTreeMap<String, BoneLandmarkDocument>,
@@ -117,7 +120,8 @@ impl ReproduceDocument {
             mask.check(&base.key("mask"), faults);
         }
         let BaseDocument { start, landmarks, .. } = &self.base;
-        Started { start: *start, landmarks }.check(&base, limits, faults);
+        let start = start.unwrap_or_default();
+        Started { start, landmarks }.check(&base, limits, faults);
         let segments = self.segments.iter().map(|segment| segment.name.trim()).collect();
         let landmarks = at.key("bone_landmarks");
         check_bone_landmarks(&self.bone_landmarks, &segments, &landmarks, limits, faults);

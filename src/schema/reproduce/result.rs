@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
+use crate::schema::compare::document::StartName;
 use crate::schema::{Matrix4x4, PlanDocument, Triple};
 use mechanics::registration::SurfaceAlignment;
 
@@ -22,6 +23,10 @@ pub struct ReproductionDocument {
 pub struct BaseFitDocument {
     /// From the scan after the operation to the one before it: row-major, x' = R x + t in mm.
     pub matrix4x4: Matrix4x4,
+    /// The initial position from which it was found: the stated one, or the best of those tried.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub start: Option<StartName>,
     pub fit: FitDocument,
 }
 

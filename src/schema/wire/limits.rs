@@ -5,6 +5,7 @@ use utoipa::ToSchema;
 
 use mechanics::format::ReadLimits;
 use mechanics::image::MOST_SAMPLES;
+use mechanics::plan::doubt::FARTHEST_MM;
 use mechanics::prediction::{MOST_MUSCLE_WORK, MOST_SAMPLE_POINTS};
 
 /// Bounds of requests. Defaults are those of the API's first version.
@@ -41,7 +42,8 @@ pub struct Limits {
     pub list_entries: u32,
     /// Landmarks, named regions and materials: of each.
     pub map_entries: u32,
-    /// Length of the translation of one movement, and each component of a prescribed displacement.
+    /// Length of the translation of one movement, displacement of the middle of a segment of a mesh by its total movement, and each
+    /// component of a prescribed displacement.
     pub translation_mm: f64,
     /// Each angle of one movement, and the angle of the total movement of a segment.
     pub rotation_deg: f64,
@@ -98,7 +100,7 @@ impl Default for Limits {
             tags: 32,
             list_entries: 100,
             map_entries: 1000,
-            translation_mm: 100.0,
+            translation_mm: FARTHEST_MM,
             rotation_deg: 90.0,
             centre_displacement_mm: 250.0,
             wall_s: 86_400.0,

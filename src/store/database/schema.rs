@@ -12,7 +12,7 @@ use crate::store::error::StoreError;
 
 /// The files of `migrations/`, in order. Their macro in sqlx would compile every engine a second time, for the
 /// compiler itself.
-const FILES: [(&str, &str); 17] = [
+const FILES: [(&str, &str); 19] = [
     ("first", include_str!("../../../migrations/0001_first.sql")),
     ("studies", include_str!("../../../migrations/0002_studies.sql")),
     ("blobs", include_str!("../../../migrations/0003_blobs.sql")),
@@ -30,6 +30,8 @@ const FILES: [(&str, &str); 17] = [
     ("cohorts", include_str!("../../../migrations/0015_cohorts.sql")),
     ("identity", include_str!("../../../migrations/0016_identity.sql")),
     ("seen clock", include_str!("../../../migrations/0017_seen_clock.sql")),
+    ("age clock", include_str!("../../../migrations/0018_age_clock.sql")),
+    ("order of tags", include_str!("../../../migrations/0019_order_of_tags.sql")),
 ];
 
 /// The steps as they are written, for SQLite.
@@ -41,11 +43,15 @@ static STEPS: LazyLock<Migrator> = LazyLock::new(|| {
     Migrator::with_migrations((1..).zip(FILES).map(step).collect())
 });
 
-/// The same steps for PostgreSQL, whose texts compare byte by byte as those of SQLite do: in the order of a
+/// The same steps for PostgreSQL, with its clock, and with texts that compare byte by byte as those of SQLite do: in the order of a
 /// language `~` comes before letters, and an index would depend on the libraries of the server's system.
 static POSTGRES_STEPS: LazyLock<Migrator> = LazyLock::new(|| {
     let translated = STEPS.iter().map(|step| {
         let sql = step.sql.as_str().replace(" TEXT", " TEXT COLLATE \"C\"");
+        let sql = sql.replace(
+            "CAST(unixepoch('subsec') * 1000 AS INTEGER)",
+            "CAST(EXTRACT(EPOCH FROM clock_timestamp()) * 1000 AS BIGINT)",
+        );
         let sql = AssertSqlSafe(sql).into_sql_str();
         Migration::new(step.version, step.description.clone(), step.migration_type, sql, false)
     });

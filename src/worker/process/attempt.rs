@@ -30,7 +30,7 @@ pub fn attempt(
     });
     match done {
         Ok((output, meshes)) => made(output, meshes),
-        Err(error) => failed(&error),
+        Err(error) => failed(&input.as_posted(error)),
     }
 }
 

@@ -75,7 +75,7 @@ async fn what_was_lost_before_errors_had_classes_is_still_lost(on: Deployment) {
     store.close().await;
     drop(store);
     on.execute(
-        "DROP TABLE seen_clock; DROP TABLE identity; DROP TABLE cohort_models; DROP TABLE cohort_left; DROP TABLE cohort_members; DROP TABLE cohorts; \
+        "ALTER TABLE job_tags DROP COLUMN number; DROP VIEW age_clock; DROP TABLE seen_clock; DROP TABLE identity; DROP TABLE cohort_models; DROP TABLE cohort_left; DROP TABLE cohort_members; DROP TABLE cohorts; \
          DROP INDEX cases_by_meshing; ALTER TABLE cases DROP COLUMN meshing; DROP INDEX jobs_by_tenant; \
          ALTER TABLE jobs DROP COLUMN waits_for; CREATE INDEX jobs_by_tenant ON jobs (tenant, status, priority, id); \
          DROP INDEX jobs_by_rows; ALTER TABLE jobs DROP COLUMN truths; ALTER TABLE jobs DROP COLUMN rows_key; ALTER TABLE deeds DROP COLUMN alive; DROP INDEX jobs_by_age; ALTER TABLE jobs DROP COLUMN numerics; \

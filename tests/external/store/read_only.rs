@@ -1,7 +1,5 @@
 //! A PostgreSQL that only reads for a while.
 
-use std::time::{Duration, Instant};
-
 use facies::store::Store;
 
 use crate::deployments::Deployment;
@@ -17,8 +15,6 @@ trials! {
 
 /// More than there are connections.
 const TIMES: usize = 12;
-/// Far below the life of a connection of the pool, ten minutes.
-const SOON: Duration = Duration::from_secs(20);
 
 /// What new sessions of the database may do.
 async fn by_default(on: &Deployment, setting: &str) {
@@ -51,8 +47,7 @@ async fn connections_of_a_time_without_writing_do_not_outlast_it(on: Deployment)
     assert!(store.ping().await.unwrap_err().is_unavailable());
     assert!(store.mesh(&kept.id).await.unwrap().is_some(), "what is stored is read");
     by_default(&on, "RESET default_transaction_read_only").await;
-    let since = Instant::now();
+    // Its patience is far shorter than the life of a connection of the pool, ten minutes.
     until("rows are taken", async || (refused(&store).await == 0).then_some(())).await;
-    assert!(since.elapsed() < SOON, "{:?}", since.elapsed());
     store.ping().await.unwrap();
 }

@@ -2,8 +2,6 @@
 
 use std::sync::Arc;
 
-use facies::store::Tagged;
-
 use crate::deployments::Deployment;
 use crate::rows::{enqueue, job};
 use crate::support::trials::trials;
@@ -11,7 +9,8 @@ use crate::support::trials::trials;
 trials! {
     on_both {
         tags_are_put_on_and_taken_off_and_others_stay
-        of_changes_at_the_same_time_none_is_lost_and_none_goes_beyond_the_bound
+        beyond_the_bound_those_put_on_longest_ago_go
+        changes_at_the_same_time_all_succeed_and_none_goes_beyond_the_bound
     }
 }
 
@@ -32,15 +31,33 @@ async fn tags_are_put_on_and_taken_off_and_others_stay(on: Deployment) {
     ];
     for (add, remove, left) in steps {
         let changed = store.change_tags(&id, &words(add), &words(remove), MOST).await.unwrap();
-        assert_eq!((changed, job(&store, &id).await.tags), (Tagged::Done, words(left)));
+        assert_eq!((changed, job(&store, &id).await.tags), (true, words(left)));
     }
-    let fifth = store.change_tags(&id, &words(&["f"]), &[], MOST).await.unwrap();
-    assert_eq!((fifth, job(&store, &id).await.tags.len()), (Tagged::TooMany(5), 4));
     let foreign = store.of_tenant("other").change_tags(&id, &words(&["f"]), &[], 9).await.unwrap();
-    assert_eq!((foreign, job(&store, &id).await.tags.len()), (Tagged::NotFound, 4));
+    assert_eq!((foreign, job(&store, &id).await.tags.len()), (false, 4));
 }
 
-async fn of_changes_at_the_same_time_none_is_lost_and_none_goes_beyond_the_bound(on: Deployment) {
+async fn beyond_the_bound_those_put_on_longest_ago_go(on: Deployment) {
+    let store = on.open().await;
+    let id = enqueue(&store, "tagged").await;
+    let steps: [(&[&str], &[&str], &[&str]); 5] = [
+        (&["z", "m", "c"], &["a"], &["c", "m", "z"]),
+        (&["b", "y"], &[], &["b", "c", "m", "y"]),
+        // Put on again, one is among the newest.
+        (&["m"], &[], &["b", "c", "m", "y"]),
+        (&["a", "x"], &[], &["a", "m", "x", "y"]),
+        (&["p", "q", "r", "s"], &["y"], &["p", "q", "r", "s"]),
+    ];
+    for (add, remove, left) in steps {
+        assert!(store.change_tags(&id, &words(add), &words(remove), MOST).await.unwrap());
+        assert_eq!(job(&store, &id).await.tags, words(left));
+    }
+    // A lower bound takes effect with the next tag only: this is a job that was asked for again.
+    assert!(store.change_tags(&id, &[], &[], 0).await.unwrap());
+    assert_eq!(job(&store, &id).await.tags.len(), 4);
+}
+
+async fn changes_at_the_same_time_all_succeed_and_none_goes_beyond_the_bound(on: Deployment) {
     let store = Arc::new(on.open().await);
     let id = enqueue(&store, "tagged").await;
     let changes = (0..8).map(|number| {
@@ -50,10 +67,9 @@ async fn of_changes_at_the_same_time_none_is_lost_and_none_goes_beyond_the_bound
             store.change_tags(&id, &tag, &[], MOST).await.unwrap()
         })
     });
-    let mut done = 0;
     for change in changes.collect::<Vec<_>>() {
-        done += usize::from(change.await.unwrap() == Tagged::Done);
+        assert!(change.await.unwrap());
     }
-    // It had one from the start.
-    assert_eq!((done, job(&store, &id).await.tags.len()), (MOST - 1, MOST));
+    let left = job(&store, &id).await.tags;
+    assert!(left.len() == MOST && left.iter().all(|tag| tag.starts_with("tag ")), "{left:?}");
 }

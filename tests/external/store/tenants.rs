@@ -1,7 +1,7 @@
 //! Rows of several tenants: each finds its own, and they take turns.
 
 use facies::schema::key::{KeyDocument, Scope};
-use facies::store::{AddedCase, Dismissal, Enqueued, Store, StoreError, Tagged};
+use facies::store::{AddedCase, ClockDoubt, Dismissal, Enqueued, Store, StoreError};
 use serde_json::json;
 
 use crate::deployments::Deployment;
@@ -13,6 +13,7 @@ trials! {
         tenants_take_turns_and_studies_come_last
         what_is_older_than_its_tenant_keeps_it_is_erased
         nothing_is_erased_by_a_clock_that_is_suddenly_a_year_ahead
+        what_is_stored_or_changed_by_a_clock_far_behind_counts_from_the_newest_time
         what_is_asked_for_again_or_tagged_is_kept_from_then_on
         a_job_that_was_lost_is_accepted_again_when_somebody_says_so
         equal_things_of_two_tenants_are_two_things
@@ -92,8 +93,8 @@ async fn nothing_is_erased_by_a_clock_that_is_suddenly_a_year_ahead(on: Deployme
     .await;
     for _ in 0..2 {
         assert_eq!(store.erase_old().await.unwrap(), 0);
-        let doubt = store.clock_doubt().await.unwrap().unwrap();
-        assert_eq!((doubt.ahead_h, doubt.trusted_in_h), (366 * 24, 7 * 24));
+        let doubt = store.clock_doubt().await.unwrap();
+        assert_eq!(doubt, Some(ClockDoubt::Ahead { hours: 366 * 24, trusted_in_h: 7 * 24 }));
     }
     // Without what was seen, as after an import, the rows tell it.
     on.execute("DELETE FROM seen_clock").await;
@@ -101,6 +102,55 @@ async fn nothing_is_erased_by_a_clock_that_is_suddenly_a_year_ahead(on: Deployme
     assert!(store.mesh(&stored.id).await.unwrap().is_some());
     store.trust_clock().await.unwrap();
     assert_eq!((store.erase_old().await.unwrap(), store.clock_doubt().await.unwrap()), (1, None));
+}
+
+/// The time at which the deployment was seen to run goes forward instead.
+async fn what_is_stored_or_changed_by_a_clock_far_behind_counts_from_the_newest_time(
+    on: Deployment,
+) {
+    const YEAR: &str = "366 * CAST(86400000 AS BIGINT)";
+    let store = on.open().await.of_tenant("a");
+    store.retain(Some(30)).await.unwrap();
+    let old = new_case();
+    assert_eq!(store.add_case(&old, 9).await.unwrap(), AddedCase::Stored);
+    assert_eq!(store.erase_old().await.unwrap(), 0);
+    on.execute(&format!(
+        "UPDATE seen_clock SET trusted = trusted + {YEAR}, latest = latest + {YEAR}"
+    ))
+    .await;
+    assert_eq!(store.erase_old().await.unwrap(), 0);
+    let doubt = store.clock_doubt().await.unwrap();
+    assert!(matches!(doubt, Some(ClockDoubt::Behind { hours: 8783..=8784 })), "{doubt:?}");
+
+    let case = new_case();
+    assert_eq!(store.add_case(&case, 9).await.unwrap(), AddedCase::Stored);
+    let lone = mesh("alone", "units=mm");
+    assert!(store.add_mesh(&lone).await.unwrap());
+    let mut of_old = new_job("{}", "of the old case");
+    of_old.case_id = Some(old.id.clone());
+    assert_eq!(store.enqueue(&of_old, 9).await.unwrap(), Enqueued::Accepted);
+    let ended = enqueue(&store, "ended").await;
+    for _ in 0..2 {
+        let lease = store.claim(LEASE).await.unwrap().unwrap().lease;
+        assert!(store.publish(&lease, result("{}", &[])).await.unwrap());
+    }
+
+    // The clock is right again.
+    for (table, column) in [("cases", "updated"), ("jobs", "updated"), ("meshes", "created")] {
+        on.execute(&format!("UPDATE {table} SET {column} = {column} - {YEAR}")).await;
+    }
+    on.execute(&format!(
+        "UPDATE seen_clock SET trusted = trusted - {YEAR}, latest = latest - {YEAR}"
+    ))
+    .await;
+    assert_eq!((store.erase_old().await.unwrap(), store.clock_doubt().await.unwrap()), (0, None));
+    for case in [&old, &case] {
+        assert!(store.case(&case.id).await.unwrap().is_some());
+    }
+    for job in [&of_old.id, &ended] {
+        assert!(store.job(job).await.unwrap().is_some(), "{job}");
+    }
+    assert!(store.mesh(&lone.id).await.unwrap().is_some());
 }
 
 async fn what_is_asked_for_again_or_tagged_is_kept_from_then_on(on: Deployment) {
@@ -123,7 +173,7 @@ async fn what_is_asked_for_again_or_tagged_is_kept_from_then_on(on: Deployment) 
     on.execute("UPDATE meshes SET created = 1").await;
     // The job of the case is posted again without a new tag, as `POST /v1/jobs` does it.
     for (job, add) in [(&of_case.id, vec![]), (&tagged, vec!["main".to_owned()])] {
-        assert_eq!(store.change_tags(job, &add, &[], 9).await.unwrap(), Tagged::Done);
+        assert!(store.change_tags(job, &add, &[], 9).await.unwrap());
     }
     assert!(store.keep_mesh(&again.id).await.unwrap().is_some_and(|kept| kept.created > 1));
     assert_eq!(store.erase_old().await.unwrap(), 2);

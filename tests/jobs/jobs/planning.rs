@@ -8,6 +8,7 @@ use facies::jobs::{
     JobContext, JobInput, PredictInput, ReproduceInput, StoredMesh, StoredShape, check, work,
 };
 use facies::schema::case::norm::{NormDocuments, check_norms};
+use facies::schema::compare::document::StartName;
 use facies::schema::predict::check::CheckDocument;
 use facies::schema::predict::result::ResultDocument;
 use facies::schema::reproduce::result::ReproductionDocument;
@@ -110,6 +111,33 @@ fn a_base_that_holds_the_bone_that_was_moved_is_reported() {
     assert!(!told(&spec).contains(&"base-unmasked".to_owned()));
     spec["base"] = json!({});
     assert!(told(&spec).contains(&"base-unmasked".to_owned()));
+}
+
+#[test]
+fn the_start_of_a_registration_is_tried_where_none_is_stated_and_told() {
+    let (done, mut sources, mut spec) = performed();
+    let near = reproduced(&sources, spec.clone()).unwrap();
+    assert_eq!(near.base.start, Some(StartName::None));
+    let off = RigidMovement::about_pivot(
+        Vector::new(0.14, 0.09, -0.21),
+        Vector::zeros(),
+        Vector::new(20.0, -15.0, 29.0),
+    );
+    let after = sources.0["after"].surface_in_mm().unwrap();
+    sources.0.insert("after".to_owned(), surface(moved(&after, &off)));
+    let found = reproduced(&sources, spec.clone()).unwrap();
+    assert!(matches!(found.base.start, Some(StartName::Boxes | StartName::Inertia)), "{found:?}");
+    assert!(found.base.fit.share_above_1_mm < 0.01, "{found:?}");
+    let Matrix4x4(matrix) = found.segments[0].matrix4x4;
+    for (found, wanted) in matrix.iter().zip(done.matrix4()) {
+        assert!((found - wanted).abs() < 1e-3, "{matrix:?} instead of {:?}", done.matrix4());
+    }
+    // A stated start is taken alone, also where it misses.
+    spec["base"]["start"] = "none".into();
+    if let Ok(missed) = reproduced(&sources, spec) {
+        assert_eq!(missed.base.start, Some(StartName::None));
+        assert!(missed.base.fit.share_above_1_mm > 0.05, "{missed:?}");
+    }
 }
 
 #[test]

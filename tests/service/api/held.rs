@@ -78,6 +78,14 @@ async fn a_response_of_two_bones_refuses_the_plans_that_a_prediction_refuses() {
     let mut far = shifted(&["lower"]);
     far["segments"][0]["translation_mm"] = json!([91, 0, 0]);
     apply(&server, &case, &far).await.problem(422, "plan-out-of-range");
+    far["segments"] = json!([{"name": "upper"}, {"name": "lower"}]);
+    for (index, x) in [1.0, 91.0].into_iter().enumerate() {
+        far["segments"][index]["matrix4x4"] =
+            json!([1, 0, 0, x, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]);
+    }
+    let problem = apply(&server, &case, &far).await.problem(422, "plan-out-of-range");
+    assert_eq!(problem["errors"][0]["pointer"], "/plan/segments/1", "{problem}");
+    far = shifted(&["lower"]);
     let told = apply(&server, &case, &shifted(&["lower"])).await.expect(StatusCode::OK);
     assert!(!codes(&told["warnings"]).contains(&"nothing-moves"));
     let still = apply(&server, &case, &json!({"segments": []})).await.expect(StatusCode::OK);

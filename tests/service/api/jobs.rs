@@ -4,6 +4,7 @@ use reqwest::{Method, StatusCode};
 use serde_json::{Value, json};
 
 use crate::helpers::{SMALL, Server, ask, spec};
+use crate::samples::{SKIN_BALL, ball_stl};
 
 #[tokio::test]
 async fn a_comparison_of_more_samples_than_can_be_measured_is_refused_when_it_is_posted() {
@@ -118,6 +119,22 @@ async fn the_same_inputs_are_answered_by_the_job_that_is_known() {
     assert_eq!(found["items"][0]["id"], first["id"]);
     let other = server.job(&spec(&case, 1.5)).await.expect(StatusCode::OK);
     assert_ne!(other["id"], first["id"]);
+
+    // One more than it may have: what was put on first goes.
+    for number in 0..32 {
+        again["tags"] = json!([format!("run {number:02}")]);
+        let answer = ask(server.post("/v1/jobs").json(&again)).await.expect(StatusCode::OK);
+        assert_eq!(answer["id"], first["id"]);
+    }
+    again["tags"] = json!(["the newest", "run 07"]);
+    let answer = ask(server.post("/v1/jobs").json(&again)).await.expect(StatusCode::OK);
+    let mut left: Vec<String> = (1..32).map(|number| format!("run {number:02}")).collect();
+    left.push("the newest".to_owned());
+    assert_eq!(answer["tags"], json!(left));
+    again["tags"] = (0..33).map(|number| format!("t{number}")).collect();
+    let refused = ask(server.post("/v1/jobs").json(&again)).await;
+    let problem = refused.problem(422, "validation-failed");
+    assert_eq!(problem["errors"][0]["code"], "too-many", "{problem}");
 }
 
 #[tokio::test]
@@ -138,9 +155,9 @@ async fn tags_of_a_job_are_changed_whatever_its_state() {
     assert_eq!(shown.json()["tags"], json!(["b", "main"]));
     assert_eq!((shown.header("etag"), &shown.bytes), (answer.header("etag"), &answer.bytes));
 
-    let many: Vec<String> = (0..31).map(|number| format!("t{number}")).collect();
+    let many: Vec<String> = (0..33).map(|number| format!("t{number}")).collect();
     for (wrong, code, at) in [
-        (json!({"tags": {"add": many}}), "too-many", "/tags"),
+        (json!({"tags": {"add": many}}), "too-many", "/tags/add"),
         (json!({"tags": {"add": ["x"], "remove": ["x"]}}), "duplicate-name", "/tags/add/0"),
         (json!({"tags": {"set": ["x"]}}), "unknown-field", "/tags/set"),
         (json!({"tags": {"add": [""]}}), "bad-name", "/tags/add/0"),
@@ -289,6 +306,28 @@ async fn a_prediction_is_compared_with_another_surface() {
     let in_use =
         ask(server.delete(&format!("/v1/meshes/{}", actual["id"].as_str().unwrap()))).await;
     in_use.problem(409, "conflict-in-use");
+}
+
+#[tokio::test]
+async fn a_comparison_that_fails_names_the_place_in_what_was_posted() {
+    let server = Server::start();
+    let mut ids = Vec::new();
+    for frame in ["LPS", "RAS"] {
+        let path = format!("/v1/meshes?units=mm&frame={frame}");
+        let request = server.post(&path).header("content-type", "application/octet-stream");
+        let mesh = ask(request.body(ball_stl(SKIN_BALL))).await;
+        ids.push(mesh.expect(StatusCode::CREATED)["id"].clone());
+    }
+    let compare =
+        json!({"kind": "compare", "prediction": {"mesh": ids[0]}, "actual": {"mesh": ids[1]}});
+    let job = server.job(&compare).await.expect(StatusCode::CREATED);
+    let error = server.ended(job["id"].as_str().unwrap()).await["error"].clone();
+    let told = &error["errors"][0];
+    assert_eq!(
+        (&told["code"], &told["pointer"]),
+        (&json!("frame-conflict"), &json!("/actual/mesh"))
+    );
+    assert!(error["detail"].as_str().unwrap().starts_with("/actual/mesh: "), "{error}");
 }
 
 #[tokio::test]

@@ -217,6 +217,13 @@ async fn a_meshing_that_fails_stands_on_its_case_and_fails_what_waited_with_its_
     );
     let problem = server.job(&plan_on(&case)).await.problem(409, "case-not-ready");
     assert_eq!(problem["error"]["type"], "no-tissue", "{problem}");
+
+    let mut in_air = document();
+    in_air["meshing"]["osteotomy"]["segments"][0]["seeds_mm"] = json!([[60, 55, 50], [1, 1, 1]]);
+    let case = post(&server, &in_air).await.expect(StatusCode::CREATED);
+    let meshing = server.ended(case["meshing"]["job"].as_str().unwrap()).await;
+    let told = &meshing["error"]["errors"][0]["pointer"];
+    assert_eq!(told, "/meshing/osteotomy/segments/0/seeds_mm/1", "{meshing}");
 }
 
 #[tokio::test]

@@ -196,12 +196,12 @@ async fn what_cannot_be_meshed_is_refused_with_its_place() {
     no_bone["osteotomy"]["cuts"][0]["point_mm"] = json!([60, 55, -500]);
     let job = ended(&server, &no_bone).await;
     assert_eq!(job["error"]["type"], "segment-not-found", "{job}");
-    assert_eq!(job["error"]["errors"][0]["pointer"], "/spec/osteotomy/segments/0", "{job}");
+    assert_eq!(job["error"]["errors"][0]["pointer"], "/osteotomy/segments/0", "{job}");
     let mut beside = spec(&scan);
     beside["osteotomy"]["segments"][0]["seeds_mm"] = json!([[60, 55, 50], [1, 1, 1]]);
     let job = ended(&server, &beside).await;
     let told = &job["error"]["errors"][0]["pointer"];
-    assert_eq!(told, "/spec/osteotomy/segments/0/seeds_mm/1", "{job}");
+    assert_eq!(told, "/osteotomy/segments/0/seeds_mm/1", "{job}");
     // A disc in a ball of bone of 30 mm, around which the jaw hangs at the rest, and a line that is not sawn through.
     let disc = json!({"cuts": [{"name": "middle", "point_mm": [60, 55, 60], "normal": [0, 0, 1], "radius_mm": 15}],
         "segments": [{"name": "jaw", "below": ["middle"], "seeds_mm": [[60, 55, 50]]}]});
@@ -215,7 +215,7 @@ async fn what_cannot_be_meshed_is_refused_with_its_place() {
         assert_eq!(job["error"]["type"], "validation-failed", "{job}");
         let error = &job["error"]["errors"][0];
         assert_eq!(error["code"], "cut-leaves-bridge", "{job}");
-        assert_eq!(error["pointer"], format!("/spec/osteotomy/{place}"), "{job}");
+        assert_eq!(error["pointer"], format!("/osteotomy/{place}"), "{job}");
         assert!(error["detail"].as_str().unwrap().contains("still hangs at"), "{job}");
     }
 }
@@ -323,14 +323,14 @@ async fn surfaces_that_bound_no_tissue_are_refused_with_their_place() {
     asked["surfaces"]["skin"] = kept["id"].clone();
     let job = ended(&server, &asked).await;
     assert_eq!(job["error"]["type"], "no-inside", "{job}");
-    assert_eq!(job["error"]["errors"][0]["pointer"], "/spec/surfaces/skin", "{job}");
+    assert_eq!(job["error"]["errors"][0]["pointer"], "/surfaces/skin", "{job}");
 
     let twice = json!([{"name": "jaw", "mesh": bone}, {"name": "skull", "mesh": bone}]);
     let asked = json!({"kind": "mesh", "surfaces": {"skin": skin, "bones": twice}});
     let job = ended(&server, &asked).await;
     let fault = &job["error"]["errors"][0];
     assert_eq!(fault["code"], "segment-not-found", "{job}");
-    assert!(fault["pointer"].as_str().unwrap().starts_with("/spec/surfaces/bones/"), "{job}");
+    assert!(fault["pointer"].as_str().unwrap().starts_with("/surfaces/bones/"), "{job}");
     assert!(fault["detail"].as_str().unwrap().contains("is the same surface as bone"), "{job}");
 }
 

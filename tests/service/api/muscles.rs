@@ -236,6 +236,45 @@ async fn what_is_not_known_of_growth_and_muscles_is_refused_with_its_place() {
 }
 
 #[tokio::test]
+async fn a_muscle_that_stiffens_is_left_out_of_a_response_and_named() {
+    let server = Server::start();
+    let mut case = SMALL.case();
+    case["skin"] = json!({"node_set": "z_max"});
+    case["segments"] = json!([{"name": "left", "nodes": {"node_set": "x_min"}}]);
+    case["fixed"] = json!([{"node_set": "z_min"}]);
+    case["muscles"] = json!([
+        {"name": "strap", "lines_mm": [[[10, 30, 25], [50, 30, 25]]], "within_mm": 15},
+        {"name": "stiff", "direction": [1, 0, 0],
+         "box_mm": {"centre": [30, 30, 15], "half_axes": [[20, 0, 0], [0, 15, 0], [0, 0, 8]]},
+         "material": {"young_modulus_kpa": 60, "poisson_ratio": 0.45, "fibre": {"young_modulus_kpa": 200}},
+         "stiffening": {"young_modulus_kpa": 600, "stress_kpa": 50}},
+    ]);
+    // Few: the shares of cells decide nothing here.
+    case["muscle_mixing"] = json!({"rule": "voigt", "samples": 8});
+    let kept = ask(server.post("/v1/cases").multipart(SMALL.form(&case))).await;
+    let case = kept.expect(StatusCode::CREATED)["id"].as_str().unwrap().to_owned();
+    let built = done(&server, &json!({"kind": "response", "case": case})).await;
+    let told = built["results"]["warnings"].as_array().unwrap();
+    let told = told.iter().find(|own| own["code"] == "muscle-not-linear").expect("a warning");
+    assert!(told["detail"].as_str().unwrap().contains("stiff"), "{told}");
+    let pulling = |muscle: &str| json!({"activations": [{"muscle": muscle, "stress_kpa": 5.0}]});
+    apply(&server, &case, &pulling("strap")).await.expect(StatusCode::OK);
+    let refused = apply(&server, &case, &pulling("stiff")).await;
+    refused.problem(422, "not-in-response");
+    // Stated, it is refused at its place, here and by inverse planning.
+    let optimise = json!({"kind": "optimise", "case": case, "activations": [{"muscle": "strap", "stress_kpa": 1}, {"muscle": "stiff", "stress_kpa": 0}],
+        "targets": [{"point_mm": [30, 30, 30], "displacement_mm": [null, null, 1]}],
+        "bounds": {"left": {"translation_mm": [[0, 0], [0, 0], [-5, 5]]}}});
+    for (spec, pointer) in [
+        (json!({"kind": "response", "case": case, "muscles": ["strap", "stiff"]}), "/muscles/1"),
+        (optimise, "/activations/1/muscle"),
+    ] {
+        let problem = server.job(&spec).await.problem(422, "not-linear");
+        assert_eq!(problem["errors"][0]["pointer"], pointer, "{problem}");
+    }
+}
+
+#[tokio::test]
 async fn auto_knows_what_linear_elasticity_leaves_out_of_growth_and_muscles() {
     let server = Server::start();
     let case = case(&server).await;

@@ -292,6 +292,10 @@ async fn who_runs_the_service_sees_what_was_done() {
     }
     let check = ask(hospital.admin(Method::GET, "/audit/check")).await.expect(StatusCode::OK);
     assert_eq!(check["status"], "whole");
+    for path in ["/audit/check", "/audit", "/tenants", "/tenants/a/keys", "/lost-jobs"] {
+        let misspelt = ask(hospital.admin(Method::GET, &format!("{path}?afer=1"))).await;
+        assert_eq!(misspelt.problem(400, "invalid-parameter")["parameter"], "afer", "{path}");
+    }
     let all = ask(hospital.admin(Method::GET, "/audit?limit=200")).await.expect(StatusCode::OK);
     assert_eq!(json!(all["items"].as_array().unwrap().len()), check["rows"]);
     ask(hospital.admin(Method::POST, "/lost-jobs/nothing/requeue")).await.problem(404, "not-found");

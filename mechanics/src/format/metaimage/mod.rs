@@ -9,7 +9,7 @@ use flate2::read::ZlibDecoder;
 use super::arrays::SurfaceArrays;
 use super::cursor::Cursor;
 use super::error::FormatError;
-use super::limits::ReadLimits;
+use super::limits::{DecodeBudget, ReadLimits};
 use super::voxels::{Decoded, check_promise, decode, trailing};
 use super::{Mesh, MeshFormat, ReadMesh};
 use crate::image::ImageVolume;
@@ -77,10 +77,10 @@ fn decoded(
             Some(bytes) => place.clone().take(bytes)?,
             None => place.rest(),
         };
-        check_promise(storage.bytes(), place, stored.len(), limits)?;
-        return decode(ZlibDecoder::new(stored), storage, place);
+        let budget = check_promise(storage.bytes(), place, stored.len(), limits)?;
+        return decode(ZlibDecoder::new(stored), storage, place, budget);
     }
     // The length of the whole is known: what is there is checked before memory is taken.
     place.clone().take(storage.bytes())?;
-    decode(place.rest(), storage, place)
+    decode(place.rest(), storage, place, DecodeBudget::of_stored())
 }

@@ -15,7 +15,7 @@ use flate2::read::MultiGzDecoder;
 use super::arrays::SurfaceArrays;
 use super::cursor::Cursor;
 use super::error::FormatError;
-use super::limits::ReadLimits;
+use super::limits::{DecodeBudget, ReadLimits};
 use super::voxels::{check_promise, decode, trailing};
 use super::{Mesh, MeshFormat, ReadMesh};
 use crate::image::ImageVolume;
@@ -48,7 +48,7 @@ pub(super) fn read(bytes: &[u8], limits: &ReadLimits) -> Result<ReadMesh, Format
     }
     let check = |header: &Header| {
         let wanted = header.storage.bytes().saturating_add(header.voxels_at);
-        place.clone().take(wanted).map(|_| ())
+        place.clone().take(wanted).map(|_| DecodeBudget::of_stored())
     };
     read_stream(bytes, &place, limits, check)
 }
@@ -57,10 +57,10 @@ fn read_stream(
     mut source: impl Read,
     place: &Cursor<'_>,
     limits: &ReadLimits,
-    check: impl Fn(&Header) -> Result<(), FormatError>,
+    check: impl Fn(&Header) -> Result<DecodeBudget, FormatError>,
 ) -> Result<ReadMesh, FormatError> {
     let header = Header::read(&mut source, limits)?;
-    check(&header)?;
+    let budget = check(&header)?;
     let between = header.voxels_at - header.bytes;
     if between > MOST_EXTENSION_BYTES {
         let detail = format!("{between} bytes stand before the voxels, at most 16 MiB are read");
@@ -70,7 +70,7 @@ fn read_stream(
     let read = source.by_ref().take(between).read_to_end(&mut extensions);
     read.map_err(|error| place.bad_bytes(error.to_string()))?;
     let names = label_table::names(&extensions, limits);
-    let decoded = decode(source, &header.storage, place)?;
+    let decoded = decode(source, &header.storage, place, budget)?;
     let image = ImageVolume::new(header.size, header.placement, decoded.voxels)
         .map_err(|error| bad(header.voxels_at, error.to_string()))?;
     Ok(ReadMesh {

@@ -15,7 +15,7 @@ use flate2::write::GzEncoder;
 use super::arrays::SurfaceArrays;
 use super::cursor::Cursor;
 use super::error::FormatError;
-use super::limits::ReadLimits;
+use super::limits::{DecodeBudget, ReadLimits};
 use super::voxels::{Storage, check_promise, decode, trailing};
 use super::{Mesh, MeshFormat, ReadMesh};
 use crate::image::{ImageVolume, Voxels};
@@ -36,7 +36,7 @@ pub(super) fn read(bytes: &[u8], limits: &ReadLimits) -> Result<ReadMesh, Format
         Encoding::Raw => {
             let values = cursor.take(storage.bytes())?;
             warnings.extend(trailing(cursor.remaining()));
-            decode(values, &storage, &start)?.voxels
+            decode(values, &storage, &start, DecodeBudget::of_stored())?.voxels
         }
     };
     let image = ImageVolume::new(header.size, header.placement, voxels)
@@ -58,8 +58,8 @@ fn inflate(
     file_bytes: usize,
     limits: &ReadLimits,
 ) -> Result<Voxels, FormatError> {
-    check_promise(storage.bytes(), place, file_bytes, limits)?;
-    let decoded = decode(MultiGzDecoder::new(place.rest()), storage, place)?;
+    let budget = check_promise(storage.bytes(), place, file_bytes, limits)?;
+    let decoded = decode(MultiGzDecoder::new(place.rest()), storage, place, budget)?;
     if decoded.followed_by > 0 {
         let wanted = storage.bytes();
         return Err(place.bad_bytes(format!("{wanted} bytes declared, more are there")));

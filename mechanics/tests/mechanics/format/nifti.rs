@@ -1,5 +1,6 @@
 //! NIfTI: where an image stands, what its numbers mean, and what is refused at which byte.
 
+use mechanics::format::{FormatError, ReadLimits, read};
 use mechanics::image::Voxels;
 use mechanics::mesh::{Frame, Vector};
 
@@ -182,6 +183,32 @@ fn bytes_behind_the_last_voxel_are_reported() {
         assert_eq!(warning_codes(&read), ["trailing-bytes"]);
         assert_eq!(read.warnings[0].numbers, [("bytes", 5.0)]);
     }
+}
+
+#[test]
+fn the_check_sum_behind_megabytes_of_trailing_bytes_is_verified() {
+    let more = [file(), vec![0; 2 << 20]].concat();
+    let whole = gzip(&more);
+    let read = read_default(&whole);
+    assert_eq!(read.warnings[0].numbers, [("bytes", f64::from(2 << 20))]);
+    // The check sum stands in the last eight bytes, before the length.
+    let mut damaged = whole.clone();
+    let at = damaged.len() - 8;
+    damaged[at] ^= 1;
+    let error = error_of(&damaged);
+    assert!(error.contains("corrupt gzip stream"), "{error}");
+}
+
+#[test]
+fn trailing_bytes_beyond_what_a_file_may_decode_to_are_refused() {
+    let limits = ReadLimits { image_floor_bytes: 1 << 20, ..ReadLimits::default() };
+    let within = [file(), vec![0; 1 << 19]].concat();
+    assert!(read(&gzip(&within), &limits).is_ok());
+    let beyond = [file(), vec![0; 3 << 20]].concat();
+    let refused = read(&gzip(&beyond), &limits);
+    assert!(matches!(refused, Err(FormatError::DecompressionLimit { .. })), "{refused:?}");
+    // Stored as they are they take no memory.
+    assert!(read(&beyond, &limits).is_ok());
 }
 
 #[test]

@@ -1,11 +1,14 @@
 //! What is promised of meshes, held against many bodies that touch themselves at random.
 
-use mechanics::mesh::Vector;
+use std::collections::{HashMap, HashSet};
+
+use mechanics::mesh::crossing::self_crossings;
+use mechanics::mesh::{TriangleSurface, Vector};
 use mechanics::meshing::{MeshingError, MeshingSettings, RegionShape, SizeField, SizeRegion, mesh};
 use mechanics::progress::Unobserved;
 
 use super::domains::{Body, Slit, balls, slit_ball};
-use super::{assert_sound, uniform};
+use super::{assert_sound, surface, uniform};
 
 /// Source: Steele, Lea, Flood, Fast splittable pseudorandom number generators, OOPSLA 2014.
 struct Random(u64);
@@ -74,4 +77,43 @@ fn meshes_of_random_balls_holes_and_gaps_are_sound() {
     }
     assert!(pinches > 5 && refused < 20, "{pinches} {refused}");
     assert!(worst[0] >= 12.0 && worst[1] >= 10.0, "{worst:?}");
+}
+
+/// Fans of triangles about each node that share no edge, and nodes at one place, as nodes in excess.
+fn nodes_in_excess(surface: &TriangleSurface) -> usize {
+    let mut around: HashMap<u32, Vec<[u32; 2]>> = HashMap::new();
+    for [a, b, c] in &surface.triangles {
+        for (node, next) in [(*a, [*b, *c]), (*b, [*c, *a]), (*c, [*a, *b])] {
+            around.entry(node).or_default().push(next);
+        }
+    }
+    let rings = |edges: &Vec<[u32; 2]>| {
+        let after: HashMap<u32, u32> = edges.iter().map(|[from, to]| (*from, *to)).collect();
+        let first = edges[0][0];
+        let ring = std::iter::successors(Some(after[&first]), |at| Some(after[at]));
+        usize::from(ring.take_while(|at| *at != first).count() + 1 < edges.len())
+    };
+    let place = |point: &Vector| [point.x, point.y, point.z].map(f64::to_bits);
+    let places: HashSet<[u64; 3]> = surface.points.iter().map(place).collect();
+    around.values().map(rings).sum::<usize>() + surface.points.len() - places.len()
+}
+
+#[test]
+fn a_boundary_without_coincident_nodes_touches_and_crosses_itself_nowhere() {
+    let mut mended = 0;
+    for seed in 0..30 {
+        let body = scene(seed);
+        let settings = uniform(1.9);
+        let Ok(as_made) = mesh(&body, &settings, &Unobserved) else { continue };
+        let settings = MeshingSettings { part_copies: true, ..settings };
+        let apart = mesh(&body, &settings, &Unobserved).unwrap();
+        let angles = assert_sound(&apart);
+        assert!(angles[0].min(180.0 - angles[1]) >= 5.0, "{seed}: {angles:?}");
+        let boundary = surface(&apart);
+        assert_eq!(self_crossings(&boundary, |_| true).count, 0, "{seed}");
+        assert_eq!(nodes_in_excess(&boundary), 0, "{seed}");
+        assert_eq!((apart.report.crossings, apart.report.voids_touching), (0, 0), "{seed}");
+        mended += nodes_in_excess(&surface(&as_made));
+    }
+    assert!(mended > 5, "{mended}");
 }

@@ -130,7 +130,7 @@ fn flat_layers_over_bone_that_moves_are_estimated_within_a_factor_of_two() {
     }
 }
 
-/// What a correction leaves, as a share of the estimate that is added: `auto` expects four fifths.
+/// What a correction leaves, as a share of the estimate that is added: `auto` expects four fifths, and makes none where it may be more.
 #[test]
 fn a_correction_leaves_four_fifths_of_the_estimate_at_most_where_it_is_made() {
     use ElementChoice::{MeanDilatation, Stabilised};
@@ -143,9 +143,10 @@ fn a_correction_leaves_four_fifths_of_the_estimate_at_most_where_it_is_made() {
         (CellShape::Wedge6, MeanDilatation, 0.3, false),
         (CellShape::Wedge6, MeanDilatation, 0.49, false),
     ];
-    let mut too_much = Vec::new();
+    let mut wrong = Vec::new();
     for (shape, truth, nu, is_made) in rows {
-        for (method, mm) in [(Method::FemLinear, 0.5), (Method::FemNonlinear, 4.0)] {
+        let methods = [(Method::FemLinear, 0.5), (Method::FemNonlinear, 4.0)];
+        for (method, mm) in methods.into_iter().take(if is_made { 2 } else { 1 }) {
             let shares = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [-0.6, 0.0, 0.8]];
             let shares = shares.map(|way| {
                 let case = case_of(
@@ -160,8 +161,9 @@ fn a_correction_leaves_four_fifths_of_the_estimate_at_most_where_it_is_made() {
             });
             let row = format!("{shape:?} nu {nu} {method:?}: {shares:.2?} of the estimate left");
             println!("{row}");
-            too_much.extend((is_made && shares.iter().any(|share| *share > 0.8)).then_some(row));
+            let gains_little = shares.iter().any(|share| *share > 0.8);
+            wrong.extend((is_made == gains_little).then_some(row));
         }
     }
-    assert!(too_much.is_empty(), "{too_much:?}");
+    assert!(wrong.is_empty(), "{wrong:?}");
 }

@@ -242,7 +242,19 @@ fn tissue_that_finds_no_rest_between_bones_that_pass_through_each_other_is_told_
 fn two_segments_that_move_one_node_apart_are_refused() {
     let mut case = jaw_and_skull(CellShape::Hex8);
     case.segments.push(CaseSegment { name: "chin".to_owned(), nodes: set("z_min") });
-    assert_eq!(refusal(&case, &moved("chin", turned())), ("/plan".to_owned(), "plan-conflict"));
+    let at = ("/plan/segments/0".to_owned(), "plan-conflict");
+    assert_eq!(refusal(&case, &moved("chin", turned())), at);
+    // The bone of a segment of the case, named by its node set: the plan states one segment only.
+    case.segments.pop();
+    let mut mesh = (*case.volume).clone();
+    mesh.node_sets.insert("mandible".to_owned(), mesh.node_sets["x_min"].clone());
+    case.volume = mesh.into();
+    let plan = moved("mandible", turned());
+    assert_eq!(refusal(&case, &plan), at);
+    let error = Scene::new(&case, &plan, &Settings::default()).err().unwrap().0.remove(0);
+    for told in ["node set \"mandible\"", "segment \"jaw\" of the case", "State the movement for"] {
+        assert!(error.detail.contains(told), "{told}: {error}");
+    }
 }
 
 #[test]

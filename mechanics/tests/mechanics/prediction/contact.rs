@@ -249,21 +249,20 @@ fn jaws_that_close_by_twice_their_slit_and_four_times_their_cells_press_and_do_n
 #[test]
 fn the_error_of_the_mesh_is_estimated_where_tissue_presses() {
     let mut outside = Vec::new();
-    for method in [Method::FemLinear, Method::FemNonlinear] {
-        for (shape, element) in [
-            (CellShape::Hex8, ElementChoice::MeanDilatation),
-            (CellShape::Tet4, ElementChoice::Stabilised),
-        ] {
-            let (plan, truth) = (raised(6.0), element);
-            let settings = Settings { method: method.clone(), element, ..unilateral() };
-            let case = jaws_of(shape, 2.5);
-            let Effectivity { mean, p95, .. } =
-                Question { case, plan, settings, halved: 1, truth }.effectivity();
-            let told = format!("{method:?} {shape:?}: {mean:.2} in the mean, {p95:.2} at p95");
-            println!("{told}");
-            if !((0.75..=4.0).contains(&mean) && (0.75..=4.0).contains(&p95)) {
-                outside.push(told);
-            }
+    for (method, shape, element) in [
+        (Method::FemLinear, CellShape::Hex8, ElementChoice::MeanDilatation),
+        (Method::FemLinear, CellShape::Tet4, ElementChoice::Stabilised),
+        (Method::FemNonlinear, CellShape::Tet4, ElementChoice::Stabilised),
+    ] {
+        let (plan, truth) = (raised(6.0), element);
+        let settings = Settings { method: method.clone(), element, ..unilateral() };
+        let case = jaws_of(shape, 2.5);
+        let Effectivity { mean, p95, .. } =
+            Question { case, plan, settings, halved: 1, truth }.effectivity();
+        let told = format!("{method:?} {shape:?}: {mean:.2} in the mean, {p95:.2} at p95");
+        println!("{told}");
+        if !((0.75..=4.0).contains(&mean) && (0.75..=4.0).contains(&p95)) {
+            outside.push(told);
         }
     }
     assert!(outside.is_empty(), "{outside:?}");

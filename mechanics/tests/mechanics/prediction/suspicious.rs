@@ -133,6 +133,26 @@ fn a_plan_in_metres_is_reported_and_one_beyond_the_face_is_refused() {
 }
 
 #[test]
+fn a_total_movement_of_more_than_a_hundred_millimetres_is_refused_on_a_larger_mesh() {
+    let mesh = block(Vector::new(300.0, 100.0, 100.0), [3, 1, 1], CellShape::Hex8);
+    let case = Case {
+        segments: vec![CaseSegment { name: "jaw".to_owned(), nodes: set("z_min") }],
+        fixed: vec![set("z_max")],
+        ..case_of(mesh, material(15.0, 0.45))
+    };
+    let scene = |movement: RigidMovement| {
+        Scene::new(&case, &plan_of(&case, &[movement]), &Settings::default())
+    };
+    let error = scene(shifted(75.0).then(&shifted(75.0))).err().unwrap().0.remove(0);
+    assert_eq!(
+        (error.pointer.as_str(), error.code.name()),
+        ("/plan/segments/0", "plan-out-of-range")
+    );
+    assert!(error.detail.contains("150.000 mm in all"), "{error}");
+    assert!(scene(shifted(75.0).then(&shifted(-60.0))).is_ok());
+}
+
+#[test]
 fn a_modulus_no_unit_explains_is_refused_with_its_number() {
     for modulus in [1e-170, 0.99e-9, 1.01e9] {
         let error = LinearElastic::new(modulus, 0.3, 1.0).unwrap_err();

@@ -102,11 +102,15 @@ fn at(map: &Map, variant: usize, value: f64) -> &Finding {
 
 #[test]
 fn no_answer_is_wrong_without_a_warning() {
-    // The axes that are solved in little time; all of them are in docs/stability.md.
-    let found = mapped(
-        &every_model(),
-        &["movement", "rotation", "sliding", "jump", "loose_parts", "fibre_ratio"],
-    );
+    // The axes that are solved in little time, from the largest value down every second one; all are in docs/stability.md.
+    let names = ["movement", "rotation", "sliding", "jump", "loose_parts", "fibre_ratio"];
+    let mut axes = axes_named(&names);
+    for axis in &mut axes {
+        axis.values = axis.values.drain(..).rev().step_by(2).collect();
+    }
+    let clock = Clock(Instant::now());
+    let bounds = Bounds { stopwatch: &clock, seconds: 60.0 };
+    let found = map(&every_model(), &axes, &bounds, &|_| ());
     for axis in &found.axes {
         for (variant, findings) in found.variants.iter().zip(&axis.findings) {
             for (finding, (value, _)) in findings.iter().zip(&axis.values) {
@@ -427,7 +431,7 @@ fn what_nothing_holds_or_two_segments_hold_is_refused_for_every_variant() {
         let mut twice = jaw_and_skull(shape_for(&variant));
         twice.segments.push(CaseSegment { name: "chin".to_owned(), nodes: set("z_min") });
         let (pointer, code, detail) = refusal(&twice, &moved(Vector::z() * 25.0));
-        assert_eq!((pointer.as_str(), code), ("/plan", "plan-conflict"));
+        assert_eq!((pointer.as_str(), code), ("/plan/segments/0", "plan-conflict"));
         assert!(detail.contains("2.500e1 mm apart"), "{detail}");
 
         let mut slides = jaw_and_skull(shape_for(&variant));
