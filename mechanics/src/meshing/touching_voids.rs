@@ -26,25 +26,32 @@ struct Tip {
 
 /// Parts voids that touch at a node; returns at how many nodes they still do, because each cell that could part them is turned over.
 pub(super) fn part(draft: &mut Draft) -> usize {
-    let mut left = 0;
-    let of_nodes = triangles_of_nodes(draft);
-    for node in 0..of_nodes.len() {
-        let mut fans = fans(of_nodes.row(node));
-        while fans.len() > 1 {
-            let tips = fans
-                .iter()
-                .enumerate()
-                .filter_map(|(place, fan)| tip(draft, node as u32, fan).map(|tip| (place, tip)));
-            let best = tips.max_by(|(_, a), (_, b)| a.worst.total_cmp(&b.worst));
-            let Some((place, tip)) = best else {
+    loop {
+        let mut is_changed = vec![false; draft.nodes.len()];
+        let (mut filled, mut left) = (0, 0);
+        let of_nodes = triangles_of_nodes(draft);
+        for node in 0..of_nodes.len() {
+            let fans = fans(of_nodes.row(node));
+            // The triangles of what is filled already are other ones: that is for the next round.
+            let rims = fans.iter().flatten().flatten();
+            if fans.len() < 2 || is_changed[node] || rims.clone().any(|at| is_changed[*at as usize])
+            {
+                continue;
+            }
+            let tips = fans.iter().filter_map(|fan| tip(draft, node as u32, fan));
+            let Some(tip) = tips.max_by(|a, b| a.worst.total_cmp(&b.worst)) else {
                 left += 1;
-                break;
+                continue;
             };
-            fans.remove(place);
+            filled += 1;
+            is_changed[node] = true;
+            tip.fan.iter().flatten().for_each(|at| is_changed[*at as usize] = true);
             fill(draft, tip);
         }
+        if filled == 0 {
+            return left;
+        }
     }
-    left
 }
 
 /// For each node the edges opposite to it of its boundary triangles.

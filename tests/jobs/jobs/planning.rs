@@ -119,7 +119,7 @@ fn the_start_of_a_registration_is_tried_where_none_is_stated_and_told() {
     let near = reproduced(&sources, spec.clone()).unwrap();
     assert_eq!(near.base.start, Some(StartName::None));
     let off = RigidMovement::about_pivot(
-        Vector::new(0.14, 0.09, -0.21),
+        Vector::new(0.3, 0.2, 2.6),
         Vector::zeros(),
         Vector::new(20.0, -15.0, 29.0),
     );

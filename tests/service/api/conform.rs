@@ -132,8 +132,8 @@ async fn a_template_that_lies_far_from_a_skin_without_its_sides_is_told() {
     let server = Server::start();
     let face = face();
     let mut asked = spec(&server, &face).await;
-    // Where surfaces do not fit, landmarks are doubted and left out one after the other: each of few.
-    let some = landmarks(&face).into_iter().step_by(4).collect::<Map<_, _>>();
+    // Too few for any of them to be doubted, which takes long where the surfaces do not fit.
+    let some = landmarks(&face).into_iter().step_by(7).collect::<Map<_, _>>();
     asked["landmarks"] = some.into();
     let whole = ended(&server, &asked).await;
     let is_apart = |job: &Value| {

@@ -102,11 +102,11 @@ fn at(map: &Map, variant: usize, value: f64) -> &Finding {
 
 #[test]
 fn no_answer_is_wrong_without_a_warning() {
-    // The axes that are solved in little time, from the largest value down every second one; all are in docs/stability.md.
+    // The axes that are solved in little time, and every second value of the long ones; all are in docs/stability.md.
     let names = ["movement", "rotation", "sliding", "jump", "loose_parts", "fibre_ratio"];
     let mut axes = axes_named(&names);
-    for axis in &mut axes {
-        axis.values = axis.values.drain(..).rev().step_by(2).collect();
+    for axis in axes.iter_mut().filter(|axis| ["movement", "rotation"].contains(&axis.name)) {
+        axis.values = axis.values.drain(..).skip(1).step_by(2).collect();
     }
     let clock = Clock(Instant::now());
     let bounds = Bounds { stopwatch: &clock, seconds: 60.0 };
