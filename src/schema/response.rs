@@ -180,7 +180,7 @@ impl ResponseDocument {
         }
         let stiff: Vec<&String> =
             scene.muscles.iter().filter(|own| own.stiffens).map(|own| &own.name).collect();
-        let (count, names) = (stiff.len(), listed(stiff.into_iter()));
+        let (count, names) = (stiff.len(), listed(stiff));
         let detail = format!(
             "muscles whose stiffness grows with their activation have no column, and applied plans cannot activate them: {names}"
         );
