@@ -5,18 +5,28 @@ use serde_json::{Value, json};
 
 use crate::helpers::{Answer, SMALL, Server, ask};
 
-/// A block on two bones with a muscle under its skin.
-async fn case(server: &Server) -> String {
+/// A block on two bones with muscles under its skin.
+fn block(muscles: Value) -> Value {
     let mut case = SMALL.case();
     case["skin"] = json!({"node_set": "z_max"});
     case["segments"] = json!([{"name": "left", "nodes": {"node_set": "x_min"}}]);
     case["fixed"] = json!([{"node_set": "z_min"}]);
-    case["muscles"] = json!([
-        {"name": "strap", "lines_mm": [[[10, 30, 25], [50, 30, 25]]], "within_mm": 15},
-        {"name": "slab", "region": "tissue", "direction": [0, 1, 0]},
-    ]);
-    let answer = ask(server.post("/v1/cases").multipart(SMALL.form(&case))).await;
+    case["muscles"] = muscles;
+    case
+}
+
+fn strap() -> Value {
+    json!({"name": "strap", "lines_mm": [[[10, 30, 25], [50, 30, 25]]], "within_mm": 15})
+}
+
+async fn posted(server: &Server, case: &Value) -> String {
+    let answer = ask(server.post("/v1/cases").multipart(SMALL.form(case))).await;
     answer.expect(StatusCode::CREATED)["id"].as_str().unwrap().to_owned()
+}
+
+async fn case(server: &Server) -> String {
+    let slab = json!({"name": "slab", "region": "tissue", "direction": [0, 1, 0]});
+    posted(server, &block(json!([strap(), slab]))).await
 }
 
 fn plan() -> Value {
@@ -238,21 +248,16 @@ async fn what_is_not_known_of_growth_and_muscles_is_refused_with_its_place() {
 #[tokio::test]
 async fn a_muscle_that_stiffens_is_left_out_of_a_response_and_named() {
     let server = Server::start();
-    let mut case = SMALL.case();
-    case["skin"] = json!({"node_set": "z_max"});
-    case["segments"] = json!([{"name": "left", "nodes": {"node_set": "x_min"}}]);
-    case["fixed"] = json!([{"node_set": "z_min"}]);
-    case["muscles"] = json!([
-        {"name": "strap", "lines_mm": [[[10, 30, 25], [50, 30, 25]]], "within_mm": 15},
+    let mut case = block(json!([
+        strap(),
         {"name": "stiff", "direction": [1, 0, 0],
          "box_mm": {"centre": [30, 30, 15], "half_axes": [[20, 0, 0], [0, 15, 0], [0, 0, 8]]},
          "material": {"young_modulus_kpa": 60, "poisson_ratio": 0.45, "fibre": {"young_modulus_kpa": 200}},
          "stiffening": {"young_modulus_kpa": 600, "stress_kpa": 50}},
-    ]);
+    ]));
     // Few: the shares of cells decide nothing here.
     case["muscle_mixing"] = json!({"rule": "voigt", "samples": 8});
-    let kept = ask(server.post("/v1/cases").multipart(SMALL.form(&case))).await;
-    let case = kept.expect(StatusCode::CREATED)["id"].as_str().unwrap().to_owned();
+    let case = posted(&server, &case).await;
     let built = done(&server, &json!({"kind": "response", "case": case})).await;
     let told = built["results"]["warnings"].as_array().unwrap();
     let told = told.iter().find(|own| own["code"] == "muscle-not-linear").expect("a warning");
