@@ -86,7 +86,11 @@ impl Limits {
 
     /// The least of the signed distances to the limits; infinite without any. It changes by at most 1 mm for each mm.
     pub fn value(&self, point: &Vector) -> f64 {
-        self.with_gradient(point).value
+        let depth = |ball: &Ball| ball.radius - (ball.centre - point).norm();
+        let deepest = |balls: &Vec<Ball>| balls.iter().map(depth).fold(f64::NEG_INFINITY, f64::max);
+        let planes =
+            self.planes.iter().map(|plane| plane.value(point)).fold(f64::INFINITY, f64::min);
+        self.unions.iter().map(deepest).fold(planes, f64::min)
     }
 
     pub fn with_gradient(&self, point: &Vector) -> LimitValue {
@@ -100,8 +104,12 @@ impl Limits {
 }
 
 impl Plane {
+    fn value(&self, point: &Vector) -> f64 {
+        (point - self.point).dot(&self.normal)
+    }
+
     fn at(&self, point: &Vector) -> LimitValue {
-        LimitValue { value: (point - self.point).dot(&self.normal), gradient: self.normal }
+        LimitValue { value: self.value(point), gradient: self.normal }
     }
 }
 
@@ -159,6 +167,7 @@ mod tests {
         ] {
             let found = limits.with_gradient(&point);
             assert!((found.value - value).abs() < 1e-12, "{point}: {found:?}");
+            assert_eq!(limits.value(&point), found.value);
             if point.x != 3.0 {
                 assert!((found.gradient - gradient).norm() < 1e-12, "{point}: {found:?}");
             }

@@ -28,15 +28,6 @@ impl Cubes {
         cubes.filter_map(|cube| self.numbers.get(&cube)).flatten().copied()
     }
 
-    /// The numbers of all points in a box, by its lowest and its highest corner, and of some beside it.
-    pub fn in_box(&self, low: &Vector, high: &Vector) -> impl Iterator<Item = u32> + '_ {
-        let (first, last) = (self.cube(low), self.cube(high));
-        let along = move |axis: usize| first[axis]..=last[axis];
-        let cubes = along(0).flat_map(move |x| along(1).map(move |y| [x, y]));
-        let cubes = cubes.flat_map(move |[x, y]| along(2).map(move |z| [x, y, z]));
-        cubes.filter_map(|cube| self.numbers.get(&cube)).flatten().copied()
-    }
-
     fn cube(&self, place: &Vector) -> [i64; 3] {
         [0, 1, 2].map(|axis| (place[axis] / self.width).floor() as i64)
     }

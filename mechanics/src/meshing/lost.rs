@@ -4,22 +4,29 @@
 //! a curved boundary are off it show that their leaf has lost its tissue: a sheet thinner than a cell is lost where lattice
 //! nodes miss it, and where all nodes in it were moved to its boundary. All points of such a leaf in tissue and in no cell count.
 
+use std::sync::LazyLock;
+
+use nalgebra::Matrix3;
+
 use super::draft::{Draft, FACES};
 use super::error::MeshingError;
 use super::octree::{Leaf, Leaves};
 use super::rims::RimFace;
-use super::shape::determinant;
 use super::watch::Watch;
 use crate::domain::{Coverage, Domain};
-use crate::mesh::cubes::Cubes;
 use crate::mesh::disjoint_sets::DisjointSets;
 use crate::mesh::{SurfaceSearch, TriangleSurface, Vector};
 
-/// Points of a leaf, no two of them at one height along an axis.
+/// Points of a leaf, no two of them at one height along an axis; a bit each in a `u16`.
 const POINTS: usize = 16;
 /// Powers of the inverse of the root of x⁴ = x + 1. Source: Roberts, The unreasonable effectiveness of quasirandom sequences, 2018.
 const SPREAD: [f64; 3] =
     [0.819_172_513_396_164_4, 0.671_043_606_703_789_2, 0.549_700_477_901_970_3];
+/// From the lowest corner of a leaf with edges of 1.
+static OFFSETS: LazyLock<[Vector; POINTS]> = LazyLock::new(|| {
+    let along = |n: usize| SPREAD.map(|step| (0.5 + step * (n + 1) as f64).fract());
+    std::array::from_fn(|n| along(n).into())
+});
 /// A point farther from all cells than this part of the edge of its leaf is lost. Chords of a boundary with the radius of an edge are
 /// an eighth off it.
 const DEEP: f64 = 0.25;
@@ -70,23 +77,22 @@ impl Lost {
         domain: &dyn Domain,
         watch: &Watch,
     ) -> Result<Lost, MeshingError> {
+        let held = cells.held(leaves, watch)?;
+        let Ok(search) = SurfaceSearch::new(&cells.surface()) else { return Ok(Lost::default()) };
         let numbers = 0..leaves.list.len() as u32;
         let mixed = |&leaf: &u32| leaves.list[leaf as usize].held == Coverage::Mixed;
         let mixed: Vec<u32> = numbers.filter(mixed).collect();
-        let points: Vec<Point> = mixed.iter().flat_map(|&leaf| points(leaves, leaf)).collect();
-        let is_held = cells.held(&points, 4.0 * leaves.tree.grid.unit, watch)?;
-        let Ok(search) = SurfaceSearch::new(&cells.surface()) else { return Ok(Lost::default()) };
-        let places: Vec<usize> = (0..mixed.len()).collect();
-        let lost_of = |&place: &usize| {
-            let of_leaf = place * POINTS..(place + 1) * POINTS;
-            let is_out = |n: &usize| !is_held[*n] && domain.value(&points[*n].at) > 0.0;
-            let out: Vec<Point> = of_leaf.filter(is_out).map(|n| points[n]).collect();
-            let leaf = &leaves.list[mixed[place] as usize];
-            let deep = DEEP * f64::from(leaf.size) * leaves.tree.grid.unit;
+        let lost_of = |&leaf: &u32| {
+            let of_leaf = points(leaves, leaf).zip(0..);
+            let is_out = |(point, n): &(Point, u32)| {
+                held[leaf as usize] >> n & 1 == 0 && domain.value(&point.at) > 0.0
+            };
+            let out: Vec<Point> = of_leaf.filter(is_out).map(|(point, _)| point).collect();
+            let deep = DEEP * f64::from(leaves.list[leaf as usize].size) * leaves.tree.grid.unit;
             let is_deep = |point: &Point| search.closest_within(&point.at, deep).is_none();
             if out.iter().any(is_deep) { out } else { Vec::new() }
         };
-        let lost = watch.map(&places, lost_of)?;
+        let lost = watch.map(&mixed, lost_of)?;
         let lost = mixed.into_iter().zip(lost).filter(|(_, points)| !points.is_empty()).collect();
         Ok(Lost::of(leaves, lost))
     }
@@ -115,20 +121,20 @@ impl Lost {
 }
 
 impl Cells<'_> {
-    /// Which points lie in a cell.
-    fn held(&self, points: &[Point], width: f64, watch: &Watch) -> Result<Vec<bool>, MeshingError> {
-        let numbered = (0_u32..).zip(points).map(|(number, point)| (number, point.at));
-        let cubes = Cubes::new(width, numbered);
-        let mut held = watch.gather(&self.draft.tetrahedra, |tets, list| {
+    /// Which points of each leaf that holds a boundary lie in a cell, a bit each.
+    fn held(&self, leaves: &Leaves, watch: &Watch) -> Result<Vec<u16>, MeshingError> {
+        let mut inside = watch.gather(&self.draft.tetrahedra, |tets, list| {
+            let mut near = Vec::new();
             let cells = tets.iter().map(|tet| self.draft.corners(tet));
-            cells.for_each(|corners| add_inside(&corners, &cubes, points, list));
+            cells.for_each(|corners| add_inside(&corners, leaves, &mut near, list));
         })?;
-        held.extend(watch.gather(self.dropped, |cells, list| {
-            cells.iter().for_each(|corners| add_inside(corners, &cubes, points, list));
+        inside.extend(watch.gather(self.dropped, |cells, list| {
+            let mut near = Vec::new();
+            cells.iter().for_each(|corners| add_inside(corners, leaves, &mut near, list));
         })?);
-        let mut is_held = vec![false; points.len()];
-        held.into_iter().for_each(|point| is_held[point as usize] = true);
-        Ok(is_held)
+        let mut held = vec![0; leaves.list.len()];
+        inside.into_iter().for_each(|(leaf, points)| held[leaf as usize] |= points);
+        Ok(held)
     }
 
     /// Where the mesh ends, and all faces of what was left out.
@@ -147,10 +153,8 @@ impl Cells<'_> {
 fn points(leaves: &Leaves, leaf: u32) -> impl Iterator<Item = Point> {
     let (grid, Leaf { corner, size, .. }) = (&leaves.tree.grid, &leaves.list[leaf as usize]);
     let (edge, corner) = (f64::from(*size) * grid.unit, grid.position(*corner));
-    (0..POINTS).map(move |n| {
-        let off = Vector::from(SPREAD.map(|step| (0.5 + step * (n + 1) as f64).fract()));
-        Point { at: corner + off * edge, volume: edge.powi(3) / POINTS as f64 }
-    })
+    let volume = edge.powi(3) / POINTS as f64;
+    OFFSETS.iter().map(move |off| Point { at: corner + off * edge, volume })
 }
 
 /// Leaves that touch a leaf; of several smaller ones at a face or an edge not all.
@@ -168,18 +172,38 @@ fn around(leaves: &Leaves, leaf: u32) -> impl Iterator<Item = u32> {
     (0..27).filter_map(beside).filter(move |&other| other != leaf)
 }
 
-/// Adds the points in a tetrahedron.
-fn add_inside(corners: &[Vector; 4], cubes: &Cubes, points: &[Point], list: &mut Vec<u32>) {
+/// Adds the points of leaves in a tetrahedron, a bit each. `near` is room for leaves.
+fn add_inside(
+    corners: &[Vector; 4],
+    leaves: &Leaves,
+    near: &mut Vec<u32>,
+    list: &mut Vec<(u32, u16)>,
+) {
     let low = corners.iter().fold(corners[0], |low, corner| low.inf(corner));
     let high = corners.iter().fold(corners[0], |high, corner| high.sup(corner));
-    let is_inside = |point: &u32| {
-        (0..4).all(|corner| {
-            let mut part = *corners;
-            part[corner] = points[*point as usize].at;
-            determinant(&part) >= 0.0
-        })
+    let grid = &leaves.tree.grid;
+    // A conversion to integers saturates: what lies below 0 becomes 0.
+    let place =
+        |at: &Vector| [0, 1, 2].map(|axis| ((at[axis] - grid.origin[axis]) / grid.unit) as u32);
+    near.clear();
+    leaves.add_in_box(place(&low), place(&high), near);
+    near.retain(|&leaf| leaves.list[leaf as usize].held == Coverage::Mixed);
+    let [first, edges @ ..] = *corners;
+    let edges = Matrix3::from_columns(&edges.map(|corner| corner - first));
+    let Some(shares) = edges.try_inverse() else { return };
+    let is_inside = |at: &Vector| {
+        let share = shares * (at - first);
+        let [x, y, z] = share.into();
+        x >= 0.0 && y >= 0.0 && z >= 0.0 && x + y + z <= 1.0
     };
-    list.extend(cubes.in_box(&low, &high).filter(is_inside));
+    for &leaf in near.iter() {
+        let bits = points(leaves, leaf).zip(0..);
+        let bits =
+            bits.filter(|(point, _)| is_inside(&point.at)).fold(0, |bits, (_, n)| bits | 1 << n);
+        if bits != 0 {
+            list.push((leaf, bits));
+        }
+    }
 }
 
 fn piece(points: &[Point]) -> Option<LostPiece> {

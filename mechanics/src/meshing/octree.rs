@@ -152,4 +152,36 @@ impl Leaves {
         }
         Some(self.of_cell[cell as usize])
     }
+
+    /// Adds the leaves that a box touches, by its lowest and its highest corner in units from the origin, to a list.
+    pub fn add_in_box(&self, low: Coordinates, high: Coordinates, list: &mut Vec<u32>) {
+        let size = self.tree.grid.cell_units(0);
+        let roots = self.tree.grid.roots;
+        let along = |axis: usize| low[axis] / size..=(high[axis] / size).min(roots[axis] - 1);
+        for z in along(2) {
+            for y in along(1) {
+                for x in along(0) {
+                    self.add_below((z * roots[1] + y) * roots[0] + x, low, high, list);
+                }
+            }
+        }
+    }
+
+    fn add_below(&self, cell: u32, low: Coordinates, high: Coordinates, list: &mut Vec<u32>) {
+        let OctreeCell { corner, level, first_child, .. } = self.tree.cells[cell as usize];
+        if first_child == NONE {
+            list.push(self.of_cell[cell as usize]);
+            return;
+        }
+        let half = self.tree.grid.cell_units(level + 1);
+        let reached = [0, 1, 2].map(|axis| {
+            let middle = corner[axis] + half;
+            [low[axis] <= middle, high[axis] >= middle]
+        });
+        for child in 0..8 {
+            if (0..3).all(|axis| reached[axis][child >> axis & 1]) {
+                self.add_below(first_child + child as u32, low, high, list);
+            }
+        }
+    }
 }

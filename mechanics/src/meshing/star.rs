@@ -108,13 +108,13 @@ impl<'a> Star<'a> {
     /// The node on its boundaries and on another one, where they meet, if that is within `limit` times the longest edge and
     /// cells stay better than `fair`.
     pub fn on_crease(&self, other: BoundarySet, limit: f64, fair: f64) -> Option<Move> {
-        let there = self.projected(&self.here, other)?;
+        let is_near = |place: &Vector| (place - self.here).norm() < limit * self.reach;
+        self.projected(&self.here, other).filter(|there| *there != self.here && is_near(there))?;
         let boundaries = self.boundaries.and(other);
-        let place = self.projected(&self.here, boundaries)?;
-        let off = boundaries.iter().map(|on| (self.domain.projection(&place, on) - place).norm());
-        let near = (place - self.here).norm() < limit * self.reach;
-        let meets = there != self.here && off.fold(0.0, f64::max) < MEETS * self.reach;
-        (near && meets && self.worst_at(&place, fair) >= fair).then_some(Move { place, boundaries })
+        let place = self.projected(&self.here, boundaries).filter(is_near)?;
+        let off = |on| (self.domain.projection(&place, on) - place).norm();
+        let meets = boundaries.iter().map(off).fold(0.0, f64::max) < MEETS * self.reach;
+        (meets && self.worst_at(&place, fair) >= fair).then_some(Move { place, boundaries })
     }
 
     /// The node moved by a way or by half of it, if cells are good enough there or no worse and the way does not lead through a
