@@ -1,5 +1,7 @@
 //! Constrained directions of sliding nodes: the normals of the faces they lie on.
 
+use std::collections::HashMap;
+
 use crate::mesh::volume::BoundaryFace;
 use crate::mesh::{Vector, VolumeMesh};
 
@@ -21,9 +23,8 @@ pub struct Beside {
 /// For each of the nodes the unit normals of its walls: at most three, none where no face is near.
 ///
 /// The walls are the boundary faces all of whose nodes are listed, and beside these, less than 45 degrees apart, the faces whose
-/// other nodes are on bone: so it makes no difference whether a set has the nodes where its wall ends in bone. Faces of the skin,
-/// as triangles of it at a corner between two sides, are walls of nodes without other ones. A node without such a face takes all
-/// boundary faces that touch it.
+/// other nodes are on bone: so it makes no difference whether a set has the nodes where its wall ends in bone. Faces of the skin and
+/// [ears] of other surfaces are walls of nodes without other ones. A node without such a face takes all boundary faces that touch it.
 pub fn wall_normals(
     mesh: &VolumeMesh,
     boundary: &[BoundaryFace],
@@ -34,20 +35,26 @@ pub fn wall_normals(
     for &node in nodes {
         listed[node as usize] = true;
     }
+    let all = |face: &BoundaryFace, is: &dyn Fn(usize) -> bool| {
+        face.nodes().iter().all(|&node| is(node as usize))
+    };
+    let ending = |face| all(face, &|node| listed[node] || on_bone[node]);
+    let in_wall: Vec<bool> = boundary.iter().map(ending).collect();
+    let normals: Vec<Vector> = boundary.iter().map(|face| face.area_vector(&mesh.nodes)).collect();
+    let is_ear = ears(boundary, &normals, &in_wall);
     let mut on_walls: Vec<Vec<Vector>> = vec![Vec::new(); mesh.nodes.len()];
-    let [mut of_skin, mut ending, mut touching] = [(); 3].map(|()| on_walls.clone());
-    for face in boundary {
-        let normal = face.area_vector(&mesh.nodes);
-        let whole = face.nodes().iter().all(|&node| listed[node as usize]);
-        let is_skin = face.nodes().iter().all(|&node| on_skin[node as usize]);
-        let ends = face.nodes().iter().all(|&node| listed[node as usize] || on_bone[node as usize]);
+    let [mut doubtful, mut ending, mut touching] = [(); 3].map(|()| on_walls.clone());
+    for (number, face) in boundary.iter().enumerate() {
+        let normal = normals[number];
+        let whole = all(face, &|node| listed[node]);
+        let is_doubtful = is_ear[number] || all(face, &|node| on_skin[node]);
         for &node in face.nodes().iter().filter(|&&node| listed[node as usize]) {
             touching[node as usize].push(normal);
-            if whole && is_skin {
-                of_skin[node as usize].push(normal);
+            if whole && is_doubtful {
+                doubtful[node as usize].push(normal);
             } else if whole {
                 on_walls[node as usize].push(normal);
-            } else if ends {
+            } else if in_wall[number] {
                 ending[node as usize].push(normal);
             }
         }
@@ -56,7 +63,7 @@ pub fn wall_normals(
         .iter()
         .map(|&node| {
             let others = &on_walls[node as usize];
-            let walls = if others.is_empty() { &of_skin[node as usize] } else { others };
+            let walls = if others.is_empty() { &doubtful[node as usize] } else { others };
             let is_of_wall =
                 |face: &&Vector| walls.iter().any(|wall| cosine(wall, face) > SAME_WALL);
             let ends = ending[node as usize].iter().filter(is_of_wall);
@@ -65,6 +72,36 @@ pub fn wall_normals(
             (node, group_by_wall(faces))
         })
         .collect()
+}
+
+/// Which faces of walls are ears of another surface, as triangles of the top in the corner between two sides: over an edge that surface
+/// goes on beside the walls, over none in them, and over an edge lies another wall.
+fn ears(boundary: &[BoundaryFace], normals: &[Vector], in_wall: &[bool]) -> Vec<bool> {
+    let edges = |face: &BoundaryFace| {
+        let nodes = face.nodes().to_vec();
+        let next = nodes.clone().into_iter().cycle().skip(1);
+        nodes.into_iter().zip(next).map(|(from, to)| [from.min(to), from.max(to)])
+    };
+    let mut at_edge: HashMap<[u32; 2], Vec<usize>> = HashMap::new();
+    for (number, face) in boundary.iter().enumerate().filter(|(number, _)| in_wall[*number]) {
+        edges(face).for_each(|edge| at_edge.entry(edge).or_default().push(number));
+    }
+    for (number, face) in boundary.iter().enumerate().filter(|(number, _)| !in_wall[*number]) {
+        for edge in edges(face) {
+            at_edge.entry(edge).and_modify(|faces| faces.push(number));
+        }
+    }
+    let is_ear = |(number, face): (usize, &BoundaryFace)| {
+        let beside = edges(face).filter_map(|edge| at_edge.get(&edge)).flatten().copied();
+        let beside: Vec<usize> = beside.filter(|&other| other != number).collect();
+        let goes_on = |&other: &usize| cosine(&normals[number], &normals[other]) > SAME_WALL;
+        let (on, across): (Vec<usize>, Vec<usize>) = beside.into_iter().partition(goes_on);
+        in_wall[number]
+            && !on.is_empty()
+            && !on.iter().any(|&other| in_wall[other])
+            && across.iter().any(|&other| in_wall[other])
+    };
+    boundary.iter().enumerate().map(is_ear).collect()
 }
 
 /// Sums area vectors wall by wall and scales the sums to length 1.
@@ -129,28 +166,34 @@ mod tests {
         assert_ne!(normals(&beside, &nowhere), whole);
     }
 
-    /// At corners of a block of tetrahedra triangles of its top have all their nodes on its sides.
+    /// In corners of a block of tetrahedra triangles of its top have all their nodes on its sides; of a strip one cell wide all have.
     #[test]
-    fn skin_between_two_walls_is_no_wall_unless_it_is_one_alone() {
-        let mesh = block(Vector::new(4.0, 4.0, 2.0), [4, 4, 2], CellShape::Tet4);
-        let boundary = mesh.boundary_faces();
-        let set = |name: &str| mesh.node_sets[name].clone();
-        let mut sides: Vec<u32> = ["x_min", "x_max", "y_min", "y_max"].map(set).concat();
-        sides.sort_unstable();
-        sides.dedup();
-        let mut beside = Beside {
-            on_bone: vec![false; mesh.nodes.len()],
-            on_skin: vec![false; mesh.nodes.len()],
+    fn ears_between_two_walls_are_no_wall_nor_is_skin_unless_it_is_one_alone() {
+        let block = |across: usize| {
+            block(Vector::new(4.0, across as f64, 2.0), [4, across, 2], CellShape::Tet4)
         };
-        let upright = |beside: &Beside| {
-            let found = wall_normals(&mesh, &boundary, &sides, beside);
+        let set = |mesh: &VolumeMesh, name: &str| mesh.node_sets[name].clone();
+        let beside = |mesh: &VolumeMesh, skin: &[u32]| {
+            let mut on_skin = vec![false; mesh.nodes.len()];
+            skin.iter().for_each(|&node| on_skin[node as usize] = true);
+            Beside { on_bone: vec![false; mesh.nodes.len()], on_skin }
+        };
+        let upright = |mesh: &VolumeMesh, skin: &[u32]| {
+            let mut sides =
+                ["x_min", "x_max", "y_min", "y_max"].map(|name| set(mesh, name)).concat();
+            sides.sort_unstable();
+            sides.dedup();
+            let found = wall_normals(mesh, &mesh.boundary_faces(), &sides, &beside(mesh, skin));
+            assert!(found.iter().all(|(_, walls)| !walls.is_empty()));
             found.iter().flat_map(|(_, walls)| walls).filter(|wall| wall.z > 0.9).count()
         };
-        assert!(upright(&beside) > 0);
-        set("z_max").iter().for_each(|&node| beside.on_skin[node as usize] = true);
-        assert_eq!(upright(&beside), 0);
-        beside.on_skin.fill(true);
-        let top = wall_normals(&mesh, &boundary, &set("z_max"), &beside);
+        let (wide, strip) = (block(4), block(1));
+        assert_eq!(upright(&wide, &[]), 0);
+        assert!(upright(&strip, &[]) > 0);
+        assert_eq!(upright(&strip, &set(&strip, "z_max")), 0);
+        let (top, all): (Vec<u32>, Vec<u32>) =
+            (set(&wide, "z_max"), (0..wide.nodes.len() as u32).collect());
+        let top = wall_normals(&wide, &wide.boundary_faces(), &top, &beside(&wide, &all));
         assert!(top.iter().all(|(_, walls)| walls[..] == [Vector::z()]));
     }
 
