@@ -121,6 +121,7 @@ fn solve(mesh: &VolumeMesh, plan: &Plan) -> (Result<Equilibrium, ModelError>, f6
         tolerance: Tolerance { relative_residual: 1e-6, memory_mb: 16e3 },
         with_states: false,
         advance: Advance::default(),
+        near: None,
     };
     let held = holds.iter().map(|hold| *hold.values()).collect();
     let case =

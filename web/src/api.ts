@@ -1,7 +1,7 @@
 // The service that this page came from: every call is noted, so that a person can repeat it.
 import { Facies, type Documents } from "../../clients/typescript/src/facies.js";
 
-export { FaciesError, JobFailed, Refused, readGlb, type Documents, type Surface, type Triple } from "../../clients/typescript/src/facies.js";
+export { FaciesError, JobFailed, NoKey, Refused, readGlb, type Documents, type Surface, type Triple } from "../../clients/typescript/src/facies.js";
 
 export type Case = Documents["CaseView"];
 export type Job = Documents["StatusInfo"];

@@ -1,6 +1,6 @@
 // The page: its head and foot, and the view that its address names.
 import "./style.css";
-import { asCurl, Refused, Service } from "./api.js";
+import { asCurl, NoKey, Refused, Service } from "./api.js";
 import { announce, refusal, type App, type Leave, type View } from "./app.js";
 import { button, find, make, select } from "./dom.js";
 import { read } from "./route.js";
@@ -65,7 +65,7 @@ function called(stage: HTMLElement): string[] {
 }
 
 function failed(app: App, error: unknown): void {
-  const wantsKey = error instanceof Refused && error.problem.status === 401;
+  const wantsKey = error instanceof NoKey || (error instanceof Refused && error.problem.status === 401);
   if (wantsKey) Service.forget();
   const asked = (key: string) => {
     Service.keep(key);

@@ -3,6 +3,7 @@
 use super::contact::{
     InTouch, Touch, expected_touch_at_finite_strain, facing_surfaces, touch, touch_at_finite_strain,
 };
+use super::following_pressure::pressed_in_solution;
 use super::method::MethodKind;
 use super::nonlinearity::{self, Estimated, NonlinearityUnknown};
 use super::numerical_error::{self, NotEstimated, NumericalError};
@@ -57,9 +58,8 @@ pub fn equilibrium(
     scene: &Scene,
     progress: &dyn Progress,
 ) -> Result<(Equilibrium, Option<Touch>), ModelError> {
-    let (of_mesh, of_linearity) = (NotEstimated::NotAsked, NonlinearityUnknown::NotAsked);
-    let unknown = Unknown { of_mesh: Some(of_mesh), of_linearity: Some(of_linearity) };
-    let Answer { equilibrium, contact, .. } = match answered(scene, unknown, progress)? {
+    let Answer { equilibrium, contact, .. } = match answered(scene, Unknown::not_asked(), progress)?
+    {
         Linear::Solved(answer) => answer.into_answer(scene)?,
         Linear::Other(answer) => *answer,
     };
@@ -89,13 +89,27 @@ struct Unknown {
     of_linearity: Option<NonlinearityUnknown>,
 }
 
+impl Unknown {
+    fn not_asked() -> Self {
+        let (of_mesh, of_linearity) = (NotEstimated::NotAsked, NonlinearityUnknown::NotAsked);
+        Unknown { of_mesh: Some(of_mesh), of_linearity: Some(of_linearity) }
+    }
+}
+
 fn answered<'a>(
     scene: &'a Scene,
     unknown: Unknown,
     progress: &dyn Progress,
 ) -> Result<Linear<'a>, ModelError> {
     if scene.settings.method.kind() == MethodKind::FemNonlinear {
-        return Ok(other(at_finite_strain(scene, unknown, progress)?));
+        let displacement = |scene: &Scene| {
+            let found = at_finite_strain(scene, Unknown::not_asked(), progress)?;
+            Ok(found.equilibrium.displacement)
+        };
+        let (pressed, unsettled) = pressed_in_solution(scene, displacement)?;
+        let mut answer = at_finite_strain(&pressed, unknown, progress)?;
+        answer.equilibrium.warnings.extend(unsettled);
+        return Ok(other(answer));
     }
     if scene.settings.method.kind() == MethodKind::MassTensorNonlinear {
         return Ok(other(by_nonlinear_mass_tensors(scene, unknown, progress)?));

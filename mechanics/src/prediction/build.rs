@@ -139,6 +139,7 @@ impl Scene {
             segments,
             forces: vec![Vector::zeros(); case.volume.nodes.len()],
             distributed: DistributedLoads::default(),
+            near: None,
             muscles,
             muscle_tissue,
             landmarks: case.landmarks.clone(),

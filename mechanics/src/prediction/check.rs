@@ -13,6 +13,7 @@ use super::stated::StatedCondition;
 use crate::boundary::support::loose_parts;
 use crate::boundary::{Conditions, Constraint, NodeSelection};
 use crate::material::LinearElastic;
+use crate::mesh::duplicate_cells::duplicate_cells;
 use crate::mesh::ignored::missing_region;
 use crate::mesh::volume::BoundaryFace;
 use crate::mesh::{ArrayUse, CellShape, Vector, Warning};
@@ -132,8 +133,12 @@ impl<'a> Check<'a> {
             }
             None => skin::default_faces(self.boundary, &conditions.classes, &mut self.warnings),
         };
-        if faces.is_empty() && self.case.skin.is_some() {
-            let detail = "no boundary face has all of its nodes in the selection".to_owned();
+        if self.boundary.is_empty() {
+            let detail = format!("the mesh has no boundary face{}", self.doubled());
+            self.problems.add("/case/volume", SceneErrorCode::MeshDegenerate, detail);
+        } else if faces.is_empty() && self.case.skin.is_some() {
+            let no_face = "no boundary face has all of its nodes in the selection";
+            let detail = format!("{no_face}{}", self.doubled());
             self.problems.add("/case/skin", SceneErrorCode::EmptySelection, detail);
         }
         let surface = self.case.volume.surface_of(&faces);
@@ -155,6 +160,12 @@ impl<'a> Check<'a> {
             regions.insert(name.clone(), points);
         }
         Skin { surface, regions, off }
+    }
+
+    /// Cells that stand twice, in words: a face between two cells is not on the boundary.
+    fn doubled(&self) -> String {
+        let doubled = duplicate_cells(&self.case.volume);
+        doubled.map_or_else(String::new, |found| format!(": {}", found.detail))
     }
 
     /// The element that the method uses. Refuses one that it does not have or that some cell of the mesh

@@ -18,6 +18,7 @@ mod exponential_tissue;
 mod far_segment;
 mod far_skin;
 mod fibres;
+mod following_pressure;
 mod growth;
 mod held;
 mod hounsfield;
@@ -99,6 +100,7 @@ pub use adequate::{
 use answer::Answer;
 pub use answer::{equilibrium, estimates};
 use bone_in_tissue::bones_in_tissue;
+use following_pressure::pressure_turned;
 pub use refinement_goal::{LimitError, RefinementGoal};
 
 pub use crate::boundary::NodeClass;
@@ -232,6 +234,7 @@ fn described(scene: &Scene, answer: Answer, progress: &dyn Progress) -> Predicti
         warnings.extend(inverted_cells(&det_f));
     }
     warnings.extend(far_skin::outrun(scene, &equilibrium.displacement));
+    warnings.extend(pressure_turned(scene, &equilibrium.displacement));
     warnings.extend(wrinkles::wrinkles(scene, &equilibrium.displacement));
     warnings.extend(small_strain::left(scene, &deformation, &nonlinearity));
     warnings.extend(exponential_tissue::warnings(scene, &equilibrium.displacement));

@@ -86,6 +86,7 @@ impl Scene {
             bones: self.bones.clone(),
             forces: finer.forces_at_nodes()?,
             distributed: finer.distributed(),
+            near: None,
             muscles: finer.muscles(),
             muscle_tissue: self.muscle_tissue,
             landmarks: self.landmarks.clone(),

@@ -49,6 +49,7 @@ pub(super) enum Tetrahedron {
 }
 
 /// Mesh, materials and conditions, ready to be solved.
+#[derive(Clone)]
 pub struct Scene {
     pub mesh: Arc<VolumeMesh>,
     /// The faces that belong to one cell only.
@@ -83,6 +84,8 @@ pub struct Scene {
     pub forces: Vec<Vector>,
     /// What of these acts between nodes too.
     pub distributed: DistributedLoads,
+    /// Displacements near which a solution at finite strain is sought first.
+    pub near: Option<Vec<Vector>>,
     /// Those of the case, whether they pull or not.
     pub muscles: Vec<MuscleField>,
     /// What they make of the tissue, where some have their own.
@@ -261,6 +264,7 @@ impl Scene {
             tolerance: Tolerance { relative_residual, memory_mb },
             with_states: self.settings.states,
             advance: self.settings.advance,
+            near: self.near.as_deref(),
         };
         let (tissue, boundary) = (self.tissue(), &self.boundary);
         // What grows and pulls is in the cells already.

@@ -4,22 +4,39 @@
 //! of the mesh, as of a skin of one layer, has none inside. Where it is a hundred
 //! times as stiff as its neighbours, plain cells and those of mean dilatation leave the skin off by more than a
 //! tenth of the movement (docs/stability.md); ten times as stiff they do not, nor do quadratic cells. Fibres that are ten
-//! times as stiff along do.
+//! times as stiff along do. The estimated error is too small from less stiff layers on.
 
 use super::Scene;
 use crate::mesh::Warning;
 use crate::mesh::check::referenced;
 use crate::mesh::volume::BoundaryFace;
 
+pub(super) const THIN_STIFF_LAYER: &str = "thin-stiff-layer";
+
 /// How many times as stiff as a neighbour a cell is from which on a single layer is reported.
 const STIFFER: f64 = 30.0;
 /// The same along its fibres.
 const STIFFER_ALONG: f64 = 8.0;
 
+/// The same from which on the error of the mesh is expected to be larger than its estimate: in a slab between walls that was .7 of it for
+/// a layer 5 times as stiff, .5 for 9 times, .3 for 20 times (`stiff_layers_between_walls`).
+const STIFFER_THAN_ESTIMATED: f64 = 8.0;
+
 /// A warning that counts the cells of such layers.
 pub(super) fn thin_stiff_layers(scene: &Scene) -> Option<Warning> {
+    layers(scene, STIFFER).warning()
+}
+
+/// Whether there are layers so stiff that the error of the mesh is estimated too small.
+pub(super) fn has_stiff_layers(scene: &Scene) -> bool {
+    layers(scene, STIFFER_THAN_ESTIMATED).cells() > 0
+}
+
+/// Layers so many times as stiff as the tissue beside them.
+fn layers(scene: &Scene, stiffer: f64) -> Layers {
+    let mut layers = Layers { stiffer, ..Layers::default() };
     if !scene.is_first_order() || scene.materials.len() < 2 {
-        return None;
+        return layers;
     }
     let mut softest = vec![f64::INFINITY; scene.mesh.nodes.len()];
     let of_cells = || {
@@ -34,7 +51,6 @@ pub(super) fn thin_stiff_layers(scene: &Scene) -> Option<Warning> {
     }
     let outside = scene.boundary.iter().flat_map(BoundaryFace::nodes);
     let is_outside = referenced(scene.mesh.nodes.len(), outside);
-    let mut layers = Layers::default();
     for ((_, nodes), material) in of_cells() {
         let own = material.young_modulus();
         let softer = |node: &&u32| softest[**node as usize] < own;
@@ -55,12 +71,14 @@ pub(super) fn thin_stiff_layers(scene: &Scene) -> Option<Warning> {
             }
         }
     }
-    layers.warning()
+    layers
 }
 
 /// Cells that are much stiffer than the tissue beside them.
 #[derive(Default)]
 struct Layers {
+    /// So many times as stiff counts.
+    stiffer: f64,
     /// With no node of their own.
     inside: u32,
     /// With nodes of their own on the boundary of the mesh alone, of so many with some of their own.
@@ -71,14 +89,14 @@ struct Layers {
 
 impl Layers {
     fn add_inside(&mut self, ratio: f64, along: f64) {
-        if is_stiff(ratio, along) {
+        if self.is_stiff(ratio, along) {
             self.inside += 1;
             self.largest = self.largest.max(ratio).max(along);
         }
     }
 
     fn add_outside(&mut self, ratio: f64, along: f64, is_layer: bool) {
-        if is_stiff(ratio, along) {
+        if self.is_stiff(ratio, along) {
             self.beside_softer += 1;
             if is_layer {
                 self.outside += 1;
@@ -87,20 +105,23 @@ impl Layers {
         }
     }
 
+    fn is_stiff(&self, ratio: f64, along: f64) -> bool {
+        ratio > self.stiffer || along > STIFFER_ALONG
+    }
+
     /// Of a layer of several cells few are outside with all their own nodes, at its rim.
+    fn cells(&self) -> u32 {
+        self.inside + if 2 * self.outside > self.beside_softer { self.outside } else { 0 }
+    }
+
     fn warning(&self) -> Option<Warning> {
-        let outside = if 2 * self.outside > self.beside_softer { self.outside } else { 0 };
-        let cells = self.inside + outside;
+        let cells = self.cells();
         let detail = format!(
             "{cells} cells are more than {STIFFER} times, or along fibres {STIFFER_ALONG} times, as stiff as all tissue \
              around them and have no node of their own inside the tissue: a layer of one linear cell bends too little, and the \
              estimated error is too small"
         );
-        let warning = Warning::new("thin-stiff-layer", detail).with("cells", f64::from(cells));
+        let warning = Warning::new(THIN_STIFF_LAYER, detail).with("cells", f64::from(cells));
         (cells > 0).then(|| warning.with("largest_ratio", self.largest))
     }
-}
-
-fn is_stiff(ratio: f64, along: f64) -> bool {
-    ratio > STIFFER || along > STIFFER_ALONG
 }

@@ -68,7 +68,7 @@ pub fn optimise_job(
     // 3. The plan as any other.
     let prediction = input.prediction(&found.document);
     let planned = |stop: &StopQuery| prediction.prepare(place.sources, place.limits, stop);
-    let mut planned = clock.prepared(planned)?;
+    let mut planned = clock.prepared(planned).map_err(|error| input.in_spec(error))?;
     planned.spec_hash = prepared.spec_hash;
     planned.inputs = prepared.rest.inputs;
     planned.warnings.extend(prepared.warnings);

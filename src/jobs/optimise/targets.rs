@@ -93,8 +93,8 @@ impl OptimiseInput {
         PredictInput { job: None, queue_s: None, case, plan, spec }
     }
 
-    /// Maps places of the undeformed prediction's documents to places of the spec.
-    fn in_spec(&self, error: JobError) -> JobError {
+    /// Maps places of a prediction's documents, undeformed or of the plan that was found, to places of the spec.
+    pub(super) fn in_spec(&self, error: JobError) -> JobError {
         let JobError::Refused(mut problem) = error else { return error };
         for index in 0..self.spec.targets.len() {
             let part = format!("/case/skin_regions/{}", part_of(index));

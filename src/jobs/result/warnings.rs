@@ -5,7 +5,7 @@ use mechanics::mesh::Warning;
 
 /// Codes that precede all others, in this order: those of doubtful input or measurements, those of a result that
 /// has larger errors than reported elsewhere, and those of an impossible one.
-const GRAVE: [&str; 66] = [
+const GRAVE: [&str; 68] = [
     "nothing-moves",
     "nothing-performed",
     "units-suspect",
@@ -39,6 +39,8 @@ const GRAVE: [&str; 66] = [
     "other-response",
     "numerical-error-large",
     "thin-stiff-layer",
+    "pressure-turned",
+    "pressure-unsettled",
     "muscle-few-cells",
     "muscles-not-refined",
     "points-refined",

@@ -30,7 +30,7 @@ pub struct LoadDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub traction_kpa: Option<Triple>,
-    /// Positive into the body.
+    /// Positive into the body; at finite strain (`fem_nonlinear`) on its faces as they lie in the result.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub pressure_kpa: Option<f64>,

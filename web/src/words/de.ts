@@ -298,6 +298,7 @@ export const de: Words = {
     "segment-misfit": "ein Segment liegt nicht auf dem Knochen nach der Operation",
     "segment-without-nodes": "mit einem Segment ist kein Gewebe verbunden", "several-components": "das Netz hat Teile, die sich nicht berühren",
     "skin-unlike-learned": "die Haut ist gedreht oder anders groß als die, aus denen gelernt wurde",
+    "pressure-turned": "Druck folgt seinen Flächen nicht", "pressure-unsettled": "Druck kommt nicht zur Ruhe",
     "skin-held": "Haut ist gehalten", "skin-inwards": "die Haut ist eine Innenseite", "skin-outruns-plan": "Haut bewegt sich weiter als der Knochen", "skin-overlaps": "die Haut durchdringt sich",
     "skin-scan-apart": "der Oberflächenscan liegt neben der Haut des CT", "skin-unnamed": "die Haut ist nicht genannt: jede freie Fläche gilt",
     "slice-missing": "eine Schicht fehlt", "slices-doubled": "Schichten stehen doppelt",

@@ -290,6 +290,7 @@ export const en = {
     "segment-far-from-bone": "a segment lies far from its bone", "segment-misfit": "a segment does not lie on the bone after the operation",
     "segment-without-nodes": "no tissue is joined to a segment", "several-components": "the mesh has parts that do not touch",
     "skin-unlike-learned": "the skin is turned or of another size than those learned from",
+    "pressure-turned": "pressure does not follow its faces", "pressure-unsettled": "pressure does not come to rest",
     "skin-held": "skin is held", "skin-inwards": "the skin is an inner side", "skin-outruns-plan": "skin moves farther than bone", "skin-overlaps": "the skin passes through itself",
     "skin-scan-apart": "the surface scan lies apart from the skin of the CT", "skin-unnamed": "the skin is not named: every free face is taken",
     "slice-missing": "a slice is missing", "slices-doubled": "slices stand twice", "sliding-beside-segment": "a wall touches bone that moves",

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::accepted::{Accepted, MeanErrors, not_met};
-use super::duration::{SECOND_ORDER_TAKES, least_det_f, newton_relative_time};
+use super::duration::{ROUNDS_TAKE, SECOND_ORDER_TAKES, least_det_f, newton_relative_time};
 use super::finite_strain::{self, NoAnswer};
 use super::objection::{CandidateAnswer, Objection};
 use super::rung::{
@@ -14,6 +14,7 @@ use crate::mesh::Vector;
 use crate::model::problem::ModelError;
 use crate::prediction::answer::{self, Answer, Linear};
 use crate::prediction::case::{Case, Plan};
+use crate::prediction::following_pressure::has_pressure;
 use crate::prediction::scene::Scene;
 use crate::prediction::{Prediction, described};
 use crate::progress::Progress;
@@ -210,8 +211,9 @@ impl Climb<'_> {
         };
         let displacement = &first.equilibrium.displacement;
         self.moving = self.scene.skin.moving_points(displacement);
+        let rounds = if has_pressure(self.scene) { ROUNDS_TAKE } else { 1.0 };
         self.newton_relative_time =
-            newton_relative_time(least_det_f(&self.scene.mesh, displacement));
+            rounds * newton_relative_time(least_det_f(&self.scene.mesh, displacement));
         self.errors.mesh = first.missing.map(|missing| self.mesh_means(missing));
         self.errors.linearity = linearity.as_ref().ok().map(|left| self.means(&left.left_out));
     }

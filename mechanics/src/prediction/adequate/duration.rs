@@ -19,6 +19,9 @@ const STEP_TAKES: f64 = 0.4;
 const STEPS: f64 = 8.0;
 const STEPS_TURNED: f64 = 5.0;
 
+/// All rounds in which pressure follows its faces, as multiples of the first.
+pub(super) const ROUNDS_TAKE: f64 = 2.5;
+
 /// Newton's method at least and at most, before anything is solved.
 pub const NEWTON_MAY_TAKE: [f64; 2] = [STEP_TAKES * STEPS, STEP_TAKES * MOST_STEPS as f64];
 

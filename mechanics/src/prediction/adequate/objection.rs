@@ -4,11 +4,14 @@
 //! | --- | --- | --- |
 //! | `cells-inverted` | always: estimates hold near states that tissue can have | yes, finite strain keeps every cell as it is turned |
 //! | `skin-outruns-plan` | of small strain | yes, finite strain confirms it or not |
+//! | `pressure-turned` | of small strain | yes, at finite strain pressure follows its faces |
 //! | `another-equilibrium` | where the state that was found is not stable | no |
 //! | `skin-overlaps` | without contact, where it is deeper than at rest by more than is accepted, or nobody knows how deep | no |
 //! | `contact-overlap`, `contact-points-move` | by more than is accepted | no |
 //! | `contact-chatter` | always: there contact may pull | no |
 //! | `membrane-wrinkles` | always: no mesh is fine enough | no |
+//! | `thin-stiff-layer` | always: the error of the mesh is estimated several times too small | no |
+//! | `pressure-unsettled` | always: the forces are not those of the pressure stated | no |
 //! | `solved-loosely` | always: estimates are of exact solutions | no |
 //!
 //! Others are contained in the estimates (`numerical-error-large`, `large-strain`, `locking`), say that an estimate is not known,
@@ -21,9 +24,11 @@ use crate::model::problem::Equilibrium;
 use crate::prediction::answer::{Answer, Linear};
 use crate::prediction::contact::Touch;
 use crate::prediction::far_skin;
+use crate::prediction::following_pressure::{PRESSURE_UNSETTLED, pressure_turned};
 use crate::prediction::loosely;
 use crate::prediction::scene::Scene;
 use crate::prediction::skin_overlap::{Deepest, SKIN_OVERLAPS, added_overlap, skin_overlap};
+use crate::prediction::stiff_layer::THIN_STIFF_LAYER;
 use crate::prediction::wrinkles::wrinkles;
 
 /// An answer that may be adequate.
@@ -78,15 +83,21 @@ impl<'a> CandidateAnswer<'a> {
         let is_small_strain = scene.settings.method.properties().is_small_strain;
         let outruns = far_skin::outrun(scene, &displacement).filter(|_| is_small_strain);
         let inverted = inverted_cells(&determinants(&scene.mesh, &displacement));
-        let of_model = inverted.into_iter().chain(outruns);
+        let turned = pressure_turned(scene, &displacement);
+        let of_model = inverted.into_iter().chain(outruns).chain(turned);
         let newton = equilibrium.solver.newton.as_ref();
         let is_unstable = newton.is_some_and(|newton| newton.is_stable == Some(false));
-        let another = |own: &&Warning| is_unstable && own.code == "another-equilibrium";
-        let unstable = equilibrium.warnings.iter().filter(another);
+        let speaks = |own: &&Warning| match own.code {
+            "another-equilibrium" => is_unstable,
+            code => code == PRESSURE_UNSETTLED,
+        };
+        let of_solution = equilibrium.warnings.iter().filter(speaks);
+        let of_scene = scene.warnings.iter().filter(|own| own.code == THIN_STIFF_LAYER);
         // In contact edges may cross by less than is measured; what is measured is `contact-overlap`.
         let without_contact = contact.is_none();
         let touches = contact.into_iter().flat_map(|touch| touch.warnings(scene));
-        let of_all = unstable
+        let of_all = of_solution
+            .chain(of_scene)
             .cloned()
             .chain(loosely(scene, &equilibrium.solver))
             .chain(wrinkles(scene, &displacement))

@@ -5,12 +5,16 @@ use crate::mesh::{CellShape, Vector};
 use crate::model::fem::finite_strain::COLLAPSED;
 use crate::model::problem::{Equilibrium, LoadCase};
 use crate::prediction::scene::Scene;
+use crate::prediction::stiff_layer::has_stiff_layers;
 
 /// What is left of the error of a mesh where its estimate is added, as a share of the estimate.
 const LEFT_BY_CORRECTION: f64 = 0.8;
 
 /// Where forces act or tissue grows, what coarse meshes leave out was up to three times its estimate: so much of it is expected.
 const LOADED: f64 = 2.0;
+
+/// The same where layers of one cell are much stiffer than what is beside them.
+const WITH_STIFF_LAYERS: f64 = 2.0;
 
 /// Where cells all but collapse, so many times.
 const LEFT_OUT: f64 = 2.0;
@@ -28,7 +32,8 @@ pub fn error_over_estimate(scene: &Scene) -> f64 {
     let LoadCase { forces, grown, .. } = scene.load_case();
     let acts = forces.iter().any(|force| *force != Vector::zeros());
     let grows = grown.iter().any(|by| *by != 0.0);
-    if acts || grows { LOADED } else { 1.0 }
+    let loaded = if acts || grows { LOADED } else { 1.0 };
+    loaded * if has_stiff_layers(scene) { WITH_STIFF_LAYERS } else { 1.0 }
 }
 
 /// The same of an answer at finite strain: estimates leave out the inner modes of cells that all but collapse.

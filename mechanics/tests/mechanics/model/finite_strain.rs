@@ -66,6 +66,7 @@ pub(super) fn rest_by(
         tolerance: Tolerance { relative_residual: 1e-7, memory_mb: 1000.0 },
         with_states: false,
         advance,
+        near: None,
     };
     let held = constraints.iter().map(|constraint| *constraint.values()).collect();
     let forces = vec![Vector::zeros(); mesh.nodes.len()];

@@ -77,6 +77,7 @@ fn newton_forces(mesh: &VolumeMesh, law: &Law, displacement: &[Vector]) -> Vec<V
         tolerance: TOLERANCE,
         with_states: false,
         advance: Advance::default(),
+        near: None,
     };
     let held = displacement.to_vec();
     let case =

@@ -12,7 +12,7 @@ use super::muscles::{arched, in_region, pulling};
 use crate::material::hyperelastic::rows;
 use crate::scenes::{case_of, constraint, largest_error, material, on_the_boundary, set, solve};
 
-const EVERY: [(CellShape, ElementChoice); 6] = [
+pub(super) const EVERY: [(CellShape, ElementChoice); 6] = [
     (CellShape::Tet4, ElementChoice::Plain),
     (CellShape::Tet4, ElementChoice::Stabilised),
     (CellShape::Hex8, ElementChoice::Plain),

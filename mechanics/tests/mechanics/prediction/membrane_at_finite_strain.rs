@@ -50,6 +50,7 @@ fn forces(mesh: &VolumeMesh, sheet: PlaneStress, moved: impl Fn(&Vector) -> Vect
             tolerance: Tolerance { relative_residual: 1e-10, memory_mb: 1000.0 },
             with_states: false,
             advance: Advance::default(),
+            near: None,
         };
         let held = constraints.iter().map(|constraint| *constraint.values()).collect();
         let forces = vec![Vector::zeros(); mesh.nodes.len()];

@@ -14,6 +14,7 @@ mod contact_of_simple_bones;
 pub(crate) mod contact_on_bone;
 pub mod elements;
 mod fibres;
+mod following_pressure;
 mod generic_face;
 pub mod growth;
 mod imaged_muscles;

@@ -5,7 +5,9 @@ use std::sync::Arc;
 use mechanics::mesh::sample::block;
 use mechanics::mesh::{CellShape, Vector, VolumeMesh, Warning};
 use mechanics::plan::{PlannedSegment, RigidMovement};
-use mechanics::prediction::{Bone, Case, CaseSegment, Plan, Scene, Settings};
+use mechanics::prediction::{
+    Bone, Case, CaseSegment, Plan, Scene, SceneError, SceneErrorCode, Settings,
+};
 
 use crate::scenes::{case_of, exact, material, set, solve};
 
@@ -67,6 +69,44 @@ fn lips(gap: f64) -> Case {
         allow_unfixed: true,
         ..case_of(mesh, material(15.0, 0.3))
     }
+}
+
+#[test]
+fn a_mesh_of_doubled_cells_is_refused_for_these_and_not_for_its_skin() {
+    let single = || block(Vector::new(30.0, 24.0, 6.0), [5, 4, 2], CellShape::Hex8);
+    let skin = |mesh: VolumeMesh, skin| Case {
+        skin,
+        fixed: vec![set("z_min")],
+        ..case_of(mesh, material(15.0, 0.3))
+    };
+    let doubled = |from: usize| {
+        let (mut mesh, once) = (single(), single());
+        for (shape, nodes) in once.cells.iter().skip(from) {
+            mesh.cells.push(shape, nodes);
+        }
+        mesh
+    };
+    let problems = |case: &Case| {
+        let scene = Scene::new(case, &Plan::default(), &exact());
+        let found = scene.err().map_or_else(Vec::new, |errors| errors.0);
+        let told = |problem: &SceneError| {
+            (
+                problem.pointer.clone(),
+                problem.code,
+                problem.detail.contains("cells have the nodes of"),
+            )
+        };
+        found.iter().map(told).collect::<Vec<_>>()
+    };
+    let all = || Some(set("z_max"));
+    assert_eq!(problems(&skin(single(), all())), []);
+    let no_boundary = ("/case/volume".to_owned(), SceneErrorCode::MeshDegenerate, true);
+    for stated in [all(), None] {
+        assert_eq!(problems(&skin(doubled(0), stated)), [no_boundary.clone()]);
+    }
+    // The upper layer alone.
+    let no_skin = ("/case/skin".to_owned(), SceneErrorCode::EmptySelection, true);
+    assert_eq!(problems(&skin(doubled(20), all())), [no_skin]);
 }
 
 #[test]

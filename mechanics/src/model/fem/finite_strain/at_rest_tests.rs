@@ -72,6 +72,7 @@ impl AtRest {
             inner: Arc::default(),
             constraints: &self.constraints,
             tolerance: Tolerance { relative_residual: 1e-8, memory_mb: 1e4 },
+            near: None,
             with_states: false,
             advance: Advance::InSteps(NonZeroU32::MIN),
         }

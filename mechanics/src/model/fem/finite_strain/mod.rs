@@ -53,6 +53,7 @@ use elements::CellBulkModulus;
 pub use elements::Elements;
 pub use enriched_brick::COLLAPSED;
 pub use fibres::FibreField;
+use inner::is_too_much;
 pub use mesh_error::{FinerProblem, MeshError, NoMeshError};
 use newton::Newton;
 use newton_state::{Ending, NewtonExits, Question, Rest, Start};
@@ -266,8 +267,27 @@ impl<'a> FiniteStrain<'a> {
         let rest = question.constrained.dof_map.by_row(self.nodes);
         let start = Start::at(rest, 0.0, touching);
         match self.advance {
-            Advance::AtOnce | Advance::AtOnceOrInParts => self.rest_at_share(question, start),
+            Advance::AtOnce | Advance::AtOnceOrInParts => match self.rest_near(question, &start)? {
+                Some(found) => Ok(found),
+                None => self.rest_at_share(question, start),
+            },
             Advance::InSteps(steps) => self.rest_in_steps(steps.get(), question, start),
+        }
+    }
+
+    /// Brings the tissue to rest from displacements near it, where there are such and no contact; none where that leads nowhere.
+    fn rest_near(
+        &self,
+        question: Question<'a>,
+        start: &Start<'a>,
+    ) -> Result<Option<(Tissue<'a>, Rest<'a>)>, ModelError> {
+        let near = self.near.filter(|near| near.len() == self.nodes.len());
+        let (Some(near), None) = (near, &start.touching) else { return Ok(None) };
+        let moved: Vec<Vector> = self.nodes.iter().zip(near).map(|(x, u)| x + u).collect();
+        let start = Start::at(question.constrained.dof_map.by_row(&moved), 1.0, None);
+        match self.rest_from(question, start) {
+            Err(error) if is_too_much(&error) => Ok(None),
+            ended => ended.map(Some),
         }
     }
 

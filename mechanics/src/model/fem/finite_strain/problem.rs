@@ -34,6 +34,8 @@ pub struct FiniteStrain<'a> {
     /// Whether stress and strain of the cells are wanted.
     pub with_states: bool,
     pub advance: Advance,
+    /// Displacements by node, in mm, near which the solution is sought first where it is sought at once and without contact.
+    pub near: Option<&'a [Vector]>,
 }
 
 /// How what moves, acts, grows and pulls is advanced.

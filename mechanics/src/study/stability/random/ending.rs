@@ -94,6 +94,9 @@ fn mistake(scene: &Scene, prediction: &Prediction) -> Option<String> {
     if missed > HELD {
         return Some(format!("a held node is {missed} mm from where it is held"));
     }
+    if prediction.warnings.iter().any(|warning| warning.code == "pressure-unsettled") {
+        return None;
+    }
     let residual = out_of_balance(scene, prediction).unwrap_or(0.0);
     (residual > AT_REST).then(|| format!("the relative residual is {residual}"))
 }
@@ -133,8 +136,9 @@ fn out_of_balance(scene: &Scene, prediction: &Prediction) -> Option<f64> {
     }
     let tissues: Vec<Hyperelastic> = scene.materials.iter().map(followed).collect::<Option<_>>()?;
     let (mut left, rounding) = internal_forces(scene, &tissues, &prediction.displacement)?;
-    left.iter_mut().zip(&scene.forces).for_each(|(left, acting)| *left -= acting);
-    let mut exerted: f64 = scene.forces.iter().map(Vector::norm_squared).sum();
+    let acting = scene.acting_in(&prediction.displacement);
+    left.iter_mut().zip(&acting).for_each(|(left, acting)| *left -= acting);
+    let mut exerted: f64 = acting.iter().map(Vector::norm_squared).sum();
     for constraint in &scene.conditions.constraints {
         let force = &mut left[constraint.node as usize];
         let own = constraint.axes().transpose() * *force;
