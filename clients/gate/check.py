@@ -3,7 +3,9 @@
 FACIES_ADDRESS and FACIES_API_KEY say which. Fails where an exit code or an output is not the promised one.
 """
 
+import contextlib
 import html
+import io
 import json
 import os
 import pathlib
@@ -172,9 +174,27 @@ def broken(folder: pathlib.Path) -> None:
     (told, _) = refused("two files with a mistake each", folder, ["two-mistakes.json"], 2, lines=2)
     expect("both told", "case-of-a-bone.json: " in told and "contact.json: its `spec` states `contact`" in told, True)
     refused("a report that cannot be written", folder, [str(STUDY), "--report", str(folder)], 2)
-    for address in ("localhost:8080", "127.0.0.1:8080", "ftp://localhost", "http://", "http://localhost:x", ""):
+    for address in ("localhost:8080", "127.0.0.1:8080", "ftp://localhost", "http://", "http://localhost:x", "http://local\nhost:8080", " ", ""):
         told, took_s = refused(f"the address {address!r}", folder, [str(STUDY)], 2, FACIES_ADDRESS=address)
         expect("refused at once", took_s < 5.0 and "FACIES_ADDRESS" in told, True)
+
+
+def keys(folder: pathlib.Path) -> None:
+    """A key with white space around it is the key; what no header can have is refused, and nothing shows a key."""
+    key = os.environ["FACIES_API_KEY"]
+    expect("a study with a key that ends in a line break", action(folder, study=str(STUDY), key=f" {key}\r\n")[0], 0)
+    for what, wrong in {"a line break": "\n", "a space": " ", "a control character": "\x1b", "a letter beyond ASCII": "\u00e9"}.items():
+        told, _ = refused(f"{what} within the key", folder, [str(STUDY)], 2, FACIES_API_KEY=f"fcs_secret{wrong}more_of_it")
+        expect("by its variable alone", ("FACIES_API_KEY" in told, "secret" in told.partition(";")[0], "more_of_it" in told), (True, False, False))
+    for option in ("--tag", "--baseline-tag"):
+        told, _ = refused(f"two {option}", folder, [str(STUDY), option, "a", option, "b"], 2, lines=5)
+        expect("by its name", f"{option} stands more than once" in told, True)
+    told = io.StringIO()
+    with (mock.patch.object(facies_gate, "run", side_effect=ValueError(f"Invalid header value b'Bearer {key}'")),
+          mock.patch.object(sys, "argv", ["facies_gate.py", str(STUDY)]), contextlib.redirect_stderr(told)):
+        code = facies_gate.main()
+    lines = told.getvalue().splitlines()
+    expect("an error of the gate itself", (code, len(lines), "ValueError" in lines[0], key in lines[0]), (2, 1, True, False))
 
 
 def refused(what: str, folder: pathlib.Path, arguments: list[str], code: int, lines: int = 1,
@@ -241,6 +261,7 @@ def main() -> None:
         expect("the same in GitLab", gitlab(folder, STUDY=worse, BASELINE_TAG=""), 1)
         expect("and without a baseline there", gitlab(folder, STUDY=worse, BASELINE_TAG="x"), 1)
         broken(folder)
+        keys(folder)
         of_study = [{"segments": [{"name": "mandible", "translation_mm": [0, step, 0]}]} for step in (1, 2)]
         case = str((STUDY.parent / "../../../examples/block/case.json").resolve())
         planned = changed(folder, "planned", scenes=[{"case": case}], plans=of_study)

@@ -11,8 +11,8 @@ is the first run and every later one: where no study has the tag yet, this one g
 follow. With `--tag` later ones get a tag as well, and a later run is compared with the newest that has it. A study gets these
 tags when its outcome is `pass` and not before, so that none that is worse is ever a baseline.
 
-Exit codes, those of `facies study`: 0 pass, 1 worse or failed, 2 refused input, 3 the service is out of
-reach, 4 incomplete, 5 no baseline.
+Exit codes, those of `facies study`: 0 pass, 1 worse or failed, 2 refused input or an error of the gate itself, 3 the service
+is out of reach, 4 incomplete, 5 no baseline. White space around FACIES_ADDRESS and FACIES_API_KEY is not part of them.
 """
 
 from __future__ import annotations
@@ -27,6 +27,7 @@ import os
 import pathlib
 import sys
 import time
+import traceback
 import urllib.error
 import urllib.parse
 import urllib.request
@@ -55,7 +56,7 @@ class Service:
     def __init__(self, address: str, key: str | None, patience_s: float) -> None:
         self.address = checked(address)
         self.patience_s = patience_s
-        self.headers = {} if not key else {"Authorization": f"Bearer {key}"}
+        self.headers = authorization(key)
 
     def ask(self, method: str, path: str, body: bytes | None = None, **headers: str):
         """The body and the headers of the answer."""
@@ -70,14 +71,13 @@ class Service:
                 with urllib.request.urlopen(request, timeout=90) as answer:
                     return answer.read(), answer.headers
             except urllib.error.HTTPError as error:
-                text = error.read().decode(errors="replace")
-                why = f"{method} {path.partition('?')[0]}: {error.code} {in_words(text)}"
+                why = f"{method} {path.partition('?')[0]}: {error.code} {in_words(text_of(error))}"
                 if error.code < 500 and error.code != 429:
                     raise Stop(REFUSED, why) from error
                 # In seconds, as the service sends it.
                 told = error.headers.get("Retry-After") or ""
                 pause = float(told) if told.isdecimal() else pause
-            except (urllib.error.URLError, http.client.HTTPException, TimeoutError, ConnectionError) as error:
+            except (OSError, http.client.HTTPException) as error:
                 why = f"{method} {path}: {error}"
             if time.monotonic() + pause > until:
                 raise Stop(OUT_OF_REACH, why)
@@ -94,6 +94,14 @@ class Service:
         except ValueError as error:
             why = f"{self.address} is no facies service: {method} {path} is answered with {answer[:60]!r}"
             raise Stop(OUT_OF_REACH, why) from error
+
+
+def text_of(error: urllib.error.HTTPError) -> str:
+    """The body of a refusal; of one that breaks off, its status."""
+    try:
+        return error.read().decode(errors="replace")
+    except (OSError, http.client.HTTPException):
+        return error.reason
 
 
 def in_words(text: str) -> str:
@@ -117,17 +125,31 @@ def of_file(path: pathlib.Path):
 
 def checked(address: str) -> str:
     """An address as it is used; one that no request can reach is refused before any is tried."""
+    address = address.strip()
     if not address:
         raise Stop(REFUSED, "FACIES_ADDRESS is not set")
     try:
         parts = urllib.parse.urlsplit(address)
         said = parts.scheme in ("http", "https") and bool(parts.hostname) and parts.port != 0
+        # `urlsplit` drops control characters, and a request would be refused for them.
+        said = said and all(letter.isprintable() and letter != " " for letter in address)
     except ValueError:
         said = False
     if not said:
         meant = f"http://{address}" if "://" not in address else "http://127.0.0.1:8080"
         raise Stop(REFUSED, f"FACIES_ADDRESS is {address!r}: write it with http:// or https://, as in {meant}")
     return address.rstrip("/")
+
+
+def authorization(key: str | None) -> dict[str, str]:
+    """The header with a key; one that cannot be in a header is refused and not shown."""
+    key = (key or "").strip()
+    if not key:
+        return {}
+    if not all("!" <= letter <= "~" for letter in key):
+        why = "FACIES_API_KEY is no key: within it is white space, a control character or one beyond ASCII"
+        raise Stop(REFUSED, f"{why}; the secret has to be the key alone, on one line")
+    return {"Authorization": f"Bearer {key}"}
 
 
 def read(path: pathlib.Path) -> dict:
@@ -399,8 +421,21 @@ def tell(job: str, outcome: str) -> None:
             outputs.write(f"job={job}\noutcome={outcome}\n")
 
 
+class Once(argparse.Action):
+    """An option that may stand once: of several values the last would be taken without a word."""
+
+    stands = False
+
+    def __call__(self, parser, namespace, values, option_string=None) -> None:
+        if self.stands:
+            parser.error(f"{option_string} stands more than once")
+        self.stands = True
+        setattr(namespace, self.dest, values)
+
+
 def main() -> int:
     parser = argparse.ArgumentParser(description=(__doc__ or "").split("\n")[0])
+    parser.register("action", None, Once)
     parser.add_argument("study", help="a study document; its cases are files beside it")
     parser.add_argument("--baseline", default="", help="the job of the study to compare with")
     parser.add_argument("--baseline-tag", default="",
@@ -416,6 +451,15 @@ def main() -> int:
     except Stop as stop:
         print(stop, file=sys.stderr)
         return stop.code
+    except Exception as error:  # 1 is the exit code of a prediction that is worse.
+        print(unexpected(error), file=sys.stderr)
+        return REFUSED
+
+
+def unexpected(error: Exception) -> str:
+    """An error of the gate itself in one line: its type and the line of this file, since its text may quote a key."""
+    lines = [frame.lineno for frame in traceback.extract_tb(error.__traceback__) if frame.filename == __file__]
+    return f"the gate has an error: {type(error).__name__} at line {lines[-1] if lines else 0} of {pathlib.Path(__file__).name}"
 
 
 if __name__ == "__main__":

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from facies import Facies, JobFailed, Refused, rigid
+from facies_client import connect
 
 HEAD = "examples/head/case.json"
 MOVEMENT: dict[str, list[float]] = {"translation_mm": [0, 4, 1], "rotation_deg": [3, -2, 1], "pivot_mm": [0, 10, 20]}
@@ -167,6 +168,18 @@ with tempfile.TemporaryDirectory() as folder:
 stated = service.predict(head, PLAN, materials=soft)
 assert of_file.results["provenance"]["spec_hash"] == stated.results["provenance"]["spec_hash"], "the spec of a file counts"
 assert stated.results["provenance"]["spec_hash"] != prediction.results["provenance"]["spec_hash"]
+
+# A key from a file that ends in a line break; one that no header can have is not shown.
+key = os.environ.get("FACIES_API_KEY")
+assert Facies(os.environ["FACIES_ADDRESS"], key and f" {key}\r\n").ask("GET", "/v1/cases").is_success
+assert connect(os.environ["FACIES_ADDRESS"], key and f"{key}\n").get_httpx_client().get("/v1/cases").is_success
+for piece in ("\n", " ", "\x1b", "\u00e9"):
+    for made in (Facies, connect):
+        try:
+            made(os.environ["FACIES_ADDRESS"], f"fcs_secret{piece}more")
+            sys.exit(f"let through: a key with {piece!r}")
+        except ValueError as error:
+            assert "secret" not in str(error) and "more" not in str(error), error
 
 try:
     service.predict(head, {"segments": [{"name": "mandibel", "translation_mm": [0, 4, 1]}]})

@@ -1,4 +1,5 @@
-"""Files on their way to the service: piece by piece, so that they are never whole in memory, and with their progress."""
+"""Requests on their way to the service: the header with its key, and files piece by piece, so that they are never whole in
+memory, with their progress."""
 
 from __future__ import annotations
 
@@ -14,6 +15,15 @@ Progress = Callable[[Document], object]
 File = str | PathLike[str]
 
 PIECE_BYTES = 1 << 20
+
+
+def authorization(key: str | None) -> dict[str, str]:
+    """The header with a key, without the white space around it; raises `ValueError`, which does not show the key, where
+    something in it cannot be in a header."""
+    key = (key or "").strip()
+    if not all("!" <= letter <= "~" for letter in key):
+        raise ValueError("the key has white space within it, a control character or one beyond ASCII, as no key has")
+    return {"Authorization": f"Bearer {key}"} if key else {}
 
 
 class Sending:

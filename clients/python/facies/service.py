@@ -15,7 +15,7 @@ import numpy as np
 from .errors import JobFailed, Refused
 from .response import Response
 from .results import Applied, Case, Comparison, Optimisation, Prediction
-from .sending import Document, File, Progress, Sending
+from .sending import Document, File, Progress, Sending, authorization
 from .surface import Surface
 
 WAIT = {"Prefer": "wait=30"}
@@ -31,9 +31,8 @@ class Facies:
     """The service at `address`, with a key where it asks for one. A busy one is waited for, `patience_s` in all."""
 
     def __init__(self, address: str, key: str | None = None, patience_s: float = PATIENCE_S) -> None:
-        headers = {} if key is None else {"Authorization": f"Bearer {key}"}
         self.patience_s = patience_s
-        self._http = httpx.Client(base_url=address, headers=headers, timeout=PATIENCE_S)
+        self._http = httpx.Client(base_url=address, headers=authorization(key), timeout=PATIENCE_S)
 
     def __enter__(self) -> Facies:
         return self

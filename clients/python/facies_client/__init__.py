@@ -11,6 +11,8 @@ from typing import TypeVar
 
 import httpx
 
+from facies.sending import authorization
+
 from .rest import Client
 from .rest.api.jobs import show_job
 from .rest.models import ProblemDocument, StatusInfo
@@ -45,10 +47,7 @@ def connect(address: str, key: str | None = None) -> Client:
     """A client of the service at `address`, with the key of the service where it asks for one."""
     # Longer than the service waits for a job.
     patience = httpx.Timeout(60)
-    if key is None:
-        return Client(base_url=address, timeout=patience, raise_on_unexpected_status=True)
-    headers = {"Authorization": f"Bearer {key}"}
-    return Client(base_url=address, headers=headers, timeout=patience, raise_on_unexpected_status=True)
+    return Client(base_url=address, headers=authorization(key), timeout=patience, raise_on_unexpected_status=True)
 
 
 def answered(answer: T | ProblemDocument | None) -> T:

@@ -2,7 +2,8 @@
 import { strict as assert } from "node:assert";
 import { readFile } from "node:fs/promises";
 import { directions, meaning, type Direction } from "./directions.js";
-import { Facies, JobFailed, Refused, Response, type Documents, type Movement, type Upload } from "./facies.js";
+import { Facies, JobFailed, NoKey, Refused, Response, type Documents, type Movement, type Upload } from "./facies.js";
+import { connect } from "./index.js";
 
 // Sliders go where their words say, with no service: how far a point 50 mm before the centre of a segment, or left of it, goes.
 function moved(frame: "LPS" | "RAS", { member, axis, sign }: Direction, place: "front" | "left"): { forward: number; left: number; up: number } {
@@ -128,6 +129,16 @@ const scanned = await facies.createCase({ meshing } as Documents["MeshedCaseDocu
 const cut = await facies.predict(scanned, { segments: [{ name: "jaw", translation_mm: [0, -3, 0] }] } as Documents["PlanDocument"]);
 const largest = Math.max(...cut.displacement_mm.map(Math.abs));
 assert(largest > 2 && largest < 4, `${largest} mm`);
+
+// A key from a file that ends in a line break; one that no header can have is not shown.
+const key = process.env.FACIES_API_KEY;
+const spaced = new Facies(process.env.FACIES_ADDRESS!, key && ` ${key}\r\n`);
+assert.equal((await spaced.ask("GET", "/v1/cases?limit=1")).status, 200);
+assert.equal((await connect(process.env.FACIES_ADDRESS!, key && `${key}\n`).GET("/v1/cases")).response.status, 200);
+for (const wrong of ["\n", " ", "\u001b", "\u00e9"]) {
+  const broken = new Facies(process.env.FACIES_ADDRESS!, `fcs_secret${wrong}more`);
+  await assert.rejects(broken.ask("GET", "/v1/cases"), (error) => error instanceof NoKey && !/secret|more/.test(error.message));
+}
 
 const unknown = { segments: [{ name: "mandibel", translation_mm: [0, 4, 1] as [number, number, number] }] };
 await assert.rejects(facies.predict(head, unknown), (refused) => refused instanceof Refused

@@ -23,6 +23,13 @@ export class Refused extends FaciesError {
   }
 }
 
+/** What was given as a key is none; it is not shown. */
+export class NoKey extends Error {
+  constructor() {
+    super("the key has white space within it, a control character or one beyond ASCII, as no key has");
+  }
+}
+
 /** A job ended without results; `job` is its last state. */
 export class JobFailed extends FaciesError {
   constructor(readonly job: Documents["StatusInfo"]) {

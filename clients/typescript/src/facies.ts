@@ -2,11 +2,11 @@
 // so that a page may import it as it is.
 import { JobFailed, Refused } from "./errors.js";
 import { Response as PlanResponse } from "./response.js";
-import { post, type Uploading } from "./sending.js";
+import { authorization, post, type Uploading } from "./sending.js";
 import { readGlb, type Surface } from "./surface.js";
 import type { components } from "./rest.js";
 
-export { FaciesError, JobFailed, Refused } from "./errors.js";
+export { FaciesError, JobFailed, NoKey, Refused } from "./errors.js";
 export { Response, type Movement, type Triple } from "./response.js";
 export { type Upload, type Uploading } from "./sending.js";
 export { readGlb, type Surface } from "./surface.js";
@@ -215,7 +215,7 @@ export class Facies {
   }
 
   private authorization(): Record<string, string> {
-    return this.key === undefined ? {} : { Authorization: `Bearer ${this.key}` };
+    return authorization(this.key);
   }
 
   private async json(...request: Parameters<Facies["ask"]>) {

@@ -2,6 +2,7 @@
 // file adds what a description cannot say: how to connect, that a refusal is an exception, how to wait.
 import createClient, { type Client } from "openapi-fetch";
 import type { components, paths } from "./rest.js";
+import { authorization } from "./sending.js";
 
 export type Documents = components["schemas"];
 /** What `data` and `error` are read as; files are asked for with `parseAs`. */
@@ -28,10 +29,9 @@ export class JobFailed extends Error {
 
 /** A client of the service at `address`, with the key of the service where it asks for one. */
 export function connect(address: string, key?: string): Facies {
-  const headers = key === undefined ? {} : { Authorization: `Bearer ${key}` };
   return createClient<paths, Media>({
     baseUrl: address,
-    headers,
+    headers: authorization(key),
     // A file is sent as it is.
     bodySerializer: (body) => ((body as unknown) instanceof Blob ? body : JSON.stringify(body)),
   });

@@ -1,5 +1,6 @@
-// A file on its way to the service, with its progress. `fetch` tells none in a browser, so that a page sends the file by
-// XMLHttpRequest; elsewhere it goes as a stream, whose pieces are counted as they are taken.
+// Requests on their way to the service: the header with its key, and a file with its progress. `fetch` tells none in a browser,
+// so that a page sends the file by XMLHttpRequest; elsewhere it goes as a stream, whose pieces are counted as they are taken.
+import { NoKey } from "./errors.js";
 
 /** How far a file is sent; `progress` goes from 0 to 100. */
 export interface Upload {
@@ -11,6 +12,13 @@ export interface Upload {
 export type Uploading = (upload: Upload) => unknown;
 
 const PIECE_BYTES = 1 << 16;
+
+/** The header with a key, without the white space around it; throws `NoKey` where something in it cannot be in a header. */
+export function authorization(key?: string): Record<string, string> {
+  const given = (key ?? "").trim();
+  if (!/^[!-~]*$/.test(given)) throw new NoKey();
+  return given === "" ? {} : { Authorization: `Bearer ${given}` };
+}
 
 /** A request by the method POST whose body is a file. */
 export interface Posted {
