@@ -13,7 +13,7 @@ use super::resources::Resources;
 use super::{Service, json};
 use crate::schema::ErrorCode;
 use crate::schema::wire::problem::Problem;
-use crate::store::StoreError;
+use crate::store::{StorageFault, StoreError};
 
 /// The longest wait that is still useful to a request.
 const READY_WITHIN: Duration = Duration::from_secs(2);
@@ -41,8 +41,9 @@ async fn healthz() -> Response {
 async fn readyz(service: Service) -> ApiResult {
     let mut failing: Vec<String> = Vec::new();
     let mut remedy = String::new();
+    let floor = service.config.free_space_floor_bytes;
     let (database, storage) =
-        tokio::join!(in_time(service.store.ping()), in_time(service.store.try_write()));
+        tokio::join!(in_time(service.store.ping()), service.store.storage_faults(floor));
     if let Err(error) = database {
         tracing::warn!(%error, "the database does not answer");
         if matches!(error, StoreError::DatabaseFile(_)) {
@@ -50,14 +51,9 @@ async fn readyz(service: Service) -> ApiResult {
         }
         failing.push("database".into());
     }
-    if let Err(error) = storage {
-        tracing::warn!(%error, "the data folder cannot be written");
-        failing.push("storage".into());
-    }
-    let floor = service.config.free_space_floor_bytes;
-    match service.store.free_space() {
-        Ok(free) if free >= floor && service.store.has_room() => {}
-        _ => failing.push("free-space".into()),
+    for StorageFault { check, reason } in storage {
+        tracing::warn!(check, %reason, "the storage fails");
+        failing.push(check.into());
     }
     if failing.is_empty() {
         return Ok(json(StatusCode::OK, &Health { status: "ok".into() }));

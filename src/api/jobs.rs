@@ -295,7 +295,7 @@ async fn list(service: Service, Parameters(parameters): Parameters<ListParameter
     written.await?
 }
 
-/// Dismisses a job that has not ended; removes one that has, with its results.
+/// Dismisses a job that has not ended; removes one that has, with its results, which needs a key with `write`.
 #[utoipa::path(
     delete, path = "/v1/jobs/{id}", operation_id = "dismiss_job", tag = "jobs",
     params(
@@ -308,9 +308,21 @@ async fn list(service: Service, Parameters(parameters): Parameters<ListParameter
         (status = 412, description = "it is in another state"),
     )
 )]
-async fn dismiss(service: Service, Id(id): Id, headers: HeaderMap) -> ApiResult<Response> {
+async fn dismiss(
+    service: Service,
+    caller: Caller,
+    Id(id): Id,
+    headers: HeaderMap,
+) -> ApiResult<Response> {
     allow_match(&service, &id, &headers).await?;
-    let what = service.store.dismiss(&id).await?;
+    let what = match caller.require(Scope::Write) {
+        Ok(()) => service.store.dismiss(&id).await?,
+        Err(_) if service.store.dismiss_unended(&id).await? => Dismissal::Dismissed,
+        Err(refusal) => {
+            service.store.job(&id).await?.ok_or_else(no_such_job)?;
+            return Err(refusal);
+        }
+    };
     tracing::info!(job.id = %id, ?what, "job dismissed");
     match what {
         Dismissal::Dismissed => {

@@ -245,11 +245,23 @@ async fn list_keys(store: &Store) -> Result<(), AdminError> {
                 (None, Some(_)) => "ends",
                 (None, None) => "lasts",
             };
-            println!("{}  {state:<7}  {}  {}", row.id, row.scopes, row.label);
+            println!("{}  {state:<7}  {}  {}", row.id, row.scopes, shown(&row.label));
         }
         let Some(row) = rows.last() else { return Ok(()) };
         last = Some(row.id.clone());
     }
+}
+
+/// A text in which a terminal finds no commands.
+fn shown(text: &str) -> String {
+    let mut shown = String::with_capacity(text.len());
+    for letter in text.chars() {
+        match letter.is_control() {
+            true => shown.extend(letter.escape_default()),
+            false => shown.push(letter),
+        }
+    }
+    shown
 }
 
 fn lines(problem: &Problem) -> String {

@@ -79,7 +79,7 @@ fn config(settings: &Settings) -> Result<Config, AdminError> {
 }
 
 async fn connect(config: &Config) -> Result<Store, AdminError> {
-    let store = Store::connect(&config.places).await.map_err(|error| match error {
+    let store = Store::connect_unchanged(&config.places).await.map_err(|error| match error {
         StoreError::Files(_) if !error.is_full() => AdminError::Folder(error),
         other => other.into(),
     })?;

@@ -15,7 +15,7 @@ use crate::schema::wire::problem::Problem;
 pub enum Scope {
     /// To read.
     Read,
-    /// To store and erase meshes, cases and plans.
+    /// To store and erase meshes, cases and plans, and to erase jobs that have ended.
     Write,
     /// To start and dismiss jobs.
     Run,
@@ -121,12 +121,10 @@ impl KeyDocument {
     /// Its faults.
     pub fn check(&self) -> Result<(), Problem> {
         let mut faults = Faults::default();
+        faults.check_name(&Pointer::from_text("/label"), &self.label, LONGEST_LABEL);
         let mut add = |at: &str, detail: &str| {
             faults.add(&Pointer::from_text(at), ErrorCode::OutOfRange, detail);
         };
-        if !(1..=LONGEST_LABEL).contains(&self.label.chars().count()) {
-            add("/label", "a label has 1 to 100 characters");
-        }
         if self.scopes.is_empty() {
             add("/scopes", "a key allows something");
         }
@@ -195,6 +193,18 @@ mod tests {
         let wrong = ["", "fcs__", "fcs_ab_cd", &key.text[1..], &key.text.to_uppercase()];
         assert!(wrong.iter().all(|text| Key::parse(text).is_none()));
         assert!(Key::parse(&format!("{}_", key.text)).is_none());
+    }
+
+    #[test]
+    fn a_label_has_characters_that_a_list_can_show() {
+        let code = |label: &str| {
+            let scopes = BTreeSet::from([Scope::Read]);
+            let wanted = KeyDocument { label: label.to_owned(), scopes, days: None };
+            wanted.check().err().map(|problem| problem.errors[0].code)
+        };
+        assert_eq!(code(&"\u{e9}".repeat(100)), None);
+        let wrong = ["", " ", &"a".repeat(101), "\u{1b}[2J", "a\nroot", "\u{9b}2J"];
+        assert!(wrong.into_iter().all(|label| code(label) == Some(ErrorCode::BadName)));
     }
 
     #[test]

@@ -59,6 +59,12 @@ pub enum StoreError {
         "the database is at schema step {found} and this program needs step {known}: run `facies migrate`"
     )]
     SchemaTooOld { found: i64, known: i64 },
+    #[error(
+        "the database {} is at schema step {found} and this program needs step {known}: it was left as it is. Copy the data folder, since \
+         an earlier program cannot open it afterwards, and run `facies migrate`, or start `facies serve`, which migrates it too",
+        file.display()
+    )]
+    FileTooOld { file: std::path::PathBuf, found: i64, known: i64 },
     #[error("the schema of the database does not fit this program: {0}")]
     Schema(String),
     #[error(
@@ -123,6 +129,9 @@ impl StoreError {
             }
             StoreError::Database(source) => {
                 StoreError::CannotOpen { file: file.to_owned(), source }
+            }
+            StoreError::SchemaTooOld { found, known } => {
+                StoreError::FileTooOld { file: file.to_owned(), found, known }
             }
             other => other,
         }
@@ -193,6 +202,7 @@ impl StoreError {
             | StoreError::Files(_)
             | StoreError::SchemaTooNew { .. }
             | StoreError::SchemaTooOld { .. }
+            | StoreError::FileTooOld { .. }
             | StoreError::Schema(_) => true,
             StoreError::Database(error) | StoreError::CannotConnect { source: error, .. } => {
                 super::database::is_refused(error)

@@ -1,7 +1,7 @@
 //! Store handle: one database and one blob store, scoped to a tenant.
 
 use super::blobs::Blobs;
-use super::database::{Address, Database};
+use super::database::{Address, Database, EarlierSchema};
 use super::error::{StoreError, at};
 use super::notes::Notes;
 use super::open_actions::OpenActions;
@@ -59,15 +59,27 @@ impl Store {
         Store::connect(&StorageLocations::in_folder(folder)).await
     }
 
-    /// Opens the store. The data folder is that of this process alone.
+    /// Opens the store, and brings an embedded database up to date. The data folder is that of this process alone.
     pub async fn connect(places: &StorageLocations) -> Result<Store, StoreError> {
+        Store::connect_by(places, EarlierSchema::Migrate).await
+    }
+
+    /// Opens the store, and refuses an embedded database of an earlier schema step, which stays as it is.
+    pub async fn connect_unchanged(places: &StorageLocations) -> Result<Store, StoreError> {
+        Store::connect_by(places, EarlierSchema::Refuse).await
+    }
+
+    async fn connect_by(
+        places: &StorageLocations,
+        earlier: EarlierSchema,
+    ) -> Result<Store, StoreError> {
         let temporary = places.data.join("tmp");
         std::fs::create_dir_all(&temporary).map_err(at(&temporary))?;
         let lock = lock(&places.data).await?;
         let shared = matches!(places.database, DatabaseLocation::Server { .. });
         // Before the database is opened, which may need the room.
         let spare = (!shared).then(|| Arc::new(Spare::new(&places.data)));
-        let database = Database::open(address(places)?).await?;
+        let database = Database::open(address(places)?, earlier).await?;
         let open_actions = OpenActions::default();
         Ok(Store {
             tenant: DEFAULT_TENANT.into(),

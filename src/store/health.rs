@@ -16,6 +16,16 @@ const NEWEST: &str = "SELECT (SELECT updated FROM cases ORDER BY id DESC LIMIT 1
      (SELECT created FROM meshes ORDER BY id DESC LIMIT 1), (SELECT created FROM keys ORDER BY id DESC LIMIT 1), \
      (SELECT at FROM deeds ORDER BY id DESC LIMIT 1)";
 
+/// How long readiness waits for the storage.
+const STORAGE_WITHIN: Duration = Duration::from_secs(2);
+
+/// A check of the storage that failed, by its name in the response of readiness, and the reason for the log.
+#[derive(Debug)]
+pub struct StorageFault {
+    pub check: &'static str,
+    pub reason: String,
+}
+
 /// More frequent requests get the last result.
 const WRITTEN_EVERY: Duration = Duration::from_secs(1);
 
@@ -78,6 +88,25 @@ impl Store {
         tokio::fs::write(&place, b"facies").await?;
         tokio::fs::remove_file(&place).await?;
         Ok(())
+    }
+
+    /// What keeps results and uploads from being stored, nothing where they can be: blobs and the data folder take files within
+    /// two seconds, the folder has `floor_bytes` free, and there is room for the reserve.
+    pub async fn storage_faults(&self, floor_bytes: u64) -> Vec<StorageFault> {
+        let mut faults = Vec::new();
+        if let Err(error) = in_time(STORAGE_WITHIN, self.try_write()).await {
+            faults.push(StorageFault { check: "storage", reason: error.to_string() });
+        }
+        let short = match self.free_space() {
+            Ok(free) if free < floor_bytes => {
+                Some(format!("{free} bytes are free, less than {floor_bytes}"))
+            }
+            Ok(_) if !self.has_room() => Some("there is no room for the reserve".to_owned()),
+            Ok(_) => None,
+            Err(error) => Some(error.to_string()),
+        };
+        faults.extend(short.map(|reason| StorageFault { check: "free-space", reason }));
+        faults
     }
 
     /// Bytes free for this user on the disk of the data folder.

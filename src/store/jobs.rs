@@ -209,19 +209,32 @@ impl Store {
     /// Ends a job that is accepted or running, removes one that has ended, with the meshes that it made or read and that
     /// nothing else refers to, unless somebody uploaded them for their own sake. A prediction leaves every cohort.
     pub async fn dismiss(&self, id: &str) -> Result<Dismissal, StoreError> {
+        match self.end_unended(id).await? {
+            None => Ok(Dismissal::Dismissed),
+            Some(transaction) => self.remove_job(transaction, id, 0).await,
+        }
+    }
+
+    /// Ends a job that is accepted or running; false where there is none.
+    pub async fn dismiss_unended(&self, id: &str) -> Result<bool, StoreError> {
+        Ok(self.end_unended(id).await?.is_none())
+    }
+
+    /// Ends a job that is accepted or running; where there is none, the transaction that found none.
+    async fn end_unended(&self, id: &str) -> Result<Option<Transaction>, StoreError> {
         let mut transaction = self.database.begin().await?;
         hold_case(&mut transaction, id).await?;
         let dismissed =
             query(DISMISS).bind(id).bind(self.tenant()).execute(&mut transaction).await?;
-        if dismissed == 1 {
-            record(&mut transaction, id).await?;
-            let waited = fail_waiting(&mut transaction, id).await?;
-            transaction.commit().await?;
-            self.job_changed(id);
-            waited.iter().for_each(|job| self.job_changed(job));
-            return Ok(Dismissal::Dismissed);
+        if dismissed != 1 {
+            return Ok(Some(transaction));
         }
-        self.remove_job(transaction, id, 0).await
+        record(&mut transaction, id).await?;
+        let waited = fail_waiting(&mut transaction, id).await?;
+        transaction.commit().await?;
+        self.job_changed(id);
+        waited.iter().for_each(|job| self.job_changed(job));
+        Ok(None)
     }
 
     /// Removes a job that has ended and that nobody has changed for `age`, in ms.

@@ -120,9 +120,6 @@ const INSERT_FILE: &str =
 const FILE: &str = "SELECT name, media_type, blob, bytes FROM job_files WHERE job_id = $1 AND name = $2 \
      AND EXISTS (SELECT 1 FROM jobs WHERE jobs.id = $1 AND jobs.tenant = $3)";
 
-/// The pause before an attempt that lost its storage is repeated, times the losses so far.
-const PAUSE_AFTER_LOSS_MS: i64 = 500;
-
 impl Store {
     /// Keeps a job and tells where it stands; false when it is not ours any more.
     pub async fn renew(
@@ -240,11 +237,13 @@ impl Store {
         self.end(lease, query(RELEASE).bind(&lease.job).bind(&lease.token)).await
     }
 
-    /// Gives a job back that failed through no fault of its own, or fails it when that was the last attempt.
+    /// Gives a job back that failed through no fault of its own, or fails it when that was the last attempt. The next one comes after
+    /// `pause`, times the losses so far.
     pub async fn lose(
         &self,
         lease: &Lease,
         attempts: u32,
+        pause: Duration,
         error: &str,
     ) -> Result<bool, StoreError> {
         let query = query(LOSE)
@@ -252,7 +251,7 @@ impl Store {
             .bind(&lease.token)
             .bind(i64::from(attempts))
             .bind(error)
-            .bind(PAUSE_AFTER_LOSS_MS)
+            .bind(milliseconds(pause))
             .bind(class_of(error));
         self.end(lease, query).await
     }

@@ -68,6 +68,7 @@ pub use events::EventRow;
 pub use files::FoundBlob;
 pub use fsck::{Dangling, Findings, Repaired, Unreached};
 pub use handle::{DEFAULT_TENANT, Store, address_fault};
+pub use health::StorageFault;
 pub use idempotency::Reserved;
 pub use jobs::{Dismissal, JobFilter, JobRow};
 pub use keys::KeyRow;

@@ -7,4 +7,5 @@ pub mod process;
 mod publication;
 mod publisher;
 pub mod slots;
+mod storage;
 pub mod work;

@@ -15,6 +15,7 @@ use super::fail_point::FailPoints;
 use super::heartbeat::{Heartbeat, RunningJob, worker_lost};
 use super::publication::Publication;
 use super::publisher::Publisher;
+use super::storage::StorageWatch;
 use super::work::{Failure, Finished, Work};
 use crate::config::Config;
 use crate::metrics;
@@ -28,6 +29,8 @@ use mechanics::progress::Progress;
 
 /// How long an idle worker waits before it looks for jobs that another process has accepted.
 const IDLE: Duration = Duration::from_secs(1);
+/// The pause before a job that lost its process is tried again, times the losses so far.
+const PAUSE_AFTER_LOSS: Duration = Duration::from_millis(500);
 /// How long a solver that was cancelled may take before the process ends without it.
 const LAST_WORDS: Duration = Duration::from_secs(2);
 /// How long a slot that is not ready sleeps at most before it looks whether to stop.
@@ -41,6 +44,7 @@ pub struct Workers {
 
 struct Shared {
     store: Store,
+    storage: StorageWatch,
     heartbeat: Heartbeat,
     runtime: Handle,
     lease: Duration,
@@ -58,6 +62,7 @@ impl Workers {
     ) -> Result<Workers, StoreError> {
         let shared = Arc::new(Shared {
             heartbeat: Heartbeat::start(store.clone(), config)?,
+            storage: StorageWatch::new(store.clone(), config.free_space_floor_bytes),
             store,
             runtime,
             lease: config.lease,
@@ -107,7 +112,7 @@ impl Shared {
                 continue;
             }
             changes.mark_seen();
-            match self.runtime.block_on(self.store.claim(self.lease)) {
+            match self.runtime.block_on(self.claim()) {
                 Ok(Some(claim)) => self.attempt(&claim, work),
                 Ok(None) => self.runtime.block_on(async {
                     // Either a job of this process woke us, or it is time to look at the others'.
@@ -119,6 +124,14 @@ impl Shared {
                 }
             }
         }
+    }
+
+    /// The next job, unless its result could not be stored. The storage is asked where there is a job.
+    async fn claim(&self) -> Result<Option<Claim>, StoreError> {
+        if !self.store.has_claimable().await? || !self.storage.is_sound().await {
+            return Ok(None);
+        }
+        self.store.claim(self.lease).await
     }
 
     fn attempt(&self, claim: &Claim, work: &mut dyn Work) {
@@ -192,12 +205,15 @@ impl Shared {
             Err(Failure::Storage { mut error, reason }) => {
                 tracing::error!(%reason, "the storage failed an attempt");
                 error["attempts"] = self.attempts.into();
-                ("lost", self.lose(lease, &error.to_string()))
+                self.runtime.block_on(self.storage.doubt());
+                // Storage that failed is given time, as much as a result waits for it.
+                ("lost", self.lose(lease, self.lease, &error.to_string()))
             }
             Err(Failure::Lost(how)) => {
                 tracing::error!(%how, "an attempt was lost");
                 metrics::attempt_lost("process");
-                ("lost", self.lose(lease, &worker_lost(self.attempts, Some(&how))))
+                let error = worker_lost(self.attempts, Some(&how));
+                ("lost", self.lose(lease, PAUSE_AFTER_LOSS, &error))
             }
         };
         match written {
@@ -211,8 +227,8 @@ impl Shared {
         }
     }
 
-    fn lose(&self, lease: &Lease, error: &str) -> Result<bool, StoreError> {
-        self.runtime.block_on(self.store.lose(lease, self.attempts, error))
+    fn lose(&self, lease: &Lease, pause: Duration, error: &str) -> Result<bool, StoreError> {
+        self.runtime.block_on(self.store.lose(lease, self.attempts, pause, error))
     }
 }
 

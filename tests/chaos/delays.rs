@@ -97,6 +97,37 @@ async fn a_slot_that_stands_still_fails_its_job_over_its_budget() {
 }
 
 #[tokio::test]
+async fn a_slot_that_was_stopped_while_it_was_idle_costs_one_attempt_and_holds_up_nothing() {
+    let server = Server::start_with(&["--workers", "1"]);
+    works_on(&server).await;
+    let case = server.case(&SMALL).await;
+    let [idle] = slots(&server).try_into().unwrap();
+    signal(idle, "STOP");
+    until("the slot stands still", async || is_stopped(idle).then_some(())).await;
+    let given = accepted(&server, &spec(&case, 1.0)).await;
+    let behind = accepted(&server, &spec(&case, 2.0)).await;
+    let job = succeeds(&server, &given, 2).await;
+    assert_eq!(files(&job), undisturbed(&SMALL, 1.0).await);
+    succeeds(&server, &behind, 1).await;
+    assert!(is_gone(idle));
+}
+
+#[tokio::test]
+async fn a_slot_that_is_never_ready_is_killed_and_begun_again() {
+    let folder = tempfile::TempDir::new().unwrap();
+    let log = folder.path().join("log");
+    let server = faulty_with_log("slot:start:1:hang", &["--workers", "1"], &log);
+    let first = until("a slot begins", async || slots(&server).first().copied()).await;
+    until("another begins", async || {
+        slots(&server).first().filter(|slot| **slot != first).copied()
+    })
+    .await;
+    assert!(is_gone(first));
+    let text = std::fs::read_to_string(&log).unwrap();
+    assert!(text.contains("did not start") && text.contains("not ready after 10 s"), "{text}");
+}
+
+#[tokio::test]
 async fn a_job_dismissed_while_its_publication_hangs_frees_its_slot() {
     let server = faulty("publish:before:1:hang:tag=deaf", &["--workers", "1"]);
     let case = server.case(&SMALL).await;

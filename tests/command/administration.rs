@@ -131,6 +131,60 @@ async fn changed(data: &Path, sql: &'static str) {
     connection.close().await.unwrap();
 }
 
+#[tokio::test]
+async fn a_database_of_an_earlier_program_is_refused_and_stays_one_that_it_can_open() {
+    let folder = tempfile::tempdir().unwrap();
+    let [data, backup] = ["data", "backup"].map(|name| folder.path().join(name));
+    made(&data);
+    changed(&data, "DELETE FROM _sqlx_migrations WHERE version > 18").await;
+    for command in [
+        &["fsck"][..],
+        &["fsck", "--repair"],
+        &["export", "--to", path(&backup)],
+        &["audit"],
+        &["clock"],
+        &["retention", "--days", "90"],
+        &["key", "list"],
+        &["key", "new", "--label", "first"],
+        &["import", "--from", path(&backup)],
+    ] {
+        let done = facies(&[&["admin"][..], command, &["--data", path(&data)]].concat());
+        refused(&done, 78, "is at schema step 18 and this program needs step");
+        refused(&done, 78, "Copy the data folder");
+        assert_eq!(newest_step(&data).await, 18, "{command:?}");
+    }
+    assert!(!backup.exists());
+}
+
+#[tokio::test]
+async fn a_list_of_keys_shows_control_characters_of_labels_as_text() {
+    let folder = tempfile::tempdir().unwrap();
+    let data = folder.path().join("data");
+    let new = |label| facies(&["admin", "key", "new", "--label", label, "--data", path(&data)]);
+    refused(&new("\u{1b}[2J\nroot"), 2, "/label: a name has no control characters");
+    assert_eq!(new("Anna's \"C:\\ward\"").status.code(), Some(0));
+    let list = ["admin", "key", "list", "--data", path(&data)];
+    let ends = |label: &str| {
+        let told = text(&facies(&list).stdout);
+        assert!(told.ends_with(&format!("  read write run  {label}\n")), "{told:?}");
+        assert_eq!(told.lines().count(), 1);
+    };
+    ends("Anna's \"C:\\ward\"");
+    changed(&data, "UPDATE keys SET label = char(27) || '[2J' || char(10) || 'root' || char(155)")
+        .await;
+    ends("\\u{1b}[2J\\nroot\\u{9b}");
+}
+
+/// The last schema step of a deployment that nobody serves.
+async fn newest_step(data: &Path) -> i64 {
+    let options = sqlx::sqlite::SqliteConnectOptions::new().filename(data.join("facies.db"));
+    let mut connection = SqliteConnection::connect_with(&options).await.unwrap();
+    let asked = sqlx::query_scalar("SELECT MAX(version) FROM _sqlx_migrations");
+    let step = asked.fetch_one(&mut connection).await.unwrap();
+    connection.close().await.unwrap();
+    step
+}
+
 #[test]
 fn a_database_with_a_damaged_page_is_not_exported_and_fsck_names_the_page() {
     const PAGE: usize = 4096;

@@ -9,6 +9,7 @@ use facies::store::{Enqueued, JobRow, NewCase, NewJob, NewMesh, Published, Publi
 use tempfile::TempDir;
 
 pub const LEASE: Duration = Duration::from_secs(60);
+pub const PAUSE: Duration = Duration::from_millis(500);
 
 pub async fn store() -> (TempDir, Store) {
     let folder = TempDir::new().unwrap();
@@ -113,6 +114,6 @@ pub async fn lose_jobs(store: &Store, count: usize) {
     for number in 0..count {
         enqueue(store, &format!("lost {number}")).await;
         let lease = store.claim(LEASE).await.unwrap().unwrap().lease;
-        assert!(store.lose(&lease, 1, r#"{"class":"infrastructure"}"#).await.unwrap());
+        assert!(store.lose(&lease, 1, PAUSE, r#"{"class":"infrastructure"}"#).await.unwrap());
     }
 }

@@ -49,6 +49,15 @@ impl Address {
     }
 }
 
+/// What becomes of an embedded database of an earlier schema step as it is opened.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::store) enum EarlierSchema {
+    /// It is brought up to date; the program that made it cannot open it any more.
+    Migrate,
+    /// It stays as it is.
+    Refuse,
+}
+
 /// A step before the first write of a request.
 pub(in crate::store) trait BeforeWriting: Send + Sync {
     fn prepare(&self) -> BoxFuture<'_, Result<(), StoreError>>;
@@ -71,15 +80,23 @@ pub(in crate::store) struct Database {
 const OWN_LINE: &str = "";
 
 impl Database {
-    /// Opens the database. The embedded one is created where it is not there and brought up to date. One
+    /// Opens the database. The embedded one is created where it is not there, and brought up to date where that is asked for. One
     /// that many share is refused unless its schema fits: none of them changes it under the others.
-    pub async fn open(address: Address) -> Result<Database, StoreError> {
+    pub async fn open(address: Address, earlier: EarlierSchema) -> Result<Database, StoreError> {
         let database = Database::connect(address, None, "write").await?;
-        match &database.address {
-            Address::File(file) => {
-                schema::migrate(&database.writer).await.map_err(|error| error.of_file(file))?;
+        let pool = &database.writer;
+        match (&database.address, earlier) {
+            (Address::File(file), EarlierSchema::Migrate) => {
+                let Migrated { from, to } =
+                    schema::migrate(pool).await.map_err(|error| error.of_file(file))?;
+                if (1..to).contains(&from) {
+                    tracing::info!(from, to, "the database was brought to another schema step");
+                }
             }
-            Address::Server { .. } => schema::check(&database.writer).await?,
+            (Address::File(file), EarlierSchema::Refuse) => {
+                schema::make(pool).await.map_err(|error| error.of_file(file))?;
+            }
+            (Address::Server { .. }, _) => schema::check(pool).await?,
         }
         Ok(database)
     }

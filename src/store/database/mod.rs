@@ -19,7 +19,7 @@ pub use errors::{
     is_damaged, is_duplicate, is_full, is_read_only, is_reference, is_refused, is_unavailable,
 };
 pub use file::{FileFault, fault_of};
-pub(super) use handle::{Address, BeforeWriting, Database};
+pub(super) use handle::{Address, BeforeWriting, Database, EarlierSchema};
 use run::Pool;
 pub(super) use run::{Executor, Transaction};
 pub(super) use schema::Column;

@@ -77,6 +77,16 @@ pub async fn migrate(pool: &Pool) -> Result<Migrated, StoreError> {
     Ok(Migrated { from: before.last().map_or(0, |step| step.0), to: newest() })
 }
 
+/// Makes the tables of a new database. One of an earlier step is refused and stays as it is: the program that made it could not open
+/// it afterwards.
+pub async fn make(pool: &Pool) -> Result<(), StoreError> {
+    let (found, known) = (applied(pool).await?.last().map_or(0, |step| step.0), newest());
+    if (1..known).contains(&found) {
+        return Err(StoreError::SchemaTooOld { found, known });
+    }
+    migrate(pool).await.map(|_| ())
+}
+
 /// Refuses a database whose tables are not exactly those that this program works with.
 pub async fn check(pool: &Pool) -> Result<(), StoreError> {
     let applied = applied(pool).await?;

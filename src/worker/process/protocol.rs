@@ -86,7 +86,7 @@ pub enum Report {
         done: usize,
         of: usize,
     },
-    /// The work stops by itself after so many seconds.
+    /// The work begins, and stops by itself after so many seconds.
     Budget {
         wall_s: f64,
     },

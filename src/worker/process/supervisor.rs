@@ -21,8 +21,9 @@ use crate::worker::process::attempt::broke_off;
 use crate::worker::work::{Failure, Finished, FinishedFile, FinishedMesh, GRACE, LOOK, Work};
 use mechanics::progress::{Phase, Progress};
 
-/// How long a process may take to begin.
-const START: Duration = Duration::from_secs(30);
+/// How long a process may take to begin, itself or a job that it was given: no longer than a job may go on after its budget,
+/// which counts from there.
+const BEGIN: Duration = GRACE;
 /// After so many jobs a process makes room for a fresh one.
 const JOBS_OF_A_PROCESS: usize = 1000;
 
@@ -50,6 +51,8 @@ struct Attempt<'a> {
     document: &'a str,
     process: &'a Process,
     progress: &'a dyn Progress,
+    /// When the process was given the job; none once it has begun it.
+    given: Option<Instant>,
     /// When it was cancelled.
     stopped: Option<Instant>,
     /// When it should have stopped by itself, and after how many seconds that is.
@@ -63,6 +66,8 @@ enum End {
     Outcome(Outcome),
     /// The process ended.
     Died,
+    /// The process gave no sign of having begun.
+    Silent,
     /// It did not stop when it was told to.
     Deaf,
     /// Its time was up, and it did not notice, with the error that says so.
@@ -79,9 +84,11 @@ impl SlotWork {
     fn start(&self) -> Result<Process, String> {
         let started = Process::start(&self.shared.program, &self.shared.settings);
         let process = started.map_err(|error| error.to_string())?;
-        match process.receive(START) {
+        match process.receive(BEGIN) {
             Output::Report(Report::Ready) => Ok(process),
-            Output::Report(_) | Output::Nothing | Output::Gone => Err(process.end().to_string()),
+            // It is killed when it is dropped.
+            Output::Nothing => Err(format!("it was not ready after {} s", BEGIN.as_secs())),
+            Output::Report(_) | Output::Gone => Err(process.end().to_string()),
         }
     }
 
@@ -118,6 +125,13 @@ impl SlotWork {
                 tracing::error!(%death, "the process of a slot died");
                 self.died(death.name());
                 Err(self.failure(&death, usage))
+            }
+            End::Silent => {
+                tracing::warn!("the process of a slot did not begin its job; it is killed");
+                self.killed("silent");
+                let waited_s = BEGIN.as_secs();
+                let how = format!("the process of the job did not begin it within {waited_s} s");
+                Err(Failure::Lost(how))
             }
             End::Deaf => {
                 tracing::warn!("a job did not stop in time; its process is killed");
@@ -211,6 +225,7 @@ impl Work for SlotWork {
             document: &claim.document,
             process,
             progress,
+            given: Some(Instant::now()),
             stopped: None,
             budget: None,
             memory: MemoryBound::of(&claim.document, process.usage()),
@@ -261,6 +276,7 @@ impl Attempt<'_> {
             }
             Report::Step { done, of } => self.progress.step(done, of),
             Report::Budget { wall_s } => {
+                self.given = None;
                 let wall = Duration::try_from_secs_f64(wall_s).ok();
                 let until = wall.and_then(|wall| Instant::now().checked_add(wall + GRACE));
                 self.budget = until.map(|until| (until, wall_s));
@@ -270,7 +286,7 @@ impl Attempt<'_> {
         }
     }
 
-    /// Tells the process to stop when its job was cancelled or is over time; says when to kill it.
+    /// Tells the process to stop when its job was cancelled; says when to kill it.
     fn enforce_deadlines(&mut self) -> Option<End> {
         let now = Instant::now();
         if self.stopped.is_none() && self.progress.is_cancelled() {
@@ -280,6 +296,9 @@ impl Attempt<'_> {
         }
         if self.stopped.is_some_and(|stopped| now.duration_since(stopped) > GRACE) {
             return Some(End::Deaf);
+        }
+        if self.given.is_some_and(|given| now.duration_since(given) > BEGIN) {
+            return Some(End::Silent);
         }
         if let Some(error) = self.over_memory() {
             return Some(End::OverMemory(error));

@@ -8,7 +8,8 @@ use reqwest::StatusCode;
 use tempfile::TempDir;
 
 use crate::helpers::{Block, SMALL, Server, ask, serve, spec};
-use crate::invariants::works_on;
+use crate::invariants::{accepted, state, succeeds, works_on};
+use crate::processes::until;
 use crate::support::external::Missing;
 use crate::support::trials::trials;
 
@@ -17,6 +18,7 @@ trials! {
         a_full_disk_refuses_uploads_and_serves_what_is_there
         on_a_disk_without_a_byte_left_uploads_are_refused_and_things_are_erased
         a_service_starts_on_a_disk_without_a_byte_left
+        accepted_jobs_wait_on_a_full_disk_with_all_their_attempts
         one_erasure_after_the_other_finds_room_on_a_disk_that_is_filled_again_and_again
     }
 }
@@ -134,6 +136,35 @@ async fn a_service_starts_on_a_disk_without_a_byte_left() -> Result<(), Missing>
     }
     let erase = server.delete(&format!("/v1/cases/{case}")).header("if-match", "*");
     assert_eq!(ask(erase).await.status, StatusCode::NO_CONTENT);
+    Ok(())
+}
+
+async fn accepted_jobs_wait_on_a_full_disk_with_all_their_attempts() -> Result<(), Missing> {
+    let disk = SmallDisk::mount()?;
+    let log = disk.0.path().join("log");
+    let mut command = serve(&disk.0.path().join("data"));
+    command.stderr(std::fs::File::create(&log).unwrap());
+    let server = Server::start_command(command, TempDir::new().unwrap());
+    let case = server.case(&SMALL).await;
+    disk.fill_but(1 << 20);
+    ask(server.get("/readyz")).await.problem(503, "not-ready");
+    let mut jobs = Vec::new();
+    for x in 0..4 {
+        jobs.push(accepted(&server, &spec(&case, f64::from(x))).await);
+    }
+    until("the worker tells it", async || {
+        let text = std::fs::read_to_string(&log).unwrap();
+        text.contains("no job is claimed while the storage fails").then_some(())
+    })
+    .await;
+    for id in &jobs {
+        let job = state(&server, id).await;
+        assert_eq!((&job["status"], &job["attempt"]), (&"accepted".into(), &0.into()));
+    }
+    disk.empty();
+    for id in &jobs {
+        succeeds(&server, id, 1).await;
+    }
     Ok(())
 }
 

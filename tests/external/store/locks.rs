@@ -10,7 +10,7 @@ use futures::future::BoxFuture;
 use sqlx::{AssertSqlSafe, Connection, PgConnection};
 
 use crate::deployments::Deployment;
-use crate::rows::{LEASE, file, mesh, new_case, new_job};
+use crate::rows::{LEASE, PAUSE, file, mesh, new_case, new_job};
 use crate::store::made::made;
 use crate::support::trials::trials;
 
@@ -143,7 +143,7 @@ async fn world(store: &Store) -> World {
     let lost = meshed(store, &meshes).await;
     accepted(store, &waiting(&lost, "waits for the lost one")).await;
     let lease = store.claim(LEASE).await.unwrap().unwrap().lease;
-    assert!(store.lose(&lease, 1, r#"{"class":"infrastructure"}"#).await.unwrap());
+    assert!(store.lose(&lease, 1, PAUSE, r#"{"class":"infrastructure"}"#).await.unwrap());
     let meshed = meshed(store, &meshes).await;
     for hash in ["waits", "waits too"] {
         accepted(store, &waiting(&meshed, hash)).await;

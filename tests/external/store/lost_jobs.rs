@@ -4,7 +4,7 @@ use facies::store::Store;
 use serde_json::json;
 
 use crate::deployments::Deployment;
-use crate::rows::{LEASE, enqueue};
+use crate::rows::{LEASE, PAUSE, enqueue};
 use crate::support::trials::trials;
 
 trials! {
@@ -56,7 +56,7 @@ async fn who_loses_its_worker_too_often_is_lost(on: Deployment) {
     }
     assert!(store.requeue(&id).await.unwrap());
     let lease = store.claim(LEASE).await.unwrap().unwrap().lease;
-    assert!(store.lose(&lease, 1, LOST).await.unwrap());
+    assert!(store.lose(&lease, 1, PAUSE, LOST).await.unwrap());
     assert_eq!(lost(&store).await, [id]);
 }
 

@@ -4,7 +4,7 @@ use facies::schema::job::JobStatus;
 use facies::store::{Claim, Dismissal, Enqueued, JobFilter, Point, QueueRow};
 
 use crate::deployments::Deployment;
-use crate::rows::{LEASE, blob_count, enqueue, file, job, new_job, result};
+use crate::rows::{LEASE, PAUSE, blob_count, enqueue, file, job, new_job, result};
 use crate::support::trials::trials;
 
 trials! {
@@ -72,7 +72,7 @@ async fn a_worker_that_was_thought_dead_publishes_nothing(on: Deployment) {
     assert!(!store.publish(&zombie, result("\"zombie\"", &late)).await.unwrap());
     assert!(!store.fail(&zombie, "{}").await.unwrap());
     assert!(!store.release(&zombie).await.unwrap());
-    assert!(!store.lose(&zombie, 3, "{}").await.unwrap());
+    assert!(!store.lose(&zombie, 3, PAUSE, "{}").await.unwrap());
     let point = Point::default();
     assert!(!store.renew(&zombie, LEASE, &point).await.unwrap());
     assert_eq!(job(&store, &id).await.status, JobStatus::Running);
@@ -122,7 +122,7 @@ async fn leases_and_pauses_outlive_no_clock_that_goes_back(on: Deployment) {
     assert_eq!(store.reap(3, "{}").await.unwrap().len(), 1);
 
     let lease = store.claim(LEASE).await.unwrap().unwrap().lease;
-    assert!(store.lose(&lease, 3, "{}").await.unwrap());
+    assert!(store.lose(&lease, 3, PAUSE, "{}").await.unwrap());
     on.execute(&format!(
         "UPDATE jobs SET claimable_from = claimable_from + {AHEAD}, updated = updated + {AHEAD}"
     ))

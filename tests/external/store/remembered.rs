@@ -4,7 +4,7 @@ use facies::schema::job::JobStatus;
 use facies::store::{AddedCase, Change, Dismissal, NewCase, Point, Reserved};
 
 use crate::deployments::Deployment;
-use crate::rows::{LEASE, enqueue, new_case, new_job, result};
+use crate::rows::{LEASE, PAUSE, enqueue, new_case, new_job, result};
 use crate::support::trials::trials;
 
 trials! {
@@ -31,7 +31,7 @@ async fn every_change_of_a_job_that_can_be_seen_is_one_event(on: Deployment) {
     assert!(store.renew(&lease, LEASE, &going_on).await.unwrap());
     assert!(store.release(&lease).await.unwrap());
     let lease = store.claim(LEASE).await.unwrap().unwrap().lease;
-    assert!(store.lose(&lease, 3, "{}").await.unwrap());
+    assert!(store.lose(&lease, 3, PAUSE, "{}").await.unwrap());
     on.execute("UPDATE jobs SET claimable_from = 0").await;
     let lease = store.claim(LEASE).await.unwrap().unwrap().lease;
     on.execute("UPDATE jobs SET lease_expires = 1").await;

@@ -5,7 +5,7 @@ use facies::store::{AddedCase, ClockDoubt, Dismissal, Enqueued, Store, StoreErro
 use serde_json::json;
 
 use crate::deployments::Deployment;
-use crate::rows::{LEASE, enqueue, file, mesh, new_case, new_job, result};
+use crate::rows::{LEASE, PAUSE, enqueue, file, mesh, new_case, new_job, result};
 use crate::support::trials::trials;
 
 trials! {
@@ -192,7 +192,7 @@ async fn a_job_that_was_lost_is_accepted_again_when_somebody_says_so(on: Deploym
     let (lost, wrong) = (enqueue(&own, "lost").await, enqueue(&own, "wrong").await);
     let error = |class: &str| json!({"type": "worker-lost", "class": class}).to_string();
     let lease = store.claim(LEASE).await.unwrap().unwrap().lease;
-    assert!(store.lose(&lease, 1, &error("infrastructure")).await.unwrap());
+    assert!(store.lose(&lease, 1, PAUSE, &error("infrastructure")).await.unwrap());
     let lease = store.claim(LEASE).await.unwrap().unwrap().lease;
     assert!(store.fail(&lease, &error("numerical")).await.unwrap());
     let listed = store.lost_jobs(None, 9).await.unwrap();

@@ -387,6 +387,43 @@ async fn a_job_that_keeps_meshes_takes_a_key_that_may_write() {
 }
 
 #[tokio::test]
+async fn a_job_that_has_ended_is_erased_by_a_key_that_may_write() {
+    let hospital = Hospital::open();
+    let (owner, runner) = (hospital.key("a", &ALL).await, hospital.key("a", &["run"]).await);
+    let writer = hospital.key("a", &["run", "write"]).await;
+    let form = hospital.server.post("/v1/cases").bearer_auth(&owner);
+    let case = ask(form.multipart(SMALL.form(&SMALL.case()))).await.expect(StatusCode::CREATED);
+    let document = spec(case["id"].as_str().unwrap(), 1.0);
+    let request = hospital.server.post("/v1/jobs").bearer_auth(&owner).header("prefer", "wait=30");
+    let done = ask(request.json(&document)).await.expect(StatusCode::OK);
+    let known = hospital.post(&runner, "/v1/jobs", &document).await.expect(StatusCode::OK);
+    assert_eq!(known["id"], done["id"]);
+    let path = format!("/v1/jobs/{}", done["id"].as_str().unwrap());
+    let refused = hospital.send(&runner, Method::DELETE, &path, None).await;
+    assert_eq!(refused.problem(403, "forbidden-scope")["required_scope"], "write");
+    let skin = hospital.get(&owner, &format!("{path}/results/skin.vtp")).await;
+    assert_eq!(skin.status, StatusCode::OK);
+    let nowhere = format!("/v1/jobs/{}", uuid::Uuid::now_v7());
+    hospital.send(&runner, Method::DELETE, &nowhere, None).await.problem(404, "no-such-job");
+    let erased = hospital.send(&writer, Method::DELETE, &path, None).await;
+    assert_eq!(erased.status, StatusCode::NO_CONTENT);
+}
+
+#[tokio::test]
+async fn a_job_that_has_not_ended_is_dismissed_by_a_key_that_may_run() {
+    let hospital = Hospital::open_with(TempDir::new().unwrap(), &["--workers", "0"]);
+    let (owner, runner) = (hospital.key("a", &ALL).await, hospital.key("a", &["run"]).await);
+    let form = hospital.server.post("/v1/cases").bearer_auth(&owner);
+    let case = ask(form.multipart(SMALL.form(&SMALL.case()))).await.expect(StatusCode::CREATED);
+    let document = spec(case["id"].as_str().unwrap(), 1.0);
+    let job = hospital.post(&owner, "/v1/jobs", &document).await.expect(StatusCode::CREATED);
+    let path = format!("/v1/jobs/{}", job["id"].as_str().unwrap());
+    let dismissed = hospital.send(&runner, Method::DELETE, &path, None).await;
+    assert_eq!(dismissed.expect(StatusCode::OK)["status"], "dismissed");
+    hospital.send(&runner, Method::DELETE, &path, None).await.problem(403, "forbidden-scope");
+}
+
+#[tokio::test]
 async fn a_plan_is_applied_by_the_tenant_of_its_case_until_the_key_is_revoked() {
     let hospital = Hospital::open();
     let (key, other) = (hospital.key("a", &ALL).await, hospital.key("b", &ALL).await);

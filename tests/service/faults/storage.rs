@@ -9,7 +9,7 @@ use tokio::io::AsyncWriteExt;
 use tokio::net::TcpStream;
 
 use crate::helpers::{SMALL, Server, ask, spec};
-use crate::invariants::{MEDIUM, accepted, tagged};
+use crate::invariants::{MEDIUM, accepted, state, succeeds, tagged};
 use crate::processes::{faulty, faulty_with_log, until};
 
 /// Keeps a job at work until it is told to stop, so that a test meets it there.
@@ -108,6 +108,25 @@ async fn an_upload_that_breaks_off_leaves_nothing() {
     let blobs = std::fs::read_dir(server.path().join("blobs")).unwrap().count();
     assert_eq!((blobs, temporary(server.path())), (0, 0));
     server.upload(bytes).await.expect(StatusCode::CREATED);
+}
+
+#[tokio::test]
+async fn no_job_is_claimed_while_there_is_no_space_for_its_result() {
+    let folder = TempDir::new().unwrap();
+    let log = folder.path().join("log");
+    let full = ["--workers", "1", "--free-space-floor-mib", "1048576"];
+    let server = faulty_with_log("", &full, &log);
+    let case = server.case(&SMALL).await;
+    let id = accepted(&server, &spec(&case, 1.0)).await;
+    until("the worker tells it", async || {
+        let text = std::fs::read_to_string(&log).unwrap();
+        text.contains("no job is claimed while the storage fails").then_some(())
+    })
+    .await;
+    let job = state(&server, &id).await;
+    assert_eq!((&job["status"], &job["attempt"]), (&json!("accepted"), &json!(0)));
+    let server = Server::start_in(server.kill(), &["--workers", "1"]);
+    succeeds(&server, &id, 1).await;
 }
 
 /// The files with stored bytes.

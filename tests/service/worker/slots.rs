@@ -70,8 +70,17 @@ struct Slot {
 }
 
 async fn slot() -> Slot {
+    slot_with_lease("3").await
+}
+
+async fn slot_with_lease(lease_s: &str) -> Slot {
     let (folder, store) = store().await;
-    let settings = [("workers", "1"), ("lease-s", "3"), ("heartbeat-s", "0.1")];
+    let settings = [
+        ("workers", "1"),
+        ("lease-s", lease_s),
+        ("heartbeat-s", "0.1"),
+        ("free-space-floor-mib", "0"),
+    ];
     let config = Config::new(|name| {
         let found = settings.iter().find(|(key, _)| *key == name);
         found.map(|(_, value)| (*value).to_owned())
@@ -144,9 +153,11 @@ async fn a_job_that_panics_fails_as_internal_and_the_slot_works_on() {
 
 #[tokio::test(flavor = "multi_thread")]
 async fn a_fault_of_the_storage_is_tried_again_until_the_attempts_are_used_up() {
-    let slot = slot().await;
+    let slot = slot_with_lease("1").await;
     let id = slot.accept("stored at last").await;
     let ended = slot.ends(&id).await;
+    // A lease after the first loss, two after the second.
+    assert!(ended.finished.unwrap() - ended.started.unwrap() >= 3000, "the storage has time");
     let told = (ended.status, ended.attempt);
     assert_eq!(told, (JobStatus::Successful, 3));
     let id = slot.accept("never stored").await;
