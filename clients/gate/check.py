@@ -5,6 +5,7 @@ FACIES_ADDRESS and FACIES_API_KEY say which. Fails where an exit code or an outp
 
 import contextlib
 import html
+import http.server
 import io
 import json
 import os
@@ -14,6 +15,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 import types
 import xml.etree.ElementTree
@@ -197,6 +199,111 @@ def keys(folder: pathlib.Path) -> None:
     expect("an error of the gate itself", (code, len(lines), "ValueError" in lines[0], key in lines[0]), (2, 1, True, False))
 
 
+KEY = "fcs_a&key-that\"nobody-is-to-see"
+
+
+class Odd(http.server.BaseHTTPRequestHandler):
+    """A server that is none of facies, in the way that the path begins with."""
+
+    answers = {"html": b"<html>", "array": b"[]", "empty": b"", "object": b"{}", "null": b"null", "number": b"1" * 5000, "bytes": b"\xff\xfe",
+               "nested": b"[" * 100000, "lines": b'{"id": "1\\noutcome=pass"}', "id": b'{"id": "1", "items": [{"id": "5"}]}'}
+
+    def do_GET(self) -> None:
+        self.rfile.read(int(self.headers.get("Content-Length") or 0))
+        way = self.path.split("/")[1]
+        self.server.asked.append((self.command, way, self.headers.get("Authorization")))
+        if way.isdecimal():
+            self.send_response(int(way))
+            self.send_header("Location", f"http://localhost:{self.server.server_port}/leak")
+            self.send_header("Retry-After", "0")
+            self.end_headers()
+            self.wfile.write(b"\x1b[2J\n" + KEY.encode() + json.dumps(KEY).encode() + b"." * 1000)
+        elif way == "drip":
+            self.send_response(200)
+            self.end_headers()
+            with contextlib.suppress(OSError):
+                while not self.server.over.wait(0.05):
+                    self.wfile.write(b" ")
+        else:
+            self.send_response(200)
+            self.send_header("Content-Length", "99" if way == "broken" else str(len(self.answers.get(way, b"{}"))))
+            self.end_headers()
+            self.wfile.write(self.answers.get(way, b"{}"))
+
+    do_POST = do_PATCH = do_GET
+
+    def log_message(self, *_: object) -> None:
+        """Nothing."""
+
+
+@contextlib.contextmanager
+def odd_server():
+    """Such a server and its address; it keeps what it is asked."""
+    server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), Odd)
+    server.asked, server.over = [], threading.Event()
+    threading.Thread(target=server.serve_forever).start()
+    try:
+        yield server, f"http://127.0.0.1:{server.server_port}"
+    finally:
+        server.over.set()
+        server.shutdown()
+        server.server_close()
+
+
+def odd(folder: pathlib.Path) -> None:
+    """Servers that are none of facies get no key from another one, show none, and are told from a wrong input; no answer of theirs is
+    waited for without end."""
+    with odd_server() as (server, address):
+        def told_of(way: str, code: int) -> str:
+            server.asked.clear()
+            told, _ = refused(f"a server that answers {way}", folder, [str(STUDY), "--patience-s", "1.5"], code,
+                              FACIES_ADDRESS=f"{address}/{way}", FACIES_API_KEY=KEY)
+            expect("the key is asked with and not shown", ({key for _, _, key in server.asked}, "nobody-is" in told or "\x1b" in told),
+                   ({f"Bearer {KEY}"}, False))
+            return told
+
+        for status in (301, 302, 303, 307, 308):
+            told = told_of(str(status), 2)
+            expect("told by its status, and not followed", (f"{status} is a redirect" in told, server.asked),
+                   (True, [("POST", str(status), f"Bearer {KEY}")]))
+        told = told_of("401", 2)
+        expect("escaped, masked and cut", (r"401 \x1b[2J\n***" in told, told.count("***"), len(told) < 500), (True, 2, True))
+        told_of("503", 3)
+        expect("asked again after a second, not at once", len(server.asked), 2)
+        for way in Odd.answers:
+            expect("which is no facies service", "is no facies service" in told_of(way, 3), True)
+        expect("broken off", "IncompleteRead" in told_of("broken", 3), True)
+        with mock.patch.multiple(facies_gate, ANSWER_S=0.5):
+            service = facies_gate.Service(f"{address}/drip", None, 0.5)
+            begun = time.monotonic()
+            try:
+                service.ask("GET", "/")
+            except facies_gate.Stop as stop:
+                expect("an answer that drips", (stop.code, "not whole after 1 s" in str(stop), time.monotonic() - begun < 10.0), (3, True, True))
+            else:
+                sys.exit("an answer that drips has ended")
+    with mock.patch.dict(os.environ, FACIES_API_KEY=KEY):
+        expect("a report without the key", facies_gate.without_key(f"<a b='{html.escape(KEY)}'/>"), "<a b='***'/>")
+
+
+def options(folder: pathlib.Path) -> None:
+    """Options and addresses that no request can be made with are refused before any."""
+    for option in ("--patience-s", "--timeout-s"):
+        for number in ("nan", "inf", "-1", "0", "x"):
+            told, took_s = refused(f"{option} {number}", folder, [str(STUDY), option, number], 2, lines=5)
+            expect("by its name", (f"argument {option}: " in told, took_s < 5.0), (True, True))
+    for baseline in ("x y", "\u00e4", "1", f"{facies_gate.NO_JOB}&a=b"):
+        told, _ = refused(f"the baseline {baseline!r}", folder, [str(STUDY), "--baseline", baseline], 2, lines=5)
+        expect("by its value", f"{baseline!r} is no id of a job" in told, True)
+    host = os.environ["FACIES_ADDRESS"]
+    for address, why in {"http://.": "no name of a host", "http://a..b/": "no name of a host", f"http://{'a' * 70}.org": "no name of a host",
+                         f"{host}?x=1": "`?`", f"{host}/#f": "`#`", f"{host}/\u00f6": "letters beyond ASCII",
+                         "http://me:secret@localhost": "a user or a password"}.items():
+        told, took_s = refused(f"the address {address!r}", folder, [str(STUDY)], 2, FACIES_ADDRESS=address)
+        expect("in words", (why in told, "FACIES_ADDRESS" in told, "secret" in told, took_s < 5.0), (True, True, False, True))
+    expect("a baseline that nobody has", action(folder, study=str(STUDY), baseline=facies_gate.NO_JOB)[0], 5)
+
+
 def refused(what: str, folder: pathlib.Path, arguments: list[str], code: int, lines: int = 1,
             **environment: str) -> tuple[str, float]:
     """What the gate says of mistakes, which has to be one line for each, and how long it took in seconds."""
@@ -262,6 +369,8 @@ def main() -> None:
         expect("and without a baseline there", gitlab(folder, STUDY=worse, BASELINE_TAG="x"), 1)
         broken(folder)
         keys(folder)
+        odd(folder)
+        options(folder)
         of_study = [{"segments": [{"name": "mandible", "translation_mm": [0, step, 0]}]} for step in (1, 2)]
         case = str((STUDY.parent / "../../../examples/block/case.json").resolve())
         planned = changed(folder, "planned", scenes=[{"case": case}], plans=of_study)

@@ -13,6 +13,7 @@ tags when its outcome is `pass` and not before, so that none that is worse is ev
 
 Exit codes, those of `facies study`: 0 pass, 1 worse or failed, 2 refused input or an error of the gate itself, 3 the service
 is out of reach, 4 incomplete, 5 no baseline. White space around FACIES_ADDRESS and FACIES_API_KEY is not part of them.
+No redirect is followed, and nothing printed or written has the key.
 """
 
 from __future__ import annotations
@@ -23,8 +24,10 @@ import hashlib
 import html
 import http.client
 import json
+import math
 import os
 import pathlib
+import re
 import sys
 import time
 import traceback
@@ -36,6 +39,11 @@ EXIT_CODES = {"pass": 0, "worse": 1, "incomplete": 4, "no-baseline": 5}
 FAILED, REFUSED, OUT_OF_REACH = 1, 2, 3
 # No job has this id: a baseline that is asked for and not there is the service's to judge.
 NO_JOB = "00000000-0000-7000-8000-000000000000"
+JOB = re.compile("[0-9a-f]{8}(-[0-9a-f]{4}){3}-[0-9a-f]{12}")
+# The longest silence of an answer; one that comes slowly may take the patience more.
+ANSWER_S = 90.0
+# Of what answers and is no facies service, so many characters are told.
+TOLD = 200
 # Rows whose reasons are printed, and the longest silence while a study is solved.
 LINES, SILENCE_S = 20, 60.0
 # Of the spec of a case file: what names the job and its files. All else decides numbers, and a study states that itself.
@@ -43,11 +51,31 @@ OF_FILES = ("kind", "case", "outputs", "range_mm", "keep", "tags")
 
 
 class Stop(Exception):
-    """The gate ends here, with an exit code and a sentence."""
+    """The gate ends here, with an exit code and a sentence for each mistake."""
 
-    def __init__(self, code: int, why: str) -> None:
-        super().__init__(why)
+    def __init__(self, code: int, *why: str) -> None:
+        super().__init__(*why)
         self.code = code
+
+
+class NoRedirect(urllib.request.HTTPRedirectHandler):
+    """A redirect is an error as others are: the service sends none, and the key is not for anybody else."""
+
+    def http_error_302(self, req, fp, code, msg, headers):
+        return None
+
+    http_error_301 = http_error_303 = http_error_307 = http_error_308 = http_error_302
+
+
+class Answer(dict):
+    """An object of an answer; a service that leaves out what facies says is none."""
+
+    def __init__(self, asked: str, members: dict) -> None:
+        super().__init__(members)
+        self.asked = asked
+
+    def __missing__(self, name: object):
+        raise Stop(OUT_OF_REACH, f"{self.asked} without {name!r}")
 
 
 class Service:
@@ -57,6 +85,7 @@ class Service:
         self.address = checked(address)
         self.patience_s = patience_s
         self.headers = authorization(key)
+        self.opener = urllib.request.build_opener(NoRedirect)
 
     def ask(self, method: str, path: str, body: bytes | None = None, **headers: str):
         """The body and the headers of the answer."""
@@ -68,15 +97,19 @@ class Service:
         while True:
             pause, usual = usual, min(2 * usual, 20.0)
             try:
-                with urllib.request.urlopen(request, timeout=90) as answer:
-                    return answer.read(), answer.headers
+                with self.opener.open(request, timeout=ANSWER_S) as answer:
+                    return whole(answer, self.patience_s + ANSWER_S), answer.headers
             except urllib.error.HTTPError as error:
-                why = f"{method} {path.partition('?')[0]}: {error.code} {in_words(text_of(error))}"
+                why = f"{method} {path.partition('?')[0]}: {error.code}"
+                if 300 <= error.code < 400:
+                    why = f"{why} is a redirect, which is not followed: FACIES_ADDRESS has to be that of the service itself"
+                    raise Stop(REFUSED, why) from error
+                why = f"{why} {in_words(text_of(error, self.patience_s + ANSWER_S))}"
                 if error.code < 500 and error.code != 429:
                     raise Stop(REFUSED, why) from error
                 # In seconds, as the service sends it.
                 told = error.headers.get("Retry-After") or ""
-                pause = float(told) if told.isdecimal() else pause
+                pause = max(float(told), 1.0) if told.isdecimal() else pause
             except (OSError, http.client.HTTPException) as error:
                 why = f"{method} {path}: {error}"
             if time.monotonic() + pause > until:
@@ -89,29 +122,68 @@ class Service:
         if data is not None:
             headers["Content_Type"] = "application/octet-stream" if data is body else "application/json"
         answer, _ = self.ask(method, path, data, **headers)
-        try:
-            return json.loads(answer)
-        except ValueError as error:
-            why = f"{self.address} is no facies service: {method} {path} is answered with {answer[:60]!r}"
-            raise Stop(OUT_OF_REACH, why) from error
+        asked = f"{self.address} is no facies service: {method} {path.partition('?')[0]} is answered"
+        found = None
+        # A number of thousands of digits is a `ValueError`, too.
+        with contextlib.suppress(ValueError, RecursionError):
+            found = json.loads(answer, object_hook=lambda members: Answer(asked, members))
+        # An id goes into addresses, and into a file from which a pipeline reads its outputs line by line.
+        if not isinstance(found, dict) or not re.fullmatch("[0-9A-Za-z_-]*", str(found.get("id", ""))):
+            raise Stop(OUT_OF_REACH, f"{asked} with {told_of(answer.decode(errors='replace'))!r}")
+        return found
 
 
-def text_of(error: urllib.error.HTTPError) -> str:
+def whole(answer, seconds: float) -> bytes:
+    """The body of an answer, which may come slowly, but not for longer than that."""
+    until = time.monotonic() + seconds
+    content = bytearray()
+    while piece := answer.read1(1 << 16):
+        content += piece
+        if time.monotonic() > until:
+            raise TimeoutError(f"the answer is not whole after {seconds:.0f} s")
+    # By pieces, the end of the connection is taken for that of the body.
+    stated = answer.headers.get("Content-Length") or ""
+    if stated.isdecimal() and len(content) < int(stated):
+        raise http.client.IncompleteRead(bytes(content), int(stated) - len(content))
+    return bytes(content)
+
+
+def text_of(error: urllib.error.HTTPError, seconds: float) -> str:
     """The body of a refusal; of one that breaks off, its status."""
     try:
-        return error.read().decode(errors="replace")
+        return whole(error, seconds).decode(errors="replace")
     except (OSError, http.client.HTTPException):
         return error.reason
 
 
+def told_of(text: str) -> str:
+    """The beginning of a text; the key is taken out before the cut, which would leave a part of it."""
+    return shown(text)[:TOLD]
+
+
+def shown(text: object) -> str:
+    """A text as one line of a log: without the key and with escaped control characters."""
+    return "".join(letter if letter.isprintable() else letter.encode("unicode_escape").decode()
+                   for letter in without_key(str(text)))
+
+
+def without_key(text: str) -> str:
+    """A text with *** in place of the key, also as JSON, XML and addresses have it."""
+    key = os.environ.get("FACIES_API_KEY", "").strip()
+    forms = {key, html.escape(key), json.dumps(key)[1:-1], urllib.parse.quote(key, safe="")} - {""}
+    for form in sorted(forms, key=len, reverse=True):
+        text = text.replace(form, "***")
+    return text
+
+
 def in_words(text: str) -> str:
-    """What the service says of a mistake, in one line; anything else as it is."""
+    """What the service says of a mistake; of anything else the beginning."""
     try:
         problem = json.loads(text)
         mistakes = [f"{own['pointer']}: {own['detail']} ({own['code']})" for own in problem.get("errors", [])]
         return "; ".join(mistakes) or f"{problem['detail']} ({problem.get('code', problem['type'])})"
-    except (ValueError, LookupError, TypeError, AttributeError):
-        return text
+    except (ValueError, LookupError, TypeError, AttributeError, RecursionError):
+        return told_of(text)
 
 
 @contextlib.contextmanager
@@ -135,9 +207,20 @@ def checked(address: str) -> str:
         said = said and all(letter.isprintable() and letter != " " for letter in address)
     except ValueError:
         said = False
+    if "@" in address.partition("://")[2].partition("/")[0]:
+        raise Stop(REFUSED, "FACIES_ADDRESS has a user or a password in it, and a service asks for neither; a key is in FACIES_API_KEY")
     if not said:
         meant = f"http://{address}" if "://" not in address else "http://127.0.0.1:8080"
         raise Stop(REFUSED, f"FACIES_ADDRESS is {address!r}: write it with http:// or https://, as in {meant}")
+    if "?" in address or "#" in address:
+        raise Stop(REFUSED, f"FACIES_ADDRESS is {address!r}: leave out `?` or `#` and what follows it")
+    if not parts.path.isascii():
+        raise Stop(REFUSED, f"FACIES_ADDRESS is {address!r}: in its path, write letters beyond ASCII as % and two digits")
+    try:
+        # As a request looks it up.
+        (parts.hostname or "").encode("idna")
+    except UnicodeError:
+        raise Stop(REFUSED, f"FACIES_ADDRESS is {address!r}: {parts.hostname!r} is no name of a host") from None
     return address.rstrip("/")
 
 
@@ -223,7 +306,7 @@ class Cases:
                     raise
                 mistakes.append(str(stop))
         if mistakes:
-            raise Stop(REFUSED, "\n".join(dict.fromkeys(mistakes)))
+            raise Stop(REFUSED, *dict.fromkeys(mistakes))
         return found
 
     def scene(self, scene: dict, folder: pathlib.Path, has_plans: bool) -> dict:
@@ -339,7 +422,7 @@ def worse(rows: list[dict]) -> list[str]:
 
 def say(words: str) -> None:
     """A line that a pipeline shows at once."""
-    print(words, flush=True)
+    print(shown(words), flush=True)
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -367,18 +450,20 @@ def run(arguments: argparse.Namespace) -> int:
     job = finished(service, job, arguments.timeout_s)
     if job["status"] != "successful":
         raise Stop(FAILED, f"job {job['id']} is {job['status']}: {in_words(json.dumps(job.get('error')))}")
-    query = f"?baseline={baseline}" if baseline else ""
+    query = f"?{urllib.parse.urlencode({'baseline': baseline})}" if baseline else ""
     report = f"/v1/jobs/{job['id']}/report{query}"
     if arguments.report:
         junit, _ = service.ask("GET", report, Accept="application/xml")
         no_job = f"job {NO_JOB} is no study that has ended well"
-        text = junit.decode().replace(no_job, html.escape(no_study(arguments), quote=True))
+        text = junit.decode(errors="replace").replace(no_job, html.escape(no_study(arguments), quote=True))
         try:
-            pathlib.Path(arguments.report).write_text(text, encoding="utf-8")
+            pathlib.Path(arguments.report).write_text(without_key(text), encoding="utf-8")
         except OSError as error:
             raise Stop(REFUSED, f"--report {arguments.report}: {error}") from error
     found = service.document("GET", report, Accept="application/json")
     verdict = found["verdict"]
+    if verdict["outcome"] not in EXIT_CODES:
+        raise Stop(OUT_OF_REACH, f"{service.address} is no facies service: the outcome of job {job['id']} is {verdict['outcome']}")
     if rows_of := found.get("rows_of"):
         say(f"rows are those of study {rows_of.get('job')}, solved {rows_of['created']}, judged anew")
     for skipped in found.get("skipped", []):
@@ -421,6 +506,21 @@ def tell(job: str, outcome: str) -> None:
             outputs.write(f"job={job}\noutcome={outcome}\n")
 
 
+def seconds(text: str) -> float:
+    """A duration, more than none and not without end."""
+    number = float(text)
+    if not (math.isfinite(number) and number > 0.0):
+        raise argparse.ArgumentTypeError(f"{text} has to be above 0 and finite")
+    return number
+
+
+def job_id(text: str) -> str:
+    """The id of a job, or nothing."""
+    if text and not JOB.fullmatch(text):
+        raise argparse.ArgumentTypeError(f"{text!r} is no id of a job, which is as {NO_JOB}")
+    return text
+
+
 class Once(argparse.Action):
     """An option that may stand once: of several values the last would be taken without a word."""
 
@@ -437,19 +537,20 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=(__doc__ or "").split("\n")[0])
     parser.register("action", None, Once)
     parser.add_argument("study", help="a study document; its cases are files beside it")
-    parser.add_argument("--baseline", default="", help="the job of the study to compare with")
+    parser.add_argument("--baseline", type=job_id, default="", help="the job of the study to compare with")
     parser.add_argument("--baseline-tag", default="",
                         help="compare with the newest successful study of this tag; the first gets it")
     parser.add_argument("--tag", default="", help="a tag for this study, if it passes")
     parser.add_argument("--report", default="", help="a file for the test results (JUnit)")
-    parser.add_argument("--timeout-s", type=float, default=3600.0,
+    parser.add_argument("--timeout-s", type=seconds, default=3600.0,
                         help="how long to wait for the study, in seconds")
-    parser.add_argument("--patience-s", type=float, default=120.0,
+    parser.add_argument("--patience-s", type=seconds, default=120.0,
                         help="how long to repeat a request to a service that is busy or silent")
     try:
         return run(parser.parse_args())
     except Stop as stop:
-        print(stop, file=sys.stderr)
+        for why in stop.args:
+            print(shown(why), file=sys.stderr)
         return stop.code
     except Exception as error:  # 1 is the exit code of a prediction that is worse.
         print(unexpected(error), file=sys.stderr)

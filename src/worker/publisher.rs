@@ -13,8 +13,9 @@ use super::work::{Failure, GRACE, LOOK};
 use crate::store::Store;
 use mechanics::progress::Progress;
 
-/// Between two tries to publish while the store is down.
+/// Between the first two tries to publish while the store is down; twice as long after each further one, up to the longest.
 const PAUSE: Duration = Duration::from_millis(200);
+const LONGEST_PAUSE: Duration = Duration::from_secs(2);
 
 pub struct Publisher {
     /// Scoped to the tenant of the job.
@@ -56,12 +57,14 @@ impl Publisher {
 
     fn store_all(&self, publication: &Publication) -> Result<bool, Failure> {
         let until = Instant::now() + self.patience;
+        let mut pause = PAUSE;
         loop {
             let published = publication.publish(&self.store, &self.job.lease);
             match self.runtime.block_on(published) {
                 Err(error) if error.is_unavailable() && Instant::now() < until => {
-                    tracing::warn!(%error, "the result waits for the database");
-                    std::thread::sleep(PAUSE);
+                    tracing::warn!(%error, "the result waits for the store");
+                    std::thread::sleep(pause);
+                    pause = LONGEST_PAUSE.min(2 * pause);
                 }
                 published => return Ok(published?),
             }

@@ -38,15 +38,15 @@ pub fn wall_normals(
     let all = |face: &BoundaryFace, is: &dyn Fn(usize) -> bool| {
         face.nodes().iter().all(|&node| is(node as usize))
     };
-    let ending = |face| all(face, &|node| listed[node] || on_bone[node]);
-    let in_wall: Vec<bool> = boundary.iter().map(ending).collect();
+    let in_set: Vec<bool> = boundary.iter().map(|face| all(face, &|node| listed[node])).collect();
     let normals: Vec<Vector> = boundary.iter().map(|face| face.area_vector(&mesh.nodes)).collect();
-    let is_ear = ears(boundary, &normals, &in_wall);
+    let is_ear = ears(boundary, &normals, &in_set);
     let mut on_walls: Vec<Vec<Vector>> = vec![Vec::new(); mesh.nodes.len()];
     let [mut doubtful, mut ending, mut touching] = [(); 3].map(|()| on_walls.clone());
     for (number, face) in boundary.iter().enumerate() {
         let normal = normals[number];
-        let whole = all(face, &|node| listed[node]);
+        let whole = in_set[number];
+        let ends = all(face, &|node| listed[node] || on_bone[node]);
         let is_doubtful = is_ear[number] || all(face, &|node| on_skin[node]);
         for &node in face.nodes().iter().filter(|&&node| listed[node as usize]) {
             touching[node as usize].push(normal);
@@ -54,7 +54,7 @@ pub fn wall_normals(
                 doubtful[node as usize].push(normal);
             } else if whole {
                 on_walls[node as usize].push(normal);
-            } else if in_wall[number] {
+            } else if ends {
                 ending[node as usize].push(normal);
             }
         }
@@ -76,17 +76,17 @@ pub fn wall_normals(
 
 /// Which faces of walls are ears of another surface, as triangles of the top in the corner between two sides: over an edge that surface
 /// goes on beside the walls, over none in them, and over an edge lies another wall.
-fn ears(boundary: &[BoundaryFace], normals: &[Vector], in_wall: &[bool]) -> Vec<bool> {
+fn ears(boundary: &[BoundaryFace], normals: &[Vector], in_set: &[bool]) -> Vec<bool> {
     let edges = |face: &BoundaryFace| {
         let nodes = face.nodes().to_vec();
         let next = nodes.clone().into_iter().cycle().skip(1);
         nodes.into_iter().zip(next).map(|(from, to)| [from.min(to), from.max(to)])
     };
     let mut at_edge: HashMap<[u32; 2], Vec<usize>> = HashMap::new();
-    for (number, face) in boundary.iter().enumerate().filter(|(number, _)| in_wall[*number]) {
+    for (number, face) in boundary.iter().enumerate().filter(|(number, _)| in_set[*number]) {
         edges(face).for_each(|edge| at_edge.entry(edge).or_default().push(number));
     }
-    for (number, face) in boundary.iter().enumerate().filter(|(number, _)| !in_wall[*number]) {
+    for (number, face) in boundary.iter().enumerate().filter(|(number, _)| !in_set[*number]) {
         for edge in edges(face) {
             at_edge.entry(edge).and_modify(|faces| faces.push(number));
         }
@@ -96,10 +96,10 @@ fn ears(boundary: &[BoundaryFace], normals: &[Vector], in_wall: &[bool]) -> Vec<
         let beside: Vec<usize> = beside.filter(|&other| other != number).collect();
         let goes_on = |&other: &usize| cosine(&normals[number], &normals[other]) > SAME_WALL;
         let (on, across): (Vec<usize>, Vec<usize>) = beside.into_iter().partition(goes_on);
-        in_wall[number]
+        in_set[number]
             && !on.is_empty()
-            && !on.iter().any(|&other| in_wall[other])
-            && across.iter().any(|&other| in_wall[other])
+            && !on.iter().any(|&other| in_set[other])
+            && across.iter().any(|&other| in_set[other])
     };
     boundary.iter().enumerate().map(is_ear).collect()
 }
@@ -173,27 +173,36 @@ mod tests {
             block(Vector::new(4.0, across as f64, 2.0), [4, across, 2], CellShape::Tet4)
         };
         let set = |mesh: &VolumeMesh, name: &str| mesh.node_sets[name].clone();
-        let beside = |mesh: &VolumeMesh, skin: &[u32]| {
-            let mut on_skin = vec![false; mesh.nodes.len()];
-            skin.iter().for_each(|&node| on_skin[node as usize] = true);
-            Beside { on_bone: vec![false; mesh.nodes.len()], on_skin }
+        let beside = |mesh: &VolumeMesh, [skin, bone]: [&[u32]; 2]| {
+            let [on_skin, on_bone] = [skin, bone].map(|nodes| {
+                let mut is_there = vec![false; mesh.nodes.len()];
+                nodes.iter().for_each(|&node| is_there[node as usize] = true);
+                is_there
+            });
+            Beside { on_bone, on_skin }
         };
-        let upright = |mesh: &VolumeMesh, skin: &[u32]| {
+        let upright = |mesh: &VolumeMesh, nodes: [&[u32]; 2]| {
             let mut sides =
                 ["x_min", "x_max", "y_min", "y_max"].map(|name| set(mesh, name)).concat();
             sides.sort_unstable();
             sides.dedup();
-            let found = wall_normals(mesh, &mesh.boundary_faces(), &sides, &beside(mesh, skin));
+            let found = wall_normals(mesh, &mesh.boundary_faces(), &sides, &beside(mesh, nodes));
             assert!(found.iter().all(|(_, walls)| !walls.is_empty()));
             found.iter().flat_map(|(_, walls)| walls).filter(|wall| wall.z > 0.9).count()
         };
         let (wide, strip) = (block(4), block(1));
-        assert_eq!(upright(&wide, &[]), 0);
-        assert!(upright(&strip, &[]) > 0);
-        assert_eq!(upright(&strip, &set(&strip, "z_max")), 0);
+        let is_inner = |node: &u32| {
+            let x = wide.nodes[*node as usize];
+            (0.5..3.5).contains(&x.x) && (0.5..3.5).contains(&x.y)
+        };
+        let inner: Vec<u32> = set(&wide, "z_max").into_iter().filter(is_inner).collect();
+        assert_eq!(upright(&wide, [&[], &[]]), 0);
+        assert_eq!(upright(&wide, [&[], &inner]), 0);
+        assert!(upright(&strip, [&[], &[]]) > 0);
+        assert_eq!(upright(&strip, [&set(&strip, "z_max"), &[]]), 0);
         let (top, all): (Vec<u32>, Vec<u32>) =
             (set(&wide, "z_max"), (0..wide.nodes.len() as u32).collect());
-        let top = wall_normals(&wide, &wide.boundary_faces(), &top, &beside(&wide, &all));
+        let top = wall_normals(&wide, &wide.boundary_faces(), &top, &beside(&wide, [&all, &[]]));
         assert!(top.iter().all(|(_, walls)| walls[..] == [Vector::z()]));
     }
 

@@ -3,7 +3,7 @@
 use super::contact::{
     InTouch, Touch, expected_touch_at_finite_strain, facing_surfaces, touch, touch_at_finite_strain,
 };
-use super::following_pressure::pressed_in_solution;
+use super::following_pressure::{has_pressure, pressed_in_solution};
 use super::method::MethodKind;
 use super::nonlinearity::{self, Estimated, NonlinearityUnknown};
 use super::numerical_error::{self, NotEstimated, NumericalError};
@@ -109,6 +109,11 @@ fn answered<'a>(
         let (pressed, unsettled) = pressed_in_solution(scene, displacement)?;
         let mut answer = at_finite_strain(&pressed, unknown, progress)?;
         answer.equilibrium.warnings.extend(unsettled);
+        if has_pressure(scene) {
+            // The tangent that was tested leaves out how pressure turns with its faces.
+            let newton = answer.equilibrium.solver.newton.iter_mut();
+            newton.for_each(|newton| newton.is_stable = newton.is_stable.filter(|stable| !stable));
+        }
         return Ok(other(answer));
     }
     if scene.settings.method.kind() == MethodKind::MassTensorNonlinear {

@@ -21,7 +21,7 @@ use crate::mesh::connectivity::Faces;
 use crate::mesh::{Vector, Warning};
 use crate::model::fem::discretisation_error::DistributedLoads;
 use crate::plan::PlannedSegment;
-use crate::plan::doubt::nothing_moves;
+use crate::plan::doubt::{NOTHING_MOVES, nothing_moves};
 use crate::progress::StopQuery;
 
 /// Materials and fibres of cells.
@@ -65,6 +65,12 @@ impl Check<'_> {
 }
 
 impl Scene {
+    /// The warning that a plan displaces nothing, where it does not and the scene does not say so already.
+    pub fn nothing_moves(&self) -> Option<Warning> {
+        let is_told = self.warnings.iter().any(|warning| warning.code == NOTHING_MOVES);
+        (self.is_at_rest() && !is_told).then(nothing_moves)
+    }
+
     /// Checks a case and a plan together; says everything that is wrong, not the first thing only.
     pub fn new(case: &Case, plan: &Plan, settings: &Settings) -> Result<Scene, SceneErrors> {
         Scene::built(case, plan, settings, &StopQuery::never())

@@ -20,6 +20,8 @@ pub(super) const PRESSURE_UNSETTLED: &str = "pressure-unsettled";
 
 /// Nodal forces of pressure agree where their changes, summed over the nodes, are at most this share of them.
 const AGREES: f64 = 1e-6;
+/// They agree too where they are at most this share and change no less from one round to the next, as contact does that is as exact.
+const ENOUGH: f64 = 1e-4;
 /// Rounds after which no agreement is expected any more.
 const MOST_ROUNDS: usize = 25;
 /// The least and the largest part of the way.
@@ -33,23 +35,22 @@ pub(super) fn pressed_in_solution(
     scene: &Scene,
     solve: impl Fn(&Scene) -> Result<Vec<Vector>, ModelError>,
 ) -> Result<(Cow<'_, Scene>, Option<Warning>), ModelError> {
-    let (mut pressed, mut left) = (Cow::Borrowed(scene), 0.0);
+    let (mut pressed, mut left) = (Cow::Borrowed(scene), 0.0_f64);
     let mut places = PlacesOfFaces::at_rest(scene);
     let rounds = if has_pressure(scene) { MOST_ROUNDS } else { 0 };
     for _ in 0..rounds {
         let found = solve(&pressed)?;
         let there = pressed_at(scene, &found);
+        let before = left;
         left = share_of_change(scene, &pressed.forces, &there.forces);
-        let next = match left <= AGREES {
-            true => there,
-            false => pressed_at(scene, places.next(&found)),
-        };
+        let agrees = left <= AGREES || (left <= ENOUGH && left > 0.5 * before);
+        let next = if agrees { there } else { pressed_at(scene, places.next(&found)) };
         pressed = Cow::Owned(Scene { near: Some(found), ..next });
-        if left <= AGREES {
+        if agrees {
             break;
         }
     }
-    Ok((pressed, (left > AGREES).then(|| unsettled(left))))
+    Ok((pressed, (left > ENOUGH).then(|| unsettled(left))))
 }
 
 /// Displacements of the nodes at which pressure is taken, round by round.

@@ -36,7 +36,6 @@ use crate::model::problem::{Equilibrium, LoadCase, ModelError};
 use crate::model::thickness_warp::Warped;
 use crate::model::{mass_spring, spline};
 use crate::plan::PlannedSegment;
-use crate::plan::doubt::{NOTHING_MOVES, nothing_moves};
 use crate::progress::Progress;
 use crate::solver::Tolerance;
 
@@ -164,12 +163,6 @@ impl Scene {
         !constraints.iter().any(|constraint| moves(constraint.values()))
             && !self.forces.iter().any(moves)
             && self.distributed.inner.is_zero()
-    }
-
-    /// The warning that a plan displaces nothing, where it does not and the scene does not say so already.
-    pub fn nothing_moves(&self) -> Option<Warning> {
-        let is_told = self.warnings.iter().any(|warning| warning.code == NOTHING_MOVES);
-        (self.is_at_rest() && !is_told).then(nothing_moves)
     }
 
     /// Solves the scene by the method of its settings.

@@ -22,14 +22,18 @@ const STIFFER_ALONG: f64 = 8.0;
 /// a layer 5 times as stiff, .5 for 9 times, .3 for 20 times (`stiff_layers_between_walls`).
 const STIFFER_THAN_ESTIMATED: f64 = 8.0;
 
+/// Fewer of all cells, as one that stands alone, are seen in few places.
+const MANY: f64 = 0.01;
+
 /// A warning that counts the cells of such layers.
 pub(super) fn thin_stiff_layers(scene: &Scene) -> Option<Warning> {
     layers(scene, STIFFER).warning()
 }
 
-/// Whether there are layers so stiff that the error of the mesh is estimated too small.
+/// Whether so many cells are in layers so stiff that the error of the mesh is estimated too small.
 pub(super) fn has_stiff_layers(scene: &Scene) -> bool {
-    layers(scene, STIFFER_THAN_ESTIMATED).cells() > 0
+    let cells = f64::from(layers(scene, STIFFER_THAN_ESTIMATED).cells());
+    cells >= MANY * scene.mesh.cells.len() as f64
 }
 
 /// Layers so many times as stiff as the tissue beside them.

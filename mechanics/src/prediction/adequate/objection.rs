@@ -10,7 +10,7 @@
 //! | `contact-overlap`, `contact-points-move` | by more than is accepted | no |
 //! | `contact-chatter` | always: there contact may pull | no |
 //! | `membrane-wrinkles` | always: no mesh is fine enough | no |
-//! | `thin-stiff-layer` | always: the error of the mesh is estimated several times too small | no |
+//! | `thin-stiff-layer` | of a hundredth of the cells or more: the error of the mesh is estimated several times too small | no |
 //! | `pressure-unsettled` | always: the forces are not those of the pressure stated | no |
 //! | `solved-loosely` | always: estimates are of exact solutions | no |
 //!
@@ -28,7 +28,7 @@ use crate::prediction::following_pressure::{PRESSURE_UNSETTLED, pressure_turned}
 use crate::prediction::loosely;
 use crate::prediction::scene::Scene;
 use crate::prediction::skin_overlap::{Deepest, SKIN_OVERLAPS, added_overlap, skin_overlap};
-use crate::prediction::stiff_layer::THIN_STIFF_LAYER;
+use crate::prediction::stiff_layer::{THIN_STIFF_LAYER, has_stiff_layers};
 use crate::prediction::wrinkles::wrinkles;
 
 /// An answer that may be adequate.
@@ -92,7 +92,8 @@ impl<'a> CandidateAnswer<'a> {
             code => code == PRESSURE_UNSETTLED,
         };
         let of_solution = equilibrium.warnings.iter().filter(speaks);
-        let of_scene = scene.warnings.iter().filter(|own| own.code == THIN_STIFF_LAYER);
+        let mut of_scene = scene.warnings.iter();
+        let of_scene = of_scene.find(|own| own.code == THIN_STIFF_LAYER && has_stiff_layers(scene));
         // In contact edges may cross by less than is measured; what is measured is `contact-overlap`.
         let without_contact = contact.is_none();
         let touches = contact.into_iter().flat_map(|touch| touch.warnings(scene));

@@ -4,6 +4,7 @@ use super::accepted::MeanErrors;
 use crate::mesh::{CellShape, Vector};
 use crate::model::fem::finite_strain::COLLAPSED;
 use crate::model::problem::{Equilibrium, LoadCase};
+use crate::prediction::following_pressure::has_pressure;
 use crate::prediction::scene::Scene;
 use crate::prediction::stiff_layer::has_stiff_layers;
 
@@ -12,6 +13,9 @@ const LEFT_BY_CORRECTION: f64 = 0.8;
 
 /// Where forces act or tissue grows, what coarse meshes leave out was up to three times its estimate: so much of it is expected.
 const LOADED: f64 = 2.0;
+
+/// The same again where pressure follows its faces: the last tangent, with which errors are estimated, leaves out how it turns.
+const PRESSED: f64 = 2.0;
 
 /// The same where layers of one cell are much stiffer than what is beside them.
 const WITH_STIFF_LAYERS: f64 = 2.0;
@@ -38,7 +42,9 @@ pub fn error_over_estimate(scene: &Scene) -> f64 {
 
 /// The same of an answer at finite strain: estimates leave out the inner modes of cells that all but collapse.
 pub(super) fn error_over_estimate_at_rest(scene: &Scene, answer: &Equilibrium) -> f64 {
-    error_over_estimate(scene) * if collapses(scene, answer) { LEFT_OUT } else { 1.0 }
+    let collapsed = if collapses(scene, answer) { LEFT_OUT } else { 1.0 };
+    let pressed = if has_pressure(scene) { PRESSED } else { 1.0 };
+    error_over_estimate(scene) * collapsed * pressed
 }
 
 /// Whether hexahedra or wedges all but collapse at finite strain.

@@ -18,6 +18,7 @@ mod fibres;
 mod inner;
 mod load_steps;
 mod mesh_error;
+mod near;
 mod newton;
 mod newton_state;
 mod parts;
@@ -53,7 +54,6 @@ use elements::CellBulkModulus;
 pub use elements::Elements;
 pub use enriched_brick::COLLAPSED;
 pub use fibres::FibreField;
-use inner::is_too_much;
 pub use mesh_error::{FinerProblem, MeshError, NoMeshError};
 use newton::Newton;
 use newton_state::{Ending, NewtonExits, Question, Rest, Start};
@@ -272,22 +272,6 @@ impl<'a> FiniteStrain<'a> {
                 None => self.rest_at_share(question, start),
             },
             Advance::InSteps(steps) => self.rest_in_steps(steps.get(), question, start),
-        }
-    }
-
-    /// Brings the tissue to rest from displacements near it, where there are such and no contact; none where that leads nowhere.
-    fn rest_near(
-        &self,
-        question: Question<'a>,
-        start: &Start<'a>,
-    ) -> Result<Option<(Tissue<'a>, Rest<'a>)>, ModelError> {
-        let near = self.near.filter(|near| near.len() == self.nodes.len());
-        let (Some(near), None) = (near, &start.touching) else { return Ok(None) };
-        let moved: Vec<Vector> = self.nodes.iter().zip(near).map(|(x, u)| x + u).collect();
-        let start = Start::at(question.constrained.dof_map.by_row(&moved), 1.0, None);
-        match self.rest_from(question, start) {
-            Err(error) if is_too_much(&error) => Ok(None),
-            ended => ended.map(Some),
         }
     }
 
