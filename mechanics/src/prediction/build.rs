@@ -138,6 +138,7 @@ impl Scene {
             fibres,
             membrane,
             element,
+            warnings: conditions.warnings.clone(),
             conditions,
             bones: bones(case, &segments),
             stated: std::mem::take(&mut check.stated),
@@ -151,7 +152,6 @@ impl Scene {
             landmarks: case.landmarks.clone(),
             allow_unfixed: case.allow_unfixed,
             settings: settings.clone(),
-            warnings: Vec::new(),
         };
         check.method(settings, plan);
         check.fail_or_go_on()?;
@@ -160,7 +160,6 @@ impl Scene {
         // 4. What cannot be solved, and what a reader must know.
         check.support(&scene, &part_of_cell);
         check.fail_or_go_on()?;
-        scene.warnings = scene.conditions.warnings.clone();
         scene.warnings.extend(check.warnings.into_iter().chain(far_segments(case, &held)));
         scene.warnings.extend(suspect_skin(&scene, case.skin.is_some()));
         scene.warnings.extend(cut::duplicate_nodes(&scene.mesh, &check.boundary_nodes));
