@@ -24,7 +24,7 @@ pub struct Beside {
 ///
 /// The walls are the boundary faces all of whose nodes are listed, and beside these, less than 45 degrees apart, the faces whose
 /// other nodes are on bone: so it makes no difference whether a set has the nodes where its wall ends in bone. Faces of the skin and
-/// [ears] of other surfaces are walls of nodes without other ones. A node without such a face takes all boundary faces that touch it.
+/// ears (`ears`) of other surfaces are walls of nodes without other ones. A node without such a face takes all boundary faces that touch it.
 pub fn wall_normals(
     mesh: &VolumeMesh,
     boundary: &[BoundaryFace],
@@ -92,12 +92,14 @@ fn ears(boundary: &[BoundaryFace], normals: &[Vector], in_set: &[bool]) -> Vec<b
         }
     }
     let is_ear = |(number, face): (usize, &BoundaryFace)| {
+        if !in_set[number] {
+            return false;
+        }
         let beside = edges(face).filter_map(|edge| at_edge.get(&edge)).flatten().copied();
         let beside: Vec<usize> = beside.filter(|&other| other != number).collect();
         let goes_on = |&other: &usize| cosine(&normals[number], &normals[other]) > SAME_WALL;
         let (on, across): (Vec<usize>, Vec<usize>) = beside.into_iter().partition(goes_on);
-        in_set[number]
-            && !on.is_empty()
+        !on.is_empty()
             && !on.iter().any(|&other| in_set[other])
             && across.iter().any(|&other| in_set[other])
     };

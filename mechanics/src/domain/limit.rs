@@ -86,11 +86,11 @@ impl Limits {
 
     /// The least of the signed distances to the limits; infinite without any. It changes by at most 1 mm for each mm.
     pub fn value(&self, point: &Vector) -> f64 {
-        let depth = |ball: &Ball| ball.radius - (ball.centre - point).norm();
-        let deepest = |balls: &Vec<Ball>| balls.iter().map(depth).fold(f64::NEG_INFINITY, f64::max);
-        let planes =
-            self.planes.iter().map(|plane| plane.value(point)).fold(f64::INFINITY, f64::min);
-        self.unions.iter().map(deepest).fold(planes, f64::min)
+        let deepest = |balls: &Vec<Ball>| {
+            balls.iter().map(|ball| ball.value(point)).fold(f64::NEG_INFINITY, f64::max)
+        };
+        let planes = self.planes.iter().map(|plane| plane.value(point));
+        planes.chain(self.unions.iter().map(deepest)).fold(f64::INFINITY, f64::min)
     }
 
     pub fn with_gradient(&self, point: &Vector) -> LimitValue {
@@ -122,11 +122,14 @@ fn deepest(balls: &[Ball], point: &Vector) -> LimitValue {
 }
 
 impl Ball {
+    fn value(&self, point: &Vector) -> f64 {
+        self.radius - (self.centre - point).norm()
+    }
+
     fn at(&self, point: &Vector) -> LimitValue {
         let inward = self.centre - point;
-        let distance = inward.norm();
         let gradient = inward.try_normalize(f64::MIN_POSITIVE).unwrap_or_else(Vector::x);
-        LimitValue { value: self.radius - distance, gradient }
+        LimitValue { value: self.value(point), gradient }
     }
 }
 
