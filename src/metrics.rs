@@ -129,7 +129,7 @@ pub fn retention_withheld(is_withheld: bool) {
     gauge!(RETENTION_WITHHELD).set(f64::from(u8::from(is_withheld)));
 }
 
-/// An attempt ended as successful, failed, stopped, fenced or lost.
+/// An attempt ended as successful, failed, dismissed, stopped, fenced, lost or unwritten.
 pub fn attempt_ended(kind: &str, status: &'static str, took: Duration) {
     let kind = kind.to_owned();
     counter!(ATTEMPTS, "kind" => kind.clone(), "status" => status).increment(1);

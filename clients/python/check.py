@@ -1,9 +1,11 @@
 """What `facies` promises, against a service: arrays that agree with each other, progress, exceptions with codes."""
 
+import http.server
 import json
 import os
 import sys
 import tempfile
+import threading
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -180,6 +182,40 @@ for piece in ("\n", " ", "\x1b", "\u00e9"):
             sys.exit(f"let through: a key with {piece!r}")
         except ValueError as error:
             assert "secret" not in str(error) and "more" not in str(error), error
+
+
+
+class Between(http.server.BaseHTTPRequestHandler):
+    """Between us and a service: it redirects, or is busy and tells nothing of use."""
+
+    asked: list[str] = []
+
+    def do_GET(self) -> None:
+        word = self.path[1:]
+        self.asked.append(word)
+        self.send_response(503 if word in ("0", "soon") else 307)
+        self.send_header("Retry-After", word)
+        self.send_header("Location", "/leak")
+        self.send_header("Content-Length", "0")
+        self.end_headers()
+
+    def log_message(self, format: str, *args: Any) -> None:
+        """Nothing."""
+
+
+# What redirects gets no second request, and what is busy is not asked again at once.
+with http.server.HTTPServer(("127.0.0.1", 0), Between) as between:
+    threading.Thread(target=between.serve_forever).start()
+    impatient = Facies(f"http://127.0.0.1:{between.server_port}", "key", patience_s=1.5)
+    for word, requests in {"moved": 1, "0": 2, "soon": 2}.items():
+        Between.asked.clear()
+        try:
+            impatient.ask("GET", f"/{word}")
+            sys.exit(f"no refusal: {word}")
+        except Refused:
+            assert Between.asked == [word] * requests, Between.asked
+    impatient.close()
+    between.shutdown()
 
 try:
     service.predict(head, {"segments": [{"name": "mandibel", "translation_mm": [0, 4, 1]}]})

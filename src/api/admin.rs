@@ -84,7 +84,7 @@ pub async fn listen(
 fn router(admin: AdminListener) -> Router {
     let AdminRoutes { router, declared } = admin_routes();
     let door = AdminGuardState { admin: admin.clone(), declared: declared.into() };
-    router.route_layer(from_fn_with_state(door, middleware)).with_state(admin)
+    router.layer(from_fn_with_state(door, middleware)).with_state(admin)
 }
 
 /// All routes of this listener.

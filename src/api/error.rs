@@ -8,6 +8,7 @@ use crate::schema::wire::problem::Problem;
 use crate::store::StoreError;
 
 const RETRY_AFTER_S: u32 = 5;
+const DAMAGED_BYTES: &str = "the stored bytes are lost or differ from their hash";
 
 /// An error response. The outermost layer writes its body, because it knows the request's id.
 #[derive(Clone, Debug)]
@@ -40,6 +41,16 @@ impl ApiError {
     pub fn map_problem(mut self, change: impl FnOnce(Problem) -> Problem) -> Self {
         self.problem = change(self.problem);
         self
+    }
+
+    /// The same error; one of damaged bytes names what they are of.
+    pub fn of_bytes(self, what: impl std::fmt::Display) -> Self {
+        self.map_problem(|problem| match problem.code {
+            ErrorCode::Integrity => {
+                Problem::new(ErrorCode::Integrity, format!("{what}: {DAMAGED_BYTES}"))
+            }
+            _ => problem,
+        })
     }
 
     /// The same request may succeed later.
@@ -83,10 +94,7 @@ impl From<StoreError> for ApiError {
         }
         if let StoreError::Integrity { .. } | StoreError::Missing { .. } = error {
             tracing::error!(%error, "a blob is damaged");
-            return ApiError::new(
-                ErrorCode::Integrity,
-                "the stored bytes are lost or differ from their hash",
-            );
+            return ApiError::new(ErrorCode::Integrity, DAMAGED_BYTES);
         }
         if let StoreError::TooManyKeys { keys, most } = error {
             let problem = Problem::new(ErrorCode::TooManyKeys, error.to_string());

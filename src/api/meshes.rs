@@ -317,11 +317,12 @@ async fn content(
     if conditional::is_known(&headers, &tag) {
         return Ok(conditional::not_modified(&tag));
     }
+    let damaged = |error: ApiError| error.of_bytes(format_args!("mesh {id}"));
     let file = if format == stored_as && !is_turned {
-        ServedFile::blob(&service, &blob).await?
+        ServedFile::blob(&service, &blob).await.map_err(damaged)?
     } else {
         let permit = service.parse_permit().await?;
-        let mesh = service.library.open(row).await?;
+        let mesh = service.library.open(row).await.map_err(|error| damaged(error.into()))?;
         ServedFile::made(&service, &permit, move || export(&mesh, format)).await?
     };
     conditional::file(&headers, file, (format.media_type(), &name), &tag)

@@ -232,6 +232,11 @@ fn check_head(request: &Request) -> ApiResult<()> {
         let detail = format!("the address has {uri_length} bytes, {LONGEST_URI} are allowed");
         return Err(Problem::new(ErrorCode::UriTooLong, detail).with("limit", LONGEST_URI).into());
     }
+    let codings = request.headers().get_all(header::TRANSFER_ENCODING);
+    if codings.iter().any(|coding| !coding.as_bytes().eq_ignore_ascii_case(b"chunked")) {
+        let detail = "a body has no transfer coding but `chunked`";
+        return Err(ApiError::new(ErrorCode::MalformedRequest, detail));
+    }
     let head: usize =
         request.headers().iter().map(|(name, value)| name.as_str().len() + value.len()).sum();
     if head > LARGEST_HEAD {

@@ -60,35 +60,40 @@ impl Rates {
         let after = before + one;
         let missing = after - now;
         if missing > WINDOW {
-            return Err(self.refusal(missing - WINDOW));
+            return Err(self.refusal(before - now, missing - WINDOW));
         }
         full.insert(client, after);
         let left = (WINDOW - missing).as_secs_f64() / one.as_secs_f64();
-        Ok(Some(RateAllowance {
-            per_minute: self.per_minute,
-            requests: left as u32,
-            reset_s: missing.as_secs() + 1,
-        }))
+        Ok(Some(self.allowance(left as u32, missing)))
     }
 
-    fn refusal(&self, wait: Duration) -> ApiError {
+    fn allowance(&self, requests: u32, missing: Duration) -> RateAllowance {
+        RateAllowance { per_minute: self.per_minute, requests, reset_s: missing.as_secs() + 1 }
+    }
+
+    fn refusal(&self, missing: Duration, wait: Duration) -> ApiError {
         let seconds = wait.as_secs() + 1;
         let detail = format!("{} requests a minute are allowed", self.per_minute);
         let problem = Problem::new(ErrorCode::RateLimited, detail).with("limit", self.per_minute);
-        ApiError::from(problem).header(header::RETRY_AFTER, HeaderValue::from(seconds))
+        let error = ApiError::from(problem).header(header::RETRY_AFTER, HeaderValue::from(seconds));
+        let left = self.allowance(0, missing).headers();
+        left.into_iter().fold(error, |error, (name, value)| error.header(name, value))
     }
 }
 
 impl RateAllowance {
     /// Adds the headers of the rate limit to the response.
     pub fn tell(&self, response: &mut Response) {
+        response.headers_mut().extend(self.headers());
+    }
+
+    fn headers(&self) -> Vec<(HeaderName, HeaderValue)> {
         let policy = format!("\"requests\";q={};w={}", self.per_minute, WINDOW.as_secs());
         let left = format!("\"requests\";r={};t={}", self.requests, self.reset_s);
-        for (name, text) in [("ratelimit-policy", policy), ("ratelimit", left)] {
-            if let Ok(value) = HeaderValue::from_str(&text) {
-                response.headers_mut().insert(HeaderName::from_static(name), value);
-            }
-        }
+        let named = |(name, text): (&'static str, String)| {
+            Some((HeaderName::from_static(name), HeaderValue::from_str(&text).ok()?))
+        };
+        [("ratelimit-policy", policy), ("ratelimit", left)].into_iter().filter_map(named).collect()
     }
 }
 

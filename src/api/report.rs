@@ -125,7 +125,9 @@ async fn report(
         if conditional::is_known(&headers, &row.blob) {
             return Ok(conditional::not_modified(&row.blob));
         }
-        let file = ServedFile::blob(&service, &row.blob).await?;
+        let file = ServedFile::blob(&service, &row.blob).await;
+        let file =
+            file.map_err(|error| error.of_bytes(format_args!("{} of job {id}", row.name)))?;
         let answer = conditional::file(&headers, file, (&row.media_type, &row.name), &row.blob)?;
         return Ok(told(answer, outcome));
     };
@@ -194,7 +196,10 @@ pub(super) async fn stored_report(
         return Ok(None);
     }
     let Some(row) = service.store.job_file(job, REPORT_JSON).await? else { return Ok(None) };
-    let bytes = service.store.read_blob(&row.blob).await?;
+    let bytes = service.store.read_blob(&row.blob).await;
+    let bytes = bytes.map_err(|error| {
+        ApiError::from(error).of_bytes(format_args!("{REPORT_JSON} of job {job}"))
+    })?;
     let report = serde_json::from_slice(&bytes).map_err(ApiError::internal)?;
     Ok(Some((row, report)))
 }

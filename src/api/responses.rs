@@ -1,5 +1,6 @@
 //! Plan responses: the columns for clients that apply plans themselves, and the skin for one plan.
 
+use std::sync::Arc;
 use std::time::Instant;
 
 use axum::extract::Request;
@@ -127,6 +128,15 @@ async fn find(service: &Service, meant: ResponseReference<'_>) -> ApiResult<Foun
     }
 }
 
+async fn load(service: &Service, found: &FoundResponse) -> ApiResult<Arc<LoadedResponse>> {
+    let loaded = service.responses.load(found).await;
+    loaded.map_err(|error| of_response(error.into(), found))
+}
+
+fn of_response(error: ApiError, found: &FoundResponse) -> ApiError {
+    error.of_bytes(format_args!("response of job {}", found.job))
+}
+
 fn refusal(missing: MissingResponse) -> ApiError {
     let detail = missing.to_string();
     match missing {
@@ -182,7 +192,8 @@ async fn show(
     let response = if conditional::is_known(&headers, &row.blob) {
         conditional::not_modified(&row.blob)
     } else {
-        let file = ServedFile::blob(&service, &row.blob).await?;
+        let file = ServedFile::blob(&service, &row.blob).await;
+        let file = file.map_err(|error| of_response(error, &found))?;
         conditional::file(&headers, file, (&row.media_type, &row.name), &row.blob)?
     };
     let response = with_header(response, header::VARY, "Accept");
@@ -196,7 +207,7 @@ async fn rest(service: &Service, found: &FoundResponse, headers: &HeaderMap) -> 
         conditional::not_modified(&tag)
     } else {
         let permit = service.parse_permit().await?;
-        let loaded = service.responses.load(found).await?;
+        let loaded = load(service, found).await?;
         let written = move || loaded.rest_glb().map_err(not_written);
         let file = ServedFile::made(service, &permit, written).await?;
         conditional::file(headers, file, (GLB_MEDIA_TYPE, "rest.glb"), &tag)?
@@ -254,7 +265,7 @@ async fn apply(
     let (job, plan) = (parameters.job.as_deref(), Some(&document.plan));
     let meant = ResponseReference { case: &id, job, plan, foreseen };
     let found = find(&service, meant).await?;
-    let loaded = service.responses.load(&found).await?;
+    let loaded = load(&service, &found).await?;
     let amounts = loaded.description.amounts(&document.plan, &service.limits)?;
     let loading = started.elapsed();
 

@@ -81,6 +81,7 @@ async fn file(
     if conditional::is_known(&headers, &row.blob) {
         return Ok(conditional::not_modified(&row.blob));
     }
-    let file = ServedFile::blob(&service, &row.blob).await?;
+    let file = ServedFile::blob(&service, &row.blob).await;
+    let file = file.map_err(|error| error.of_bytes(format_args!("{name} of job {job}")))?;
     conditional::file(&headers, file, (&row.media_type, &row.name), &row.blob)
 }

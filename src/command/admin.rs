@@ -8,6 +8,8 @@ pub use super::deployment::AdminError;
 use super::deployment::{export, import, open, open_or_make};
 use super::settings::Arguments as Settings;
 use crate::schema::key::{KeyDocument, RETENTION_DAYS, TENANT_NAMES, is_tenant, scopes_of};
+use crate::schema::wire::date::date_and_time;
+use crate::schema::wire::letters::is_unseen;
 use crate::schema::wire::problem::Problem;
 use crate::store::{AuditRow, AuditedAction, Chain, DEFAULT_TENANT, Findings, Store};
 
@@ -241,22 +243,22 @@ async fn list_keys(store: &Store) -> Result<(), AdminError> {
         let rows = store.keys(last.as_deref(), KEYS_AT_ONCE).await?;
         for row in &rows {
             let state = match (row.revoked, row.expires) {
-                (Some(_), _) => "revoked",
-                (None, Some(_)) => "ends",
-                (None, None) => "lasts",
+                (Some(_), _) => "revoked".to_owned(),
+                (None, Some(ms)) => format!("until {}Z", date_and_time(ms.div_euclid(1000))),
+                (None, None) => "lasts".to_owned(),
             };
-            println!("{}  {state:<7}  {}  {}", row.id, row.scopes, shown(&row.label));
+            println!("{}  {state:<26}  {}  {}", row.id, row.scopes, shown(&row.label));
         }
         let Some(row) = rows.last() else { return Ok(()) };
         last = Some(row.id.clone());
     }
 }
 
-/// A text in which a terminal finds no commands.
+/// A text in which a terminal finds no commands, and a reader all that is there.
 fn shown(text: &str) -> String {
     let mut shown = String::with_capacity(text.len());
     for letter in text.chars() {
-        match letter.is_control() {
+        match letter.is_control() || is_unseen(letter) {
             true => shown.extend(letter.escape_default()),
             false => shown.push(letter),
         }

@@ -7,6 +7,7 @@ use utoipa::ToSchema;
 
 use super::code::ErrorCode;
 use crate::schema::wire::fault::{Faults, Pointer};
+use crate::schema::wire::letters::is_unseen;
 use crate::schema::wire::problem::Problem;
 
 /// A permission of a key.
@@ -121,7 +122,15 @@ impl KeyDocument {
     /// Its faults.
     pub fn check(&self) -> Result<(), Problem> {
         let mut faults = Faults::default();
-        faults.check_name(&Pointer::from_text("/label"), &self.label, LONGEST_LABEL);
+        let at = Pointer::from_text("/label");
+        faults.check_name(&at, &self.label, LONGEST_LABEL);
+        // A list in which a label looks like another one, or changes the order of a line, has the wrong key revoked.
+        if let Some(letter) = self.label.chars().find(|letter| is_unseen(*letter)) {
+            let letter = letter.escape_unicode();
+            let detail =
+                format!("a label has no letters that nobody sees, and this one has {letter}");
+            faults.add(&at, ErrorCode::BadName, detail);
+        }
         let mut add = |at: &str, detail: &str| {
             faults.add(&Pointer::from_text(at), ErrorCode::OutOfRange, detail);
         };
@@ -205,6 +214,12 @@ mod tests {
         assert_eq!(code(&"\u{e9}".repeat(100)), None);
         let wrong = ["", " ", &"a".repeat(101), "\u{1b}[2J", "a\nroot", "\u{9b}2J"];
         assert!(wrong.into_iter().all(|label| code(label) == Some(ErrorCode::BadName)));
+        for unseen in
+            ['\u{ad}', '\u{200b}', '\u{2029}', '\u{202e}', '\u{2066}', '\u{feff}', '\u{e0041}']
+        {
+            assert_eq!(code(&format!("ward{unseen} 7")), Some(ErrorCode::BadName), "{unseen:?}");
+        }
+        assert_eq!(code("\u{5d0}\u{301} \u{1f600}\u{fe0f} \u{2010}"), None);
     }
 
     #[test]

@@ -42,18 +42,24 @@ const SERVED: &str = "UPDATE tenants SET served = (SELECT MAX(served) FROM tenan
      WHERE name = (SELECT name FROM tenants WHERE name = $1 FOR UPDATE SKIP LOCKED)";
 
 impl Store {
-    /// Whether there is a job that this program could take now.
-    pub async fn has_claimable(&self) -> Result<bool, StoreError> {
-        let tenants = query(IN_TURN).bind(this_numerics()).fetch_all(self.database.reader());
-        Ok(!tenants.await?.is_empty())
-    }
-
     /// Takes an accepted job, if there is one, of the tenant with the fewest running jobs, of equals of the one that has waited
     /// longest for its turn: the oldest of its most urgent ones that this program may run (see [`super::engines`]). Two workers never take the same. Where all
     /// jobs of a tenant are locked by other workers, the next tenant is served.
     pub async fn claim(&self, lease: Duration) -> Result<Option<Claim>, StoreError> {
+        self.claim_if(lease, std::future::ready(true)).await
+    }
+
+    /// The same if a condition holds, which is asked for only where there is a job, before anything is written.
+    pub async fn claim_if(
+        &self,
+        lease: Duration,
+        condition: impl Future<Output = bool>,
+    ) -> Result<Option<Claim>, StoreError> {
         let numerics = this_numerics();
         let tenants = query(IN_TURN).bind(numerics).fetch_all(self.database.reader()).await?;
+        if tenants.is_empty() || !condition.await {
+            return Ok(None);
+        }
         for tenant in &tenants {
             let claimed = self.claim_of(tenant.try_get(0)?, lease, numerics).await?;
             if claimed.is_some() {

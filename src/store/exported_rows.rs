@@ -16,6 +16,7 @@ use super::exported_values::{TextForm, other_integer, wrong_file};
 
 /// The first line of a file of rows: the names of the columns and their types.
 #[derive(Serialize, Deserialize)]
+#[serde(expecting = "an object with the `columns` of the table")]
 struct Head {
     columns: Vec<(String, Kind)>,
 }
@@ -97,16 +98,18 @@ impl ExportedRows {
         let file = folder.join(format!("{table}.ndjson"));
         let opened = File::open(&file).map_err(at(&file, "the manifest of the export names it"));
         let mut lines = BufReader::new(opened.map_err(absent)?).lines();
+        let (table, file) = (table.to_owned(), file.display().to_string());
         let Some(head) = lines.next() else { return Ok(None) };
-        let Head { columns } = serde_json::from_str(&head?).map_err(unreadable)?;
+        let unreadable = |what: String| StoreError::Export(format!("{file}, line 1: {what}"));
+        let Head { columns } = serde_json::from_str(&text_of(head, &unreadable)?)
+            .map_err(|error| unreadable(told(&error)))?;
         let is_name = |name: &str| {
             name.bytes()
                 .all(|byte| byte.is_ascii_lowercase() || byte.is_ascii_digit() || byte == b'_')
         };
         if let Some((strange, _)) = columns.iter().find(|(name, _)| !is_name(name)) {
-            return Err(StoreError::Export(format!("{table} has no column {strange:?}")));
+            return Err(unreadable(format!("{table} has no column {strange:?}")));
         }
-        let (table, file) = (table.to_owned(), file.display().to_string());
         Ok(Some(ExportedRows { table, file, columns, lines, read: 0 }))
     }
 
@@ -115,8 +118,9 @@ impl ExportedRows {
         let Some(line) = self.lines.next() else { return Ok(None) };
         self.read += 1;
         let wanted = self.columns.len();
+        let line = text_of(line, &|what| self.fault(&what))?;
         let values: Vec<Json> =
-            serde_json::from_str(&line?).map_err(|error| self.fault(&error.to_string()))?;
+            serde_json::from_str(&line).map_err(|error| self.fault(&told(&error)))?;
         if values.len() != wanted {
             return Err(self.fault(&format!("{} values for {wanted} columns", values.len())));
         }
@@ -127,9 +131,10 @@ impl ExportedRows {
         values.into_iter().zip(&self.columns).map(value).collect::<Result<_, _>>().map(Some)
     }
 
-    /// Of the row that was read last.
+    /// Of the row that was read last, whose line comes after the first one, that of the columns.
     fn fault(&self, what: &str) -> StoreError {
-        StoreError::Export(format!("{}, row {}: {what}", self.file, self.read))
+        let (row, line) = (self.read, self.read + 1);
+        StoreError::Export(format!("{}, line {line} (row {row}): {what}", self.file))
     }
 
     /// An error of the database that is a fault of the row.
@@ -291,6 +296,22 @@ fn write_line(out: &mut impl Write, line: &impl Serialize) -> Result<(), sqlx::E
     Ok(out.write_all(&text)?)
 }
 
-pub(super) fn unreadable(error: serde_json::Error) -> StoreError {
-    StoreError::Export(error.to_string())
+/// A line that was read. One that is no text is a fault of the export, and not of the disk.
+fn text_of(
+    line: std::io::Result<String>,
+    fault: &dyn Fn(String) -> StoreError,
+) -> Result<String, StoreError> {
+    line.map_err(|error| match error.kind() {
+        ErrorKind::InvalidData => fault(error.to_string()),
+        _ => StoreError::Files(error),
+    })
+}
+
+/// What is wrong with a line of JSON, and at which column. Its number is that of a file.
+fn told(error: &serde_json::Error) -> String {
+    let (text, column) = (error.to_string(), error.column());
+    match text.strip_suffix(&format!(" at line {} column {column}", error.line())) {
+        Some(what) => format!("{what} at column {column}"),
+        None => text,
+    }
 }

@@ -1,7 +1,7 @@
 //! Store handle: one database and one blob store, scoped to a tenant.
 
 use super::blobs::Blobs;
-use super::database::{Address, Database, EarlierSchema};
+use super::database::{Address, Database, EarlierSchema, PlacedFile};
 use super::error::{StoreError, at};
 use super::notes::Notes;
 use super::open_actions::OpenActions;
@@ -75,11 +75,11 @@ impl Store {
     ) -> Result<Store, StoreError> {
         let temporary = places.data.join("tmp");
         std::fs::create_dir_all(&temporary).map_err(at(&temporary))?;
-        let lock = lock(&places.data).await?;
+        let (held, lock) = lock(&places.data).await?;
         let shared = matches!(places.database, DatabaseLocation::Server { .. });
         // Before the database is opened, which may need the room.
         let spare = (!shared).then(|| Arc::new(Spare::new(&places.data)));
-        let database = Database::open(address(places)?, earlier).await?;
+        let database = Database::open(address(places, lock)?, earlier).await?;
         let open_actions = OpenActions::default();
         Ok(Store {
             tenant: DEFAULT_TENANT.into(),
@@ -97,7 +97,7 @@ impl Store {
             notes: Notes::of(open_actions.clone()),
             open_actions,
             closing: Arc::new(watch::Sender::new(false)),
-            _lock: Arc::new(lock),
+            _lock: Arc::new(held),
         })
     }
 
@@ -121,18 +121,20 @@ impl Store {
     /// Brings the schema of the database up to date.
     pub async fn migrate(places: &StorageLocations) -> Result<Migrated, StoreError> {
         // The embedded database is open in one process at a time; of a shared one the data folder has nothing.
-        let _lock = match places.database {
-            DatabaseLocation::Server { .. } => None,
+        match &places.database {
+            DatabaseLocation::Server { address, connections } => {
+                Database::migrate(Address::server(address.reveal(), *connections)?).await
+            }
             DatabaseLocation::Embedded => {
                 std::fs::create_dir_all(&places.data).map_err(at(&places.data))?;
                 let locked = lock(&places.data).await;
-                Some(locked.map_err(|error| match error {
+                let (_held, lock) = locked.map_err(|error| match error {
                     StoreError::InUse { folder } => StoreError::ServedAlready { folder },
                     other => other,
-                })?)
+                })?;
+                Database::migrate(address(places, lock)?).await
             }
-        };
-        Database::migrate(address(places)?).await
+        }
     }
 
     /// The same store over connections of its own, for a thread with an async runtime of its own.
@@ -246,26 +248,34 @@ impl Store {
 const LOCK_WITHIN: Duration = Duration::from_secs(3);
 const LOCK_PAUSE: Duration = Duration::from_millis(50);
 
-async fn lock(folder: &Path) -> Result<File, StoreError> {
-    let file = folder.join("lock");
-    let lock = File::create(&file).map_err(at(&file))?;
+/// The lock of a data folder, held as long as the file is open.
+async fn lock(folder: &Path) -> Result<(File, PlacedFile), StoreError> {
+    let path = folder.join("lock");
     let until = Instant::now() + LOCK_WITHIN;
-    while lock.try_lock().is_err() {
+    loop {
+        let held = File::create(&path).map_err(at(&path))?;
+        if held.try_lock().is_ok() {
+            let lock = PlacedFile::new(path.clone(), &held.metadata()?);
+            // One that was removed meanwhile keeps nobody out.
+            if lock.is_in_place()? {
+                return Ok((held, lock));
+            }
+        }
         if Instant::now() >= until {
             return Err(StoreError::InUse { folder: folder.to_owned() });
         }
         tokio::time::sleep(LOCK_PAUSE).await;
     }
-    Ok(lock)
 }
 
 fn embedded(places: &StorageLocations) -> PathBuf {
     places.data.join("facies.db")
 }
 
-fn address(places: &StorageLocations) -> Result<Address, StoreError> {
+/// `lock` is that of the data folder.
+fn address(places: &StorageLocations, lock: PlacedFile) -> Result<Address, StoreError> {
     Ok(match &places.database {
-        DatabaseLocation::Embedded => Address::File(embedded(places)),
+        DatabaseLocation::Embedded => Address::File { path: embedded(places), lock },
         DatabaseLocation::Server { address, connections } => {
             Address::server(address.reveal(), *connections)?
         }

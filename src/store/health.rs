@@ -72,6 +72,10 @@ impl Store {
     /// elsewhere is lost to the others.
     pub async fn check_blobs(&self) -> Result<(), StoreError> {
         self.blobs.ping().await?;
+        self.check_whose().await
+    }
+
+    async fn check_whose(&self) -> Result<(), StoreError> {
         if self.shared {
             let newest = self.newest().await?;
             if newest.meshes > 0 && !newest.is_there {
@@ -81,20 +85,34 @@ impl Store {
         self.check_owner().await
     }
 
-    /// Whether blobs are in order and the data folder takes a file.
-    pub async fn try_write(&self) -> Result<(), StoreError> {
-        self.check_blobs().await?;
+    /// Whether the store of blobs answers and is read, or its folder takes a file, and the data folder takes one. Asks no database.
+    async fn try_write(&self) -> Result<(), StoreError> {
+        self.blobs.ping().await?;
+        self.blobs.owner().await?;
         let place = self.folder.join("tmp").join(uuid::Uuid::now_v7().to_string());
         tokio::fs::write(&place, b"facies").await?;
         tokio::fs::remove_file(&place).await?;
         Ok(())
     }
 
+    /// Whether blobs are in order and the data folder takes a file, within so long.
+    async fn check_storage(&self, limit: Duration) -> Result<(), StoreError> {
+        let begun = Instant::now();
+        in_time(limit, self.try_write()).await?;
+        match in_time(limit.saturating_sub(begun.elapsed()), self.check_whose()).await {
+            // The store of blobs has just answered: it is the database that does not, which has a check of its own.
+            Err(
+                StoreError::Database(_) | StoreError::DatabaseFile(_) | StoreError::NoAnswer { .. },
+            ) => Ok(()),
+            checked => checked,
+        }
+    }
+
     /// What keeps results and uploads from being stored, nothing where they can be: blobs and the data folder take files within
     /// two seconds, the folder has `floor_bytes` free, and there is room for the reserve.
     pub async fn storage_faults(&self, floor_bytes: u64) -> Vec<StorageFault> {
         let mut faults = Vec::new();
-        if let Err(error) = in_time(STORAGE_WITHIN, self.try_write()).await {
+        if let Err(error) = self.check_storage(STORAGE_WITHIN).await {
             faults.push(StorageFault { check: "storage", reason: error.to_string() });
         }
         let short = match self.free_space() {
@@ -112,5 +130,38 @@ impl Store {
     /// Bytes free for this user on the disk of the data folder.
     pub fn free_space(&self) -> Result<u64, StoreError> {
         Ok(free_bytes(&self.folder)?)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::config::{BlobLocation, StorageLocations};
+
+    async fn with_blobs_in_a_folder() -> (tempfile::TempDir, Store) {
+        let folder = tempfile::tempdir().unwrap();
+        let blobs = BlobLocation::Folder(folder.path().join("blobs"));
+        let places = StorageLocations::in_folder(&folder.path().join("data"));
+        let store = Store::connect(&StorageLocations { blobs, ..places }).await.unwrap();
+        store.check_blobs().await.unwrap();
+        (folder, store)
+    }
+
+    #[tokio::test]
+    async fn storage_is_sound_while_only_the_database_fails_or_does_not_answer() {
+        let (folder, store) = with_blobs_in_a_folder().await;
+        let mut readers = Vec::new();
+        for _ in 0..4 {
+            readers.push(store.database.snapshot().await.unwrap());
+        }
+        let asked = in_time(STORAGE_WITHIN, store.check_owner()).await;
+        assert!(matches!(asked, Err(StoreError::NoAnswer { .. })), "{asked:?}");
+        store.check_storage(STORAGE_WITHIN).await.unwrap();
+        drop(readers);
+        std::fs::remove_file(folder.path().join("data/facies.db")).unwrap();
+        assert!(store.ping().await.is_err() && store.check_owner().await.is_err());
+        store.check_storage(STORAGE_WITHIN).await.unwrap();
+        std::fs::remove_dir_all(folder.path().join("blobs")).unwrap();
+        assert!(store.check_storage(STORAGE_WITHIN).await.is_err());
     }
 }

@@ -14,6 +14,7 @@ use super::made::MadeMesh;
 use super::references::{Content, hashes};
 use super::waiting::{MeshedCase, complete, fail_waiting, hold_case, hold_cases};
 use super::{Store, StoreError};
+use crate::schema::job::JobStatus;
 
 /// The right of one attempt to write to its job.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
@@ -75,6 +76,7 @@ const RENEW: &str = "UPDATE jobs SET lease_expires = (SELECT now_ms FROM clock) 
      progress = CASE WHEN $5 > progress THEN $5 ELSE progress END, iteration = $6, residual = $7 \
      WHERE id = $1 AND status = 'running' AND lease_token = $2";
 const HELD: &str = "SELECT 1 FROM jobs WHERE id = $1 AND status = 'running' AND lease_token = $2";
+const STATUS: &str = "SELECT status FROM jobs WHERE id = $1";
 const SUCCEED: &str = "UPDATE jobs SET status = 'successful', result = $3, progress = 100, \
      lease_token = NULL, lease_expires = NULL, phase = NULL, \
      finished = (SELECT now_ms FROM clock), updated = (SELECT now_ms FROM age_clock) \
@@ -155,6 +157,13 @@ impl Store {
             .fetch_optional(self.database.reader())
             .await?;
         Ok(row.is_some())
+    }
+
+    /// Whether a job was dismissed or erased.
+    pub async fn is_dismissed(&self, job: &str) -> Result<bool, StoreError> {
+        let row = query(STATUS).bind(job).fetch_optional(self.database.reader()).await?;
+        let Some(row) = row else { return Ok(true) };
+        Ok(row.try_get::<String, _>(0)? == JobStatus::Dismissed.name())
     }
 
     /// Publishes the result of an attempt, all of it or, when the job is not ours any more, nothing: bytes first, then one

@@ -12,7 +12,7 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 
 use super::database::{Transaction, newest_step, query, query_of};
-use super::exported_rows::{ExportedRows, absent, at, export_table, import_table, unreadable};
+use super::exported_rows::{ExportedRows, absent, at, export_table, import_table};
 use super::references::{Content, hold};
 use super::{Store, StoreError};
 use crate::schema::wire::canonical::sha256_hex;
@@ -65,6 +65,7 @@ pub struct TransferCounts {
 }
 
 #[derive(Serialize, Deserialize)]
+#[serde(expecting = "an object with `schema`, `rows` and `blobs`")]
 struct Manifest {
     /// The schema step of the rows.
     schema: i64,
@@ -105,7 +106,7 @@ impl Store {
         std::fs::create_dir(folder.join("blobs"))?;
         let sizes = self.export_blobs(folder, &manifest.blobs).await?;
         self.check_rows(folder, &manifest, Some(&sizes)).await.map_err(damaged)?;
-        let text = serde_json::to_vec_pretty(&manifest).map_err(unreadable)?;
+        let text = serde_json::to_vec_pretty(&manifest).map_err(std::io::Error::from)?;
         write_durably(&folder.join(MANIFEST), &text)?;
         Ok(TransferCounts { rows: manifest.rows.values().sum(), blobs: manifest.blobs.len() })
     }
@@ -177,7 +178,8 @@ impl Store {
         let text = std::fs::read(&file)
             .map_err(at(&file, "it has to be what `admin export` wrote"))
             .map_err(absent)?;
-        let manifest: Manifest = serde_json::from_slice(&text).map_err(unreadable)?;
+        let manifest: Manifest = serde_json::from_slice(&text)
+            .map_err(|error| StoreError::Export(format!("{}: {error}", file.display())))?;
         if manifest.schema != newest_step() {
             let (found, known) = (manifest.schema, newest_step());
             let detail = format!("it is of schema step {found}, and this program of step {known}");
@@ -294,6 +296,39 @@ fn write_durably(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::schema::key::{KeyDocument, Scope};
+
+    #[tokio::test]
+    async fn what_cannot_be_read_of_an_export_is_named_by_its_file_and_line() {
+        let folder = tempfile::tempdir().unwrap();
+        let [from, to, export] = ["from", "to", "export"].map(|name| folder.path().join(name));
+        let (store, empty) = (Store::open(&from).await.unwrap(), Store::open(&to).await.unwrap());
+        let label = "test".to_owned();
+        let key = KeyDocument { label, scopes: [Scope::Read].into(), days: None };
+        store.make_key(&key).await.unwrap();
+        store.export(&export).await.unwrap();
+        let keys = std::fs::read_to_string(export.join("keys.ndjson")).unwrap();
+        let head = keys.lines().next().unwrap();
+        let faults: [(&str, &[u8], &str); 6] = [
+            ("export.json", b"{}", ": missing field `schema` at line 1 column 2"),
+            ("export.json", b"5", ", expected an object with `schema`, `rows` and `blobs`"),
+            ("keys.ndjson", b"{}\n", ", line 1: missing field `columns` at column 2"),
+            ("keys.ndjson", b"[]\n", ", line 1: invalid length 0, expected an object with"),
+            ("keys.ndjson", b"\xff\n", ", line 1: stream did not contain valid UTF-8"),
+            ("keys.ndjson", &[head.as_bytes(), b"\n[1,\n"].concat(), ", line 2 (row 1): EOF"),
+        ];
+        for (name, text, wanted) in faults {
+            let file = export.join(name);
+            let whole = std::fs::read(&file).unwrap();
+            std::fs::write(&file, text).unwrap();
+            let told = empty.import(&export).await.unwrap_err().to_string();
+            let place = file.display().to_string();
+            assert!(told.contains(&place) && told.contains(wanted), "{wanted:?}: {told}");
+            assert!(!told.contains("struct"), "{told}");
+            std::fs::write(&file, whole).unwrap();
+        }
+        empty.import(&export).await.unwrap();
+    }
 
     #[tokio::test]
     async fn a_blob_that_went_after_the_snapshot_ends_an_export_with_the_advice_to_repeat_it() {

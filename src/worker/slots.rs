@@ -126,12 +126,9 @@ impl Shared {
         }
     }
 
-    /// The next job, unless its result could not be stored. The storage is asked where there is a job.
+    /// The next job, unless its result could not be stored.
     async fn claim(&self) -> Result<Option<Claim>, StoreError> {
-        if !self.store.has_claimable().await? || !self.storage.is_sound().await {
-            return Ok(None);
-        }
-        self.store.claim(self.lease).await
+        self.store.claim_if(self.lease, self.storage.is_sound()).await
     }
 
     fn attempt(&self, claim: &Claim, work: &mut dyn Work) {
@@ -188,8 +185,8 @@ impl Shared {
     ) -> &'static str {
         let (status, written) = match ended {
             Ok(true) => return "successful",
-            Ok(false) => return "fenced",
-            Err(_) if job.is_cancelled() => return "stopped",
+            Ok(false) => return self.not_ours(lease, "fenced"),
+            Err(_) if job.is_cancelled() => return self.not_ours(lease, "stopped"),
             Err(Failure::Cancelled) => {
                 let error = json!({
                     "type": ErrorCode::Cancelled,
@@ -218,11 +215,23 @@ impl Shared {
         };
         match written {
             Ok(true) => status,
-            Ok(false) => "fenced",
+            Ok(false) => self.not_ours(lease, "fenced"),
             Err(error) => {
                 // The lease runs out, and another attempt follows.
                 tracing::error!(%error, "how the job ended could not be written down");
                 "unwritten"
+            }
+        }
+    }
+
+    /// The word for an attempt whose job is not its own any more: another one where the job was dismissed or erased.
+    fn not_ours(&self, lease: &Lease, otherwise: &'static str) -> &'static str {
+        match self.runtime.block_on(self.store.is_dismissed(&lease.job)) {
+            Ok(true) => "dismissed",
+            Ok(false) => otherwise,
+            Err(error) => {
+                tracing::warn!(%error, "why a job was not ours any more could not be told");
+                otherwise
             }
         }
     }

@@ -157,11 +157,16 @@ async fn a_database_of_an_earlier_program_is_refused_and_stays_one_that_it_can_o
 }
 
 #[tokio::test]
-async fn a_list_of_keys_shows_control_characters_of_labels_as_text() {
+async fn a_list_of_keys_shows_unseen_characters_of_labels_as_text_and_when_keys_end() {
     let folder = tempfile::tempdir().unwrap();
     let data = folder.path().join("data");
     let new = |label| facies(&["admin", "key", "new", "--label", label, "--data", path(&data)]);
     refused(&new("\u{1b}[2J\nroot"), 2, "/label: a name has no control characters");
+    refused(
+        &new("ward\u{202e}7"),
+        2,
+        "/label: a label has no letters that nobody sees, and this one has \\u{202e}",
+    );
     assert_eq!(new("Anna's \"C:\\ward\"").status.code(), Some(0));
     let list = ["admin", "key", "list", "--data", path(&data)];
     let ends = |label: &str| {
@@ -170,9 +175,21 @@ async fn a_list_of_keys_shows_control_characters_of_labels_as_text() {
         assert_eq!(told.lines().count(), 1);
     };
     ends("Anna's \"C:\\ward\"");
-    changed(&data, "UPDATE keys SET label = char(27) || '[2J' || char(10) || 'root' || char(155)")
-        .await;
-    ends("\\u{1b}[2J\\nroot\\u{9b}");
+    changed(
+        &data,
+        "UPDATE keys SET label = char(27) || '[2J' || char(10) || 'root' || char(155, 8203)",
+    )
+    .await;
+    ends("\\u{1b}[2J\\nroot\\u{9b}\\u{200b}");
+    let tells = |state: &str| {
+        let told = text(&facies(&list).stdout);
+        assert!(told.contains(&format!("  {state}  ")), "{told:?}");
+    };
+    tells("lasts");
+    changed(&data, "UPDATE keys SET expires = 1795176912345").await;
+    tells("until 2026-11-20T12:15:12Z");
+    changed(&data, "UPDATE keys SET revoked = 1795176912345").await;
+    tells("revoked");
 }
 
 /// The last schema step of a deployment that nobody serves.
@@ -217,7 +234,7 @@ async fn a_row_that_an_import_would_refuse_is_not_exported_and_fsck_finds_it() {
     let fsck = ["admin", "fsck", "--read-all", "--data", path(&data)];
     assert_eq!(facies(&fsck).status.code(), Some(0));
     changed(&data, "UPDATE keys SET scopes = 'something else'").await;
-    let row = "keys.ndjson, row 1: column scopes holds scopes";
+    let row = "keys.ndjson, line 2 (row 1): column scopes holds scopes";
     refused(&facies(&fsck), 1, &format!("is damaged: {row}. "));
     let export = ["admin", "export", "--data", path(&data), "--to", path(&backup)];
     refused(&facies(&export), 1, row);

@@ -23,6 +23,8 @@ WAIT = {"Prefer": "wait=30"}
 PATIENCE_S = 60.0
 SKIN = "skin.glb"
 BUSY = (429, 503)
+# Between two requests to a busy service, also where something between us and it says less, or what is no number.
+LEAST_PAUSE_S = 1.0
 # Of the spec of a case file: what names the job and its files. All else says how tissue is computed.
 OF_FILES = ("kind", "case", "outputs", "range_mm", "keep", "tags")
 
@@ -52,7 +54,8 @@ class Facies:
             if answer.is_success:
                 return answer
             # In seconds, as the service sends it.
-            pause = float(answer.headers.get("Retry-After", 1))
+            told = answer.headers.get("Retry-After", "")
+            pause = max(float(told), LEAST_PAUSE_S) if told.isdecimal() else LEAST_PAUSE_S
             if answer.status_code not in BUSY or time.monotonic() + pause > until:
                 raise refusal(answer)
             time.sleep(pause)

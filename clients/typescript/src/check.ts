@@ -1,6 +1,8 @@
 // What `Facies` promises, against a service: arrays that agree with each other, progress, exceptions with codes.
 import { strict as assert } from "node:assert";
 import { readFile } from "node:fs/promises";
+import { createServer } from "node:http";
+import type { AddressInfo } from "node:net";
 import { directions, meaning, type Direction } from "./directions.js";
 import { Facies, JobFailed, NoKey, Refused, Response, type Documents, type Movement, type Upload } from "./facies.js";
 import { connect } from "./index.js";
@@ -139,6 +141,36 @@ for (const wrong of ["\n", " ", "\u001b", "\u00e9"]) {
   const broken = new Facies(process.env.FACIES_ADDRESS!, `fcs_secret${wrong}more`);
   await assert.rejects(broken.ask("GET", "/v1/cases"), (error) => error instanceof NoKey && !/secret|more/.test(error.message));
 }
+
+// Between us and a service: what redirects gets no second request, and what is busy is not asked again at once.
+const asked: string[] = [];
+const between = createServer((request, answer) => {
+  const word = request.url!.slice(1);
+  asked.push(word);
+  request.resume();
+  if (["0", "soon"].includes(word)) answer.writeHead(503, { "Retry-After": word }).end();
+  else answer.writeHead(307, { Location: "/leak" }).end();
+});
+await new Promise<void>((resolve) => between.listen(0, "127.0.0.1", resolve));
+const elsewhere = `http://127.0.0.1:${(between.address() as AddressInfo).port}`;
+const impatient = new Facies(elsewhere, "key", 1.5);
+for (const deed of [
+  () => impatient.ask("GET", "/moved"),
+  () => impatient.upload(new Blob(["mesh"]), "mm", "LPS"),
+  () => impatient.upload(new Blob(["mesh"]), "mm", "LPS", uploading),
+  () => connect(elsewhere, "key").GET("/v1/cases"),
+]) {
+  asked.length = 0;
+  await assert.rejects(deed, TypeError);
+  assert(asked.length === 1 && asked[0] !== "leak", `${asked}`);
+}
+for (const told of ["0", "soon"]) {
+  asked.length = 0;
+  await assert.rejects(impatient.ask("GET", `/${told}`), (refused) => refused instanceof Refused);
+  assert.deepEqual(asked, [told, told]);
+}
+between.closeAllConnections();
+between.close();
 
 const unknown = { segments: [{ name: "mandibel", translation_mm: [0, 4, 1] as [number, number, number] }] };
 await assert.rejects(facies.predict(head, unknown), (refused) => refused instanceof Refused

@@ -54,6 +54,8 @@ export type Applied = Omit<Documents["AppliedDocument"], "displacement_mm"> & {
 const WAIT = { Prefer: "wait=30" };
 const JSON_TYPE = { "Content-Type": "application/json" };
 const BUSY = [429, 503];
+/** Between two requests to a busy service, also where something between us and it says less, or what is no number. */
+const LEAST_PAUSE_S = 1;
 const SKIN = "skin.glb";
 const GLB = { Accept: "model/gltf-binary" };
 const OCTETS = { Accept: "application/octet-stream" };
@@ -77,7 +79,7 @@ export class Facies {
       const answer = await send();
       if (answer.ok) return answer;
       // In seconds, as the service sends it.
-      const pause = Number(answer.headers.get("Retry-After") ?? 1) * 1000;
+      const pause = Math.max(Number(answer.headers.get("Retry-After")) || 0, LEAST_PAUSE_S) * 1000;
       if (!BUSY.includes(answer.status) || Date.now() + pause > until) throw await refusal(answer);
       await new Promise((resolve) => setTimeout(resolve, pause));
     }
@@ -211,7 +213,8 @@ export class Facies {
 
   private send(method: string, path: string, body?: BodyInit, headers: Record<string, string> = {}): Promise<Response> {
     const all = { ...headers, ...this.authorization() };
-    return fetch(this.address + path, { method, headers: all, ...(body === undefined ? {} : { body }) });
+    // The service sends no redirect, and the key is for no other one.
+    return fetch(this.address + path, { method, headers: all, redirect: "error", ...(body === undefined ? {} : { body }) });
   }
 
   private authorization(): Record<string, string> {

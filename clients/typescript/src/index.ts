@@ -32,6 +32,8 @@ export function connect(address: string, key?: string): Facies {
   return createClient<paths, Media>({
     baseUrl: address,
     headers: authorization(key),
+    // The service sends no redirect, and the key is for no other one.
+    redirect: "error",
     // A file is sent as it is.
     bodySerializer: (body) => ((body as unknown) instanceof Blob ? body : JSON.stringify(body)),
   });

@@ -1,4 +1,9 @@
 //! Constrained directions of sliding nodes: the normals of the faces they lie on.
+//!
+//! The normal of a wall at a node is the mean of those of its faces, weighted by their areas: the direction of the nodal force of a
+//! uniform pressure, so that tissue under uniform stress stays so between walls that meet at an edge. Weights by angle would let a curved
+//! wall turn about its axis at its ends too, but push tissue along it there. Source: Engelman, Sani, Gresho, The implementation of normal
+//! and/or tangential boundary conditions in finite element codes for incompressible fluid flow, 1982.
 
 use std::collections::HashMap;
 

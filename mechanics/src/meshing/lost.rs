@@ -6,7 +6,7 @@
 
 use std::sync::LazyLock;
 
-use nalgebra::Matrix3;
+use nalgebra::{Matrix3, Vector3};
 
 use super::draft::{Draft, FACES};
 use super::error::MeshingError;
@@ -22,11 +22,12 @@ const POINTS: usize = 16;
 /// Powers of the inverse of the root of x⁴ = x + 1. Source: Roberts, The unreasonable effectiveness of quasirandom sequences, 2018.
 const SPREAD: [f64; 3] =
     [0.819_172_513_396_164_4, 0.671_043_606_703_789_2, 0.549_700_477_901_970_3];
-/// From the lowest corner of a leaf with edges of 1.
-static OFFSETS: LazyLock<[Vector; POINTS]> = LazyLock::new(|| {
-    let along = |n: usize| SPREAD.map(|step| (0.5 + step * (n + 1) as f64).fract());
-    std::array::from_fn(|n| along(n).into())
+/// From the lowest corner of a leaf with edges of 1, by axis.
+static OFFSETS: LazyLock<[[f32; POINTS]; 3]> = LazyLock::new(|| {
+    SPREAD.map(|step| std::array::from_fn(|n| (0.5 + step * (n + 1) as f64).fract() as f32))
 });
+/// Points so little outside a cell, in parts of its height, lie in it, so that none is between two cells by rounding.
+const BETWEEN: f32 = 1e-5;
 /// A point farther from all cells than this part of the edge of its leaf is lost. Chords of a boundary with the radius of an edge are
 /// an eighth off it.
 const DEEP: f64 = 0.25;
@@ -154,7 +155,8 @@ fn points(leaves: &Leaves, leaf: u32) -> impl Iterator<Item = Point> {
     let (grid, Leaf { corner, size, .. }) = (&leaves.tree.grid, &leaves.list[leaf as usize]);
     let (edge, corner) = (f64::from(*size) * grid.unit, grid.position(*corner));
     let volume = edge.powi(3) / POINTS as f64;
-    OFFSETS.iter().map(move |off| Point { at: corner + off * edge, volume })
+    let off = |n: usize| Vector::from(OFFSETS.map(|offsets| f64::from(offsets[n])));
+    (0..POINTS).map(move |n| Point { at: corner + off(n) * edge, volume })
 }
 
 /// Leaves that touch a leaf; of several smaller ones at a face or an edge not all.
@@ -191,19 +193,32 @@ fn add_inside(
     let [first, edges @ ..] = *corners;
     let edges = Matrix3::from_columns(&edges.map(|corner| corner - first));
     let Some(shares) = edges.try_inverse() else { return };
-    let is_inside = |at: &Vector| {
-        let share = shares * (at - first);
-        let [x, y, z] = share.into();
-        x >= 0.0 && y >= 0.0 && z >= 0.0 && x + y + z <= 1.0
-    };
     for &leaf in near.iter() {
-        let bits = points(leaves, leaf).zip(0..);
-        let bits =
-            bits.filter(|(point, _)| is_inside(&point.at)).fold(0, |bits, (_, n)| bits | 1 << n);
+        let Leaf { corner, size, .. } = leaves.list[leaf as usize];
+        let from = shares * (grid.position(corner) - first);
+        let along = shares * (f64::from(size) * grid.unit);
+        let share = |n: usize| (from[n] as f32, along.row(n).transpose().map(|by| by as f32));
+        let bits = points_inside([0, 1, 2].map(share));
         if bits != 0 {
             list.push((leaf, bits));
         }
     }
+}
+
+/// The points of a leaf in a tetrahedron, a bit each, by three of its barycentric coordinates: at the lowest corner of the leaf, and how they
+/// change along its edges.
+fn points_inside(shares: [(f32, Vector3<f32>); 3]) -> u16 {
+    let [xs, ys, zs] = &*OFFSETS;
+    let (mut least, mut last) = ([1.0_f32; POINTS], [1.0_f32; POINTS]);
+    for (from, along) in shares {
+        for n in 0..POINTS {
+            let share = from + along.x * xs[n] + along.y * ys[n] + along.z * zs[n];
+            least[n] = least[n].min(share);
+            last[n] -= share;
+        }
+    }
+    let is_inside = |n: usize| least[n].min(last[n]) >= -BETWEEN;
+    (0..POINTS).fold(0, |bits, n| bits | u16::from(is_inside(n)) << n)
 }
 
 fn piece(points: &[Point]) -> Option<LostPiece> {

@@ -2,7 +2,6 @@
 
 use super::boundary_set::BoundarySet;
 use super::draft::{Draft, FACES};
-use super::shape::worst_sine;
 use crate::domain::Domain;
 use crate::mesh::Vector;
 
@@ -30,11 +29,15 @@ const INWARDS: [f64; 4] = [0.1, 0.03, 0.01, 1e-3];
 /// What their worst cells keep of their sine.
 const HARDLY: f64 = 0.9;
 
-/// A cell of the star: its corners, and which of them is the node.
+/// A cell of the star by what stays when the node moves.
 #[derive(Clone, Copy)]
 struct StarCell {
-    corners: [Vector; 4],
-    own: usize,
+    /// The face that lacks the node, outwards.
+    face: [Vector; 3],
+    /// The squares of the lengths of its sides, each from a corner to the next.
+    sides: [f64; 3],
+    /// One over the square of twice its area.
+    inverse: f64,
 }
 
 /// Where a node goes, and the boundaries on which it lies there.
@@ -68,15 +71,18 @@ impl<'a> Star<'a> {
         let cells = tetrahedra.iter().map(|&tet| {
             let nodes = &draft.tetrahedra[tet as usize];
             let own = nodes.iter().position(|&other| other == node).unwrap_or_default();
-            StarCell { corners: draft.corners(nodes), own }
+            StarCell::new(&draft.corners(nodes), own)
         });
-        let cells: Vec<StarCell> = cells.collect();
-        let edges = cells.iter().flat_map(|cell| cell.corners.map(|at| (at - here).norm()));
+        let mut cells: Vec<StarCell> = cells.collect();
+        let edges = cells.iter().flat_map(|cell| cell.face.map(|at| (at - here).norm()));
         let reach = edges.fold(0.0, f64::max);
         let boundaries = draft.boundaries[node as usize];
-        let mut star = Star { cells, domain, boundaries, here, reach, worst: 0.0 };
-        star.worst = star.worst_at(&here, f64::NEG_INFINITY);
-        star
+        let sines = cells.iter().map(|cell| cell.sine_at(&here)).enumerate();
+        let worst = sines.min_by(|(_, one), (_, other)| one.total_cmp(other));
+        let (first, worst) = worst.unwrap_or((0, f64::INFINITY));
+        // Most places are worse for the worst cell already.
+        cells.swap(0, first);
+        Star { cells, domain, boundaries, here, reach, worst }
     }
 
     /// A place for the node where the worst cell is better, if one is found.
@@ -200,7 +206,7 @@ impl<'a> Star<'a> {
     /// The gradient of the volume of all cells by the place of the node, times six: outwards, nothing inside the mesh.
     fn outward(&self) -> Vector {
         let gradients = self.cells.iter().map(|cell| {
-            let [a, b, c] = FACES[OPPOSITE[cell.own]].map(|corner| cell.corners[corner]);
+            let [a, b, c] = cell.face;
             (b - a).cross(&(c - a))
         });
         -gradients.sum::<Vector>()
@@ -208,7 +214,7 @@ impl<'a> Star<'a> {
 
     /// To the mean of the other corners.
     fn to_middle(&self) -> Vector {
-        let sum = self.cells.iter().map(|cell| cell.corners.iter().sum::<Vector>() - self.here);
+        let sum = self.cells.iter().map(|cell| cell.face.iter().sum::<Vector>());
         sum.sum::<Vector>() / (3.0 * self.cells.len() as f64) - self.here
     }
 
@@ -235,9 +241,46 @@ impl<'a> Star<'a> {
 }
 
 impl StarCell {
+    fn new(corners: &[Vector; 4], own: usize) -> Self {
+        let face = FACES[OPPOSITE[own]].map(|corner| corners[corner]);
+        let [a, b, c] = face;
+        let sides = [b - a, c - b, a - c].map(|side| side.norm_squared());
+        StarCell { face, sides, inverse: 1.0 / (b - a).cross(&(c - a)).norm_squared() }
+    }
+
+    /// `worst_sine` with the node at a place.
     fn sine_at(&self, place: &Vector) -> f64 {
-        let mut corners = self.corners;
-        corners[self.own] = *place;
-        worst_sine(&corners)
+        let [a, b, c] = self.face.map(|corner| corner - place);
+        let normals = [a.cross(&b), b.cross(&c), c.cross(&a)];
+        let inverse = normals.map(|normal| 1.0 / normal.norm_squared());
+        let determinant = normals[0].dot(&c);
+        let edges = [a, b, c].map(|edge| edge.norm_squared());
+        let at_side = |n: usize| self.sides[n] * self.inverse * inverse[n];
+        let at_edge = |n: usize| edges[n] * inverse[n] * inverse[(n + 2) % 3];
+        let smallest = |of: &dyn Fn(usize) -> f64| of(0).min(of(1)).min(of(2));
+        let smallest = smallest(&at_side).min(smallest(&at_edge));
+        // A face without area has no normal; the sine is 0 then.
+        if smallest.is_finite() { determinant * smallest.sqrt() } else { 0.0 }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::meshing::shape::worst_sine;
+
+    #[test]
+    fn the_sine_of_a_cell_of_a_star_is_that_of_the_cell_with_its_node_moved() {
+        let corners = [[0.0, 0.0, 0.0], [1.2, 0.1, 0.0], [0.3, 0.9, 0.2], [0.4, 0.2, 1.1]];
+        let corners = corners.map(Vector::from);
+        for own in 0..4 {
+            let cell = StarCell::new(&corners, own);
+            for by in [[0.0, 0.0, 0.0], [0.1, -0.2, 0.05], [3.0, -2.0, 1.0], [-2.0, 1.0, 2.0]] {
+                let mut moved = corners;
+                moved[own] += Vector::from(by);
+                let (sine, expected) = (cell.sine_at(&moved[own]), worst_sine(&moved));
+                assert!((sine - expected).abs() < 1e-14, "{own} {by:?}: {sine} {expected}");
+            }
+        }
     }
 }

@@ -14,7 +14,7 @@ use crate::mesh::volume::BoundaryFace;
 pub(super) const THIN_STIFF_LAYER: &str = "thin-stiff-layer";
 
 /// How many times as stiff as a neighbour a cell is from which on a single layer is reported.
-const STIFFER: f64 = 30.0;
+const STIFFER: f64 = 15.0;
 /// The same along its fibres.
 const STIFFER_ALONG: f64 = 8.0;
 

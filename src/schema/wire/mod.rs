@@ -3,6 +3,7 @@
 pub mod canonical;
 pub mod date;
 pub mod fault;
+pub mod letters;
 pub mod limits;
 pub mod names;
 pub mod numbers;

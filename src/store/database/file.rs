@@ -1,4 +1,5 @@
-//! The file of an embedded database: whether what is open is what its path names, and whether it is damaged.
+//! The file of an embedded database: whether what is open is what its path names, whether the folder is still that of this process, and
+//! whether the file is damaged.
 
 use std::ffi::OsString;
 use std::fs::Metadata;
@@ -18,6 +19,11 @@ pub enum FileFault {
          place and restart the service"
     )]
     Replaced,
+    #[error(
+        "the file `lock` of the data folder is another or gone since this process took it, and another facies may use the database: end \
+         that one and restart the service"
+    )]
+    LockReplaced,
     #[error(
         "the log of the database, `facies.db-wal`, is gone while it is in use, and what is written would be lost: restart the service"
     )]
@@ -48,22 +54,45 @@ fn identity(file: &Metadata) -> Identity {
     (file.dev(), file.ino(), file.created().ok())
 }
 
+/// A path, and the file that it named when that was opened.
+#[derive(Clone, Debug)]
+pub struct PlacedFile {
+    path: PathBuf,
+    opened: Identity,
+}
+
+impl PlacedFile {
+    pub fn new(path: PathBuf, file: &Metadata) -> PlacedFile {
+        PlacedFile { path, opened: identity(file) }
+    }
+
+    /// Whether the path names this file.
+    pub fn is_in_place(&self) -> Result<bool, Error> {
+        match self.path.metadata() {
+            Ok(found) => Ok(identity(&found) == self.opened),
+            Err(error) if error.kind() == ErrorKind::NotFound => Ok(false),
+            Err(error) => Err(error),
+        }
+    }
+}
+
 /// The file that was opened at the start. Its first fault stays.
 #[derive(Debug)]
 pub struct DatabaseFile {
-    path: PathBuf,
+    file: PlacedFile,
+    /// The lock of its folder, which this process holds.
+    lock: PlacedFile,
     log: PathBuf,
-    opened: Identity,
     fault: OnceLock<FileFault>,
 }
 
 impl DatabaseFile {
     /// The file at this path, which has just been opened.
-    pub fn opened(path: &Path) -> Result<DatabaseFile, Error> {
+    pub fn opened(path: &Path, lock: PlacedFile) -> Result<DatabaseFile, Error> {
         let mut log = OsString::from(path);
         log.push("-wal");
-        let opened = identity(&path.metadata()?);
-        Ok(DatabaseFile { path: path.into(), log: log.into(), opened, fault: OnceLock::new() })
+        let file = PlacedFile::new(path.into(), &path.metadata()?);
+        Ok(DatabaseFile { file, lock, log: log.into(), fault: OnceLock::new() })
     }
 
     /// Whether it had a fault.
@@ -71,15 +100,17 @@ impl DatabaseFile {
         self.fault.get().is_some()
     }
 
-    /// Refuses a file that had a fault, or that is not at its path any more.
+    /// Refuses a file that had a fault, or that is not at its path any more, and one in a folder whose lock is not at its path.
     pub fn check(&self) -> Result<(), sqlx::Error> {
         if let Some(fault) = self.fault.get() {
             return Err(fault.clone().into());
         }
-        match self.path.metadata() {
-            Ok(found) if identity(&found) == self.opened => Ok(()),
-            Err(error) if error.kind() != ErrorKind::NotFound => Err(error.into()),
-            _ => Err(self.gives_up(FileFault::Replaced)),
+        if !self.file.is_in_place()? {
+            return Err(self.gives_up(FileFault::Replaced));
+        }
+        match self.lock.is_in_place()? {
+            true => Ok(()),
+            false => Err(self.gives_up(FileFault::LockReplaced)),
         }
     }
 
@@ -112,7 +143,7 @@ impl DatabaseFile {
 
     fn gives_up(&self, fault: FileFault) -> sqlx::Error {
         let first = self.fault.get_or_init(|| {
-            tracing::error!(file = %self.path.display(), %fault, "the database is given up");
+            tracing::error!(file = %self.file.path.display(), %fault, "the database is given up");
             fault
         });
         first.clone().into()

@@ -1,6 +1,6 @@
 //! Database handle for either engine: connections, migration, queries.
 
-use super::file::DatabaseFile;
+use super::file::{DatabaseFile, PlacedFile};
 use super::run::{Open, Pool, Transaction, Writer};
 use super::schema::{Column, Migrated};
 use super::{postgres, schema, sqlite};
@@ -15,8 +15,8 @@ use std::time::Duration;
 /// Where the rows are.
 #[derive(Clone)]
 pub(in crate::store) enum Address {
-    /// A file of SQLite, which one process has to itself.
-    File(PathBuf),
+    /// A file of SQLite, which one process has to itself by the lock of its folder.
+    File { path: PathBuf, lock: PlacedFile },
     /// A PostgreSQL that many processes share.
     Server { options: Box<PgConnectOptions>, connections: u32 },
 }
@@ -32,7 +32,7 @@ impl Address {
     /// Concurrent writers; on a server some connections are left to readers.
     fn writers(&self) -> usize {
         match self {
-            Address::File(_) => 1,
+            Address::File { .. } => 1,
             Address::Server { connections, .. } => {
                 let readers = (connections / 4).max(1);
                 connections.saturating_sub(readers).max(1) as usize
@@ -43,7 +43,7 @@ impl Address {
     /// Time after which a waiting writer gives up and its client gets `Retry-After`.
     fn patience(&self) -> Duration {
         match self {
-            Address::File(_) => sqlite::ACQUIRE_TIMEOUT,
+            Address::File { .. } => sqlite::ACQUIRE_TIMEOUT,
             Address::Server { .. } => postgres::ACQUIRE_TIMEOUT,
         }
     }
@@ -86,15 +86,15 @@ impl Database {
         let database = Database::connect(address, None, "write").await?;
         let pool = &database.writer;
         match (&database.address, earlier) {
-            (Address::File(file), EarlierSchema::Migrate) => {
+            (Address::File { path, .. }, EarlierSchema::Migrate) => {
                 let Migrated { from, to } =
-                    schema::migrate(pool).await.map_err(|error| error.of_file(file))?;
+                    schema::migrate(pool).await.map_err(|error| error.of_file(path))?;
                 if (1..to).contains(&from) {
                     tracing::info!(from, to, "the database was brought to another schema step");
                 }
             }
-            (Address::File(file), EarlierSchema::Refuse) => {
-                schema::make(pool).await.map_err(|error| error.of_file(file))?;
+            (Address::File { path, .. }, EarlierSchema::Refuse) => {
+                schema::make(pool).await.map_err(|error| error.of_file(path))?;
             }
             (Address::Server { .. }, _) => schema::check(pool).await?,
         }
@@ -104,7 +104,7 @@ impl Database {
     /// Brings the schema up to date, each step in a transaction of its own.
     pub async fn migrate(address: Address) -> Result<Migrated, StoreError> {
         let database = match address {
-            Address::File(_) => Database::connect(address, None, "write").await?,
+            Address::File { .. } => Database::connect(address, None, "write").await?,
             // A step may take longer than any request is allowed to.
             Address::Server { options, .. } => {
                 let connected = postgres::unlimited(&options).await;
@@ -128,7 +128,7 @@ impl Database {
             Address::Server { options, .. } => {
                 Address::Server { options: options.clone(), connections: 2 }
             }
-            file @ Address::File(_) => file.clone(),
+            file @ Address::File { .. } => file.clone(),
         };
         Database::connect(address, self.file().cloned(), "write again").await
     }
@@ -148,10 +148,10 @@ impl Database {
         what: &'static str,
     ) -> Result<Database, StoreError> {
         let (writer, reader) = match &address {
-            Address::File(file) => {
-                let connected = sqlite::connect(file, known).await;
+            Address::File { path, lock } => {
+                let connected = sqlite::connect(path, lock, known).await;
                 let (writer, reader) =
-                    connected.map_err(|source| StoreError::from(source).of_file(file))?;
+                    connected.map_err(|source| StoreError::from(source).of_file(path))?;
                 (Arc::new(Pool::Sqlite(writer)), Arc::new(Pool::Sqlite(reader)))
             }
             Address::Server { options, connections } => {
@@ -214,7 +214,7 @@ impl Database {
     /// Where it is, for messages.
     pub fn place(&self) -> String {
         match &self.address {
-            Address::File(file) => file.display().to_string(),
+            Address::File { path, .. } => path.display().to_string(),
             Address::Server { options, .. } => postgres::name(options),
         }
     }
@@ -278,7 +278,7 @@ impl Database {
     /// has files of its own.
     pub async fn empty_log(&self) -> Result<bool, StoreError> {
         match &self.address {
-            Address::File(path) => {
+            Address::File { path, .. } => {
                 let Some(file) = self.file() else { return Ok(true) };
                 file.check()?;
                 Ok(file.watched(sqlite::empty_log(path).await)?)

@@ -18,6 +18,7 @@ mod value;
 pub use errors::{
     is_damaged, is_duplicate, is_full, is_read_only, is_reference, is_refused, is_unavailable,
 };
+pub(super) use file::PlacedFile;
 pub use file::{FileFault, fault_of};
 pub(super) use handle::{Address, BeforeWriting, Database, EarlierSchema};
 use run::Pool;

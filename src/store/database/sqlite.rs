@@ -13,7 +13,7 @@ use sqlx::sqlite::{
 };
 use sqlx::{AssertSqlSafe, Connection, Either, Executor, SqlSafeStr};
 
-use super::file::DatabaseFile;
+use super::file::{DatabaseFile, PlacedFile};
 use super::sqlite_codes::damage;
 use super::{Row, RowSink, Statement, Value};
 
@@ -67,9 +67,10 @@ impl Connections {
 }
 
 /// One connection that writes, so that writers queue here instead of failing with BUSY, and several that read. The file is made only
-/// where it is not `known`.
+/// where it is not `known`. `lock` is that of its folder.
 pub async fn connect(
     path: &Path,
+    lock: &PlacedFile,
     known: Option<Arc<DatabaseFile>>,
 ) -> Result<(Connections, Connections), sqlx::Error> {
     known.iter().try_for_each(|file| file.check())?;
@@ -84,7 +85,7 @@ pub async fn connect(
     writer.set_connect_options(options.clone());
     let file = match known {
         Some(file) => file,
-        None => Arc::new(DatabaseFile::opened(path)?),
+        None => Arc::new(DatabaseFile::opened(path, lock.clone())?),
     };
     let reader = pool.max_connections(READERS).connect_lazy_with(options);
     Ok((Connections { pool: writer, file: file.clone() }, Connections { pool: reader, file }))

@@ -184,6 +184,13 @@ impl Process {
         }
     }
 
+    /// Asks it, while it has no job, whether it can take one: it says [`Report::Ready`], or dies or stands still.
+    pub fn ping(&self, wait: Duration) -> Output {
+        // Where it cannot be asked it does not answer.
+        let _ = self.tell(&Order::Ping);
+        self.receive(wait)
+    }
+
     /// Assigns the lines on standard error from here on to a job.
     pub fn set_log_owner(&self, job: Option<(&str, i64)>) {
         lock(&self.log).job = job.map(|(job, attempt)| (job.to_owned(), attempt));

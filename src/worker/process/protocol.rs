@@ -25,6 +25,8 @@ pub enum Order {
     /// Comes first, once.
     Start(Box<Settings>),
     Work(Assignment),
+    /// Asks whether work may come: [`Report::Ready`] is the answer of a process without work.
+    Ping,
     /// Ends the work at its next check.
     Stop,
     Answer(Answer),

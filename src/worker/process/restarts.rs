@@ -1,10 +1,13 @@
-//! When the process of a slot may start anew: at once, or later after each crash in a row.
+//! Ends and starts of the process of a slot: when it makes room for a fresh one, and when that may start, at once or later after
+//! each crash in a row.
 
 use std::time::{Duration, Instant};
 
 /// Waits after one death more than one in a row; each is twice the one before.
 const FIRST_WAIT: Duration = Duration::from_millis(100);
 const LONGEST_WAIT: Duration = Duration::from_secs(10);
+/// After so many jobs a process makes room for a fresh one.
+const JOBS_OF_A_PROCESS: usize = 1000;
 
 #[derive(Default)]
 pub struct Restarts {
@@ -36,6 +39,23 @@ impl Restarts {
     }
 }
 
+/// Why a process is not to be used again, if so: a bug may have left anything, many jobs leave memory in pieces, and a
+/// half of the memory that is not given back is missing in the next job.
+pub fn recycling(
+    panicked: bool,
+    jobs: usize,
+    bytes: Option<u64>,
+    limit: u64,
+) -> Option<&'static str> {
+    if panicked {
+        return Some("panic");
+    }
+    if jobs >= JOBS_OF_A_PROCESS {
+        return Some("jobs");
+    }
+    bytes.filter(|bytes| *bytes > limit / 2).map(|_| "memory")
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -52,5 +72,14 @@ mod tests {
         assert_eq!(restarts.wait(), None);
         restarts.died();
         assert_eq!(restarts.wait(), None, "the row begins anew");
+    }
+
+    #[test]
+    fn a_process_is_used_until_it_panics_is_old_or_keeps_half_of_its_memory() {
+        assert_eq!(recycling(false, JOBS_OF_A_PROCESS - 1, Some(500), 1000), None);
+        assert_eq!(recycling(true, 1, Some(1), 1000), Some("panic"));
+        assert_eq!(recycling(false, JOBS_OF_A_PROCESS, Some(1), 1000), Some("jobs"));
+        assert_eq!(recycling(false, 1, Some(501), 1000), Some("memory"));
+        assert_eq!(recycling(false, 1, None, 1000), None);
     }
 }

@@ -53,7 +53,11 @@ pub fn serve() -> Result<(), SlotError> {
         cache: Mutex::new(MeshCache::new(settings.cache_bytes)),
     };
     reports.tell(&Report::Ready);
-    for assignment in heard.assignments {
+    for order in heard.work {
+        let Order::Work(assignment) = order else {
+            reports.tell(&Report::Ready);
+            continue;
+        };
         let progress = ProgressReporter::new(&reports, &ears, &assignment);
         let outcome = pool.install(|| outcome(&assignment, &source, &settings, &progress));
         let memory = memory::usage("self");
@@ -91,7 +95,8 @@ fn outcome(
 
 /// Incoming messages, by kind.
 struct Inbox {
-    assignments: Receiver<Assignment>,
+    /// Assignments and pings.
+    work: Receiver<Order>,
     answers: Receiver<FullAnswer>,
 }
 
@@ -100,27 +105,27 @@ type StopFlag = Arc<AtomicBool>;
 
 /// Reads orders on a thread of its own, so that a solver can be told to stop, and a closed pipe ends the process.
 fn listen(mut orders: BufReader<io::Stdin>) -> Result<(StopFlag, Inbox), SlotError> {
-    let (assign, assignments) = channel();
+    let (give, work) = channel();
     let (answer, answers) = channel();
     let stop = StopFlag::default();
     let ears = stop.clone();
     std::thread::Builder::new().name("orders".into()).spawn(move || {
         while let Ok(Some(order)) = read_message(&mut orders) {
-            if take(order, &mut orders, &stop, &assign, &answer).is_none() {
+            if take(order, &mut orders, &stop, &give, &answer).is_none() {
                 break;
             }
         }
         // The worker is gone or breaks the protocol: no result can be delivered.
         std::process::exit(0);
     })?;
-    Ok((ears, Inbox { assignments, answers }))
+    Ok((ears, Inbox { work, answers }))
 }
 
 fn take(
     order: Order,
     orders: &mut BufReader<io::Stdin>,
     stop: &AtomicBool,
-    assign: &Sender<Assignment>,
+    give: &Sender<Order>,
     answer: &Sender<FullAnswer>,
 ) -> Option<()> {
     match order {
@@ -129,10 +134,11 @@ fn take(
             stop.store(true, Ordering::Relaxed);
             Some(())
         }
-        Order::Work(assignment) => {
+        Order::Work(_) => {
             stop.store(false, Ordering::Relaxed);
-            assign.send(assignment).ok()
+            give.send(order).ok()
         }
+        Order::Ping => give.send(order).ok(),
         Order::Answer(Answer::Bytes) => {
             let bytes = read_frame(orders).ok()??;
             answer.send((Answer::Bytes, bytes)).ok()

@@ -11,7 +11,7 @@ use super::answers::Answers;
 use super::child::{Death, Output, Process, Program};
 use super::memory::Usage;
 use super::protocol::{Assignment, Order, Outcome, Products, Question, Report, Settings};
-use super::restarts::Restarts;
+use super::restarts::{Restarts, recycling};
 use super::spent::{MemoryBound, megabytes, out_of_memory, over_time};
 use crate::library::meshes::Library;
 use crate::metrics;
@@ -24,8 +24,8 @@ use mechanics::progress::{Phase, Progress};
 /// How long a process may take to begin, itself or a job that it was given: no longer than a job may go on after its budget,
 /// which counts from there.
 const BEGIN: Duration = GRACE;
-/// After so many jobs a process makes room for a fresh one.
-const JOBS_OF_A_PROCESS: usize = 1000;
+/// How long a process without a job may take to answer. A healthy one that is killed for being late costs no job anything.
+const ANSWER: Duration = Duration::from_secs(2);
 
 /// Shared state of all slots of a worker.
 pub struct SlotSettings {
@@ -90,6 +90,22 @@ impl SlotWork {
             Output::Nothing => Err(format!("it was not ready after {} s", BEGIN.as_secs())),
             Output::Report(_) | Output::Gone => Err(process.end().to_string()),
         }
+    }
+
+    /// Ends a process that has died or stands still without a job: given to it, a job would lose an attempt.
+    fn end_unresponsive(&mut self) {
+        let Some(process) = self.process.take() else { return };
+        let why = match process.ping(ANSWER) {
+            Output::Report(Report::Ready) => {
+                self.process = Some(process);
+                return;
+            }
+            Output::Gone => process.end().name(),
+            // It is killed when it is dropped.
+            Output::Nothing | Output::Report(_) => "silent",
+        };
+        tracing::warn!(why, "the process of a slot died or stood still without a job");
+        self.died(why);
     }
 
     /// Delays the next start, longer after each crash in a row.
@@ -184,6 +200,7 @@ impl SlotWork {
 
 impl Work for SlotWork {
     fn prepare(&mut self) -> Result<(), Duration> {
+        self.end_unresponsive();
         if let Some(wait) = self.restarts.wait() {
             return Err(wait);
         }
@@ -327,18 +344,6 @@ impl Attempt<'_> {
     }
 }
 
-/// Why a process is not to be used again, if so: a bug may have left anything, many jobs leave memory in pieces, and a
-/// half of the memory that is not given back is missing in the next job.
-fn recycling(panicked: bool, jobs: usize, bytes: Option<u64>, limit: u64) -> Option<&'static str> {
-    if panicked {
-        return Some("panic");
-    }
-    if jobs >= JOBS_OF_A_PROCESS {
-        return Some("jobs");
-    }
-    bytes.filter(|bytes| *bytes > limit / 2).map(|_| "memory")
-}
-
 fn finished(outcome: Outcome, folder: &Path) -> Result<Finished, Failure> {
     match outcome {
         Outcome::Done(Products { result, files, meshes, effort }) => Ok(Finished {
@@ -366,19 +371,5 @@ fn finished(outcome: Outcome, folder: &Path) -> Result<Finished, Failure> {
             // The same job would meet the same bug: it is the job's own, until somebody shows otherwise.
             Err(Failure::Permanent(broke_off(ErrorClass::Numerical)))
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_process_is_used_until_it_panics_is_old_or_keeps_half_of_its_memory() {
-        assert_eq!(recycling(false, JOBS_OF_A_PROCESS - 1, Some(500), 1000), None);
-        assert_eq!(recycling(true, 1, Some(1), 1000), Some("panic"));
-        assert_eq!(recycling(false, JOBS_OF_A_PROCESS, Some(1), 1000), Some("jobs"));
-        assert_eq!(recycling(false, 1, Some(501), 1000), Some("memory"));
-        assert_eq!(recycling(false, 1, None, 1000), None);
     }
 }

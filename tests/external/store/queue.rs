@@ -10,6 +10,7 @@ use crate::support::trials::trials;
 trials! {
     on_both {
         a_job_is_claimed_by_one_worker_only
+        a_job_whose_claim_has_a_condition_stays_as_it_is_while_that_does_not_hold
         a_job_that_loses_its_worker_three_times_fails_as_worker_lost
         a_worker_that_was_thought_dead_publishes_nothing
         leases_and_pauses_outlive_no_clock_that_goes_back
@@ -53,6 +54,21 @@ async fn a_job_is_claimed_by_one_worker_only(on: Deployment) {
     assert_eq!(claims.len(), 1);
     assert_eq!(claims[0].lease.job, id);
     assert_eq!(job(&store, &id).await.attempt, 1);
+}
+
+async fn a_job_whose_claim_has_a_condition_stays_as_it_is_while_that_does_not_hold(on: Deployment) {
+    let store = on.open().await;
+    let unasked = async { panic!("nobody has to know where there is no job") };
+    assert!(store.claim_if(LEASE, unasked).await.unwrap().is_none());
+    let id = enqueue(&store, "a").await;
+    let before = job(&store, &id).await;
+    assert!(store.claim_if(LEASE, async { false }).await.unwrap().is_none());
+    let after = job(&store, &id).await;
+    assert_eq!(
+        (after.status, after.attempt, after.updated),
+        (JobStatus::Accepted, 0, before.updated)
+    );
+    assert_eq!(store.claim_if(LEASE, async { true }).await.unwrap().unwrap().lease.job, id);
 }
 
 async fn a_worker_that_was_thought_dead_publishes_nothing(on: Deployment) {

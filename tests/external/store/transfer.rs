@@ -202,7 +202,7 @@ async fn a_row_of_an_export_that_does_not_fit_is_refused_before_anything_is_stor
         let changed = format!("{head}\n{}", changed.split_once('\n').unwrap().1);
         std::fs::write(&meshes, changed).unwrap();
         let error = store.import(&folder).await.unwrap_err().to_string();
-        assert!(error.contains("meshes.ndjson, row 1: "), "{error}");
+        assert!(error.contains("meshes.ndjson, line 2 (row 1): "), "{error}");
         assert!(error.contains(wanted), "{error}");
         assert_eq!(blob_count(&store).await, 0);
     }
@@ -286,13 +286,16 @@ async fn what_the_service_could_not_read_is_refused_with_its_row_and_column(on: 
         let place = place_of(&changed[0], column);
         changed[1][place] = value;
         let error = refusal(&store, &folder, table, &changed).await;
-        assert!(error.contains(&format!("{table}.ndjson, row 1: {wanted}")), "{error}");
+        assert!(error.contains(&format!("{table}.ndjson, line 2 (row 1): {wanted}")), "{error}");
     }
     let mut changed = lines(&folder, "jobs");
     let id = place_of(&changed[0], "id");
     changed[2][id] = changed[1][id].clone();
     let error = refusal(&store, &folder, "jobs", &changed).await;
-    assert!(error.contains("jobs.ndjson, row 2: a row before it has the same key"), "{error}");
+    assert!(
+        error.contains("jobs.ndjson, line 3 (row 2): a row before it has the same key"),
+        "{error}"
+    );
 
     // As that of a case which is being meshed.
     let mut changed = lines(&folder, "cases");

@@ -166,6 +166,11 @@ async fn what_has_no_certain_length_is_refused_and_its_connection_closed() {
         ("72 no size of a chunk", format!("{chunked}FFFFFFFFFFFFFFFFF\r\n{{}}\r\n0\r\n\r\n")),
         ("72 a chunk with a bare LF", format!("{chunked}2\n{{}}\n0\n\n")),
         (
+            "72 a coding besides chunks",
+            "Connection: close\r\nTransfer-Encoding: gzip, chunked\r\n\r\n2\r\n{}\r\n0\r\n\r\n"
+                .to_owned(),
+        ),
+        (
             "72 less than the length",
             "Content-Length: 2\r\n\r\n{} /v1/jobs HTTP/1.1\r\n\r\n".to_owned(),
         ),

@@ -21,6 +21,8 @@ async fn a_client_that_asks_too_often_gets_retry_after() {
     assert_eq!(refused.problem(429, "rate-limited")["limit"], 3);
     let seconds: u64 = refused.header("retry-after").parse().unwrap();
     assert!((1..=21).contains(&seconds), "{seconds}");
+    assert_eq!(refused.header("ratelimit-policy"), "\"requests\";q=3;w=60");
+    assert!(refused.header("ratelimit").starts_with("\"requests\";r=0;t="));
     // Probes are not counted.
     ask(server.get("/healthz")).await.expect(StatusCode::OK);
     let unbounded = Server::start_with(&["--requests-per-minute", "0"]);
@@ -57,6 +59,8 @@ async fn what_was_counted_is_reported_on_a_listener_of_its_own() {
     ask(server.get("/v1/jobs/nothing")).await;
     ask(server.get("/nothing")).await;
     ask(server.get("/metrics")).await.problem(404, "not-found");
+    let beside = metrics.replace("/metrics", "/nothing");
+    ask(server.client.get(beside)).await.problem(404, "not-found");
 
     let answer = until("the attempt is counted, after its result is there for all", async || {
         let answer = ask(server.client.get(&metrics)).await;

@@ -19,7 +19,9 @@ async fn is_given_up(server: &mut Server, case: &str) {
         assert!(is_shed(&ask(server.post("/v1/jobs").json(&spec(case, 2.0))).await));
         assert!(is_shed(&ask(server.get("/v1/cases")).await));
         let ready = ask(server.get("/readyz")).await.problem(503, "not-ready");
-        assert!(ready["checks"].as_array().unwrap().contains(&"database".into()), "{ready}");
+        let checks = ready["checks"].as_array().unwrap();
+        assert!(checks.contains(&"database".into()), "{ready}");
+        assert!(!checks.contains(&"storage".into()), "{ready}");
     }
     let metrics = server.second_line().strip_prefix("metrics on ").unwrap().to_owned();
     let counted = String::from_utf8(ask(server.client.get(&metrics)).await.bytes).unwrap();
@@ -56,6 +58,20 @@ async fn nothing_is_acknowledged_once_the_files_of_the_database_are_removed() {
     }
     is_given_up(&mut server, &case).await;
     assert!(!server.path().join("facies.db").exists(), "it is not made again");
+}
+
+#[tokio::test]
+async fn nothing_is_acknowledged_once_another_process_may_hold_the_lock_of_the_folder() {
+    let mut server = in_use();
+    let case = server.case(&SMALL).await;
+    let lock = server.path().join("lock");
+    std::fs::remove_file(&lock).unwrap();
+    std::fs::File::create(&lock).unwrap().try_lock().unwrap();
+    is_given_up(&mut server, &case).await;
+    let ready = ask(server.get("/readyz")).await.problem(503, "not-ready");
+    assert!(ready["detail"].as_str().unwrap().contains("the file `lock`"), "{ready}");
+    let server = Server::start_in(server.kill(), &["--workers", "1"]);
+    works_on(&server).await;
 }
 
 #[tokio::test]

@@ -47,19 +47,26 @@ async fn a_killed_server_loses_no_job_and_finishes_it_once() {
 
 #[tokio::test]
 async fn a_dismissed_job_frees_its_worker() {
-    let server = faulty(HELD, &["--workers", "1"]);
-    let large = server.case(&MEDIUM).await;
-    let small = server.case(&SMALL).await;
-    let id = accepted(&server, &tagged(&large, 2.0, "slow")).await;
-    assert_eq!(server.started(&id).await["status"], "running");
-    let dismissed = ask(server.delete(&format!("/v1/jobs/{id}"))).await.expect(StatusCode::OK);
-    assert_eq!(dismissed["status"], "dismissed");
-    let next = server.job(&spec(&small, 1.0)).await.expect(StatusCode::OK);
-    assert_eq!(next["status"], "successful");
-    let state = ask(server.get(&format!("/v1/jobs/{id}"))).await.json();
-    assert_eq!(state["status"], "dismissed");
-    let late = server.path().join("tmp").join(&id);
-    assert!(!late.exists(), "the files of the dismissed job are gone");
+    for held in [HELD, "publish:before:1:hold:attempt=1:tag=slow"] {
+        let folder = TempDir::new().unwrap();
+        let log = folder.path().join("log");
+        let server = faulty_with_log(held, &["--workers", "1"], &log);
+        let large = server.case(&MEDIUM).await;
+        let small = server.case(&SMALL).await;
+        let id = accepted(&server, &tagged(&large, 2.0, "slow")).await;
+        assert_eq!(server.started(&id).await["status"], "running");
+        let dismissed = ask(server.delete(&format!("/v1/jobs/{id}"))).await.expect(StatusCode::OK);
+        assert_eq!(dismissed["status"], "dismissed");
+        let next = server.job(&spec(&small, 1.0)).await.expect(StatusCode::OK);
+        assert_eq!(next["status"], "successful");
+        let state = ask(server.get(&format!("/v1/jobs/{id}"))).await.json();
+        assert_eq!(state["status"], "dismissed");
+        let late = server.path().join("tmp").join(&id);
+        assert!(!late.exists(), "the files of the dismissed job are gone");
+        let told = std::fs::read_to_string(&log).unwrap();
+        let ended: Vec<&str> = told.lines().filter(|line| line.contains("job ended")).collect();
+        assert!(ended[0].contains("\"status\":\"dismissed\""), "{ended:?}");
+    }
 }
 
 #[tokio::test]
@@ -151,7 +158,11 @@ async fn lost_and_damaged_meshes_are_stored_again_when_they_are_uploaded_again()
 
     let [blob] = blobs(server.path()).try_into().unwrap();
     std::fs::remove_file(&blob).unwrap();
-    ask(server.get(&content)).await.problem(500, "integrity");
+    names(&ask(server.get(&content)).await.problem(500, "integrity"), &format!("mesh {id}"));
+    names(
+        &ask(server.get(&format!("{content}?format=stl"))).await.problem(500, "integrity"),
+        &format!("mesh {id}"),
+    );
     assert_eq!(upload().await.expect(StatusCode::OK)["id"], id);
     assert_eq!(ask(server.get(&content)).await.bytes, right.bytes);
 
@@ -172,6 +183,22 @@ async fn lost_and_damaged_meshes_are_stored_again_when_they_are_uploaded_again()
     let told = told.lines().filter(|line| line.contains("stored again from an upload"));
     let told: Vec<&str> = told.filter(|line| line.contains("WARN")).collect();
     assert!(told.len() == 2 && told[0].contains(id), "{told:?}");
+}
+
+/// The detail of a problem begins with what is damaged.
+fn names(problem: &serde_json::Value, what: &str) {
+    assert!(problem["detail"].as_str().unwrap().starts_with(&format!("{what}: ")), "{problem}");
+}
+
+#[tokio::test]
+async fn a_file_of_a_result_that_is_lost_is_named() {
+    let server = Server::start();
+    let case = server.case(&SMALL).await;
+    let job = server.job(&spec(&case, 1.0)).await.expect(StatusCode::OK);
+    let id = job["id"].as_str().unwrap();
+    blobs(server.path()).iter().for_each(|blob| std::fs::remove_file(blob).unwrap());
+    let lost = ask(server.get(&format!("/v1/jobs/{id}/results/skin.vtp"))).await;
+    names(&lost.problem(500, "integrity"), &format!("skin.vtp of job {id}"));
 }
 
 #[tokio::test]

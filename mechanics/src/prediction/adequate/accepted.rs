@@ -4,6 +4,14 @@ use std::collections::BTreeMap;
 
 use crate::mesh::{Vector, Warning};
 use crate::prediction::skin::Skin;
+use crate::progress::Progress;
+
+/// Progress, and the time in s since some moment.
+#[derive(Clone, Copy)]
+pub struct TimedProgress<'a> {
+    pub stopwatch: &'a dyn Fn() -> f64,
+    pub progress: &'a dyn Progress,
+}
 
 /// The mean error over the skin that is accepted where nothing else is said, in mm.
 pub const USUALLY_ACCEPTED_MM: f64 = 0.1;

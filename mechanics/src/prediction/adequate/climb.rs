@@ -2,7 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use super::accepted::{Accepted, MeanErrors, not_met};
+use super::accepted::{Accepted, MeanErrors, TimedProgress, not_met};
+use super::branch::another_branch;
 use super::duration::{ROUNDS_TAKE, SECOND_ORDER_TAKES, least_det_f, newton_relative_time};
 use super::finite_strain::{self, NoAnswer};
 use super::objection::{CandidateAnswer, Objection};
@@ -17,7 +18,6 @@ use crate::prediction::case::{Case, Plan};
 use crate::prediction::following_pressure::has_pressure;
 use crate::prediction::scene::Scene;
 use crate::prediction::{Prediction, described};
-use crate::progress::Progress;
 
 /// The third order of a plan is about this much times the square of the second over the first.
 const THIRD: f64 = 1.5;
@@ -37,13 +37,6 @@ pub struct Adequate {
     pub objections: Vec<Objection>,
     /// Whether its expected error is accepted, and nothing speaks against it.
     pub is_met: bool,
-}
-
-/// Progress, and the time in s since some moment.
-#[derive(Clone, Copy)]
-pub struct TimedProgress<'a> {
-    pub stopwatch: &'a dyn Fn() -> f64,
-    pub progress: &'a dyn Progress,
 }
 
 /// Predicts a case under a plan by the cheapest rung whose estimated error is accepted; `linear` is its scene with linear finite
@@ -142,6 +135,13 @@ impl Climb<'_> {
 
         // 3. At finite strain.
         let finite_strain = self.at_finite_strain(case, plan)?;
+        if let (Some(known), Some((_, found))) = (known, &finite_strain) {
+            let means = |values: &[Vector]| self.means(values).skin_mm;
+            let objection = another_branch(known, found, self.accepted, means);
+            for rung in [Rung::FiniteStrain, Rung::FiniteStrainCorrected] {
+                self.objections.entry(rung).or_default().extend(objection.clone());
+            }
+        }
 
         // 4. The one that does.
         let linear = match solved {

@@ -9,14 +9,15 @@
 //! none, the cheapest that is nearly as good as the best, which is then said not to be adequate.
 
 mod accepted;
+mod branch;
 mod climb;
 mod duration;
 mod finite_strain;
 mod objection;
 mod rung;
 
-pub use accepted::{Accepted, MeanErrors, USUALLY_ACCEPTED_MM};
-pub use climb::{Adequate, TimedProgress, predict_adequately};
+pub use accepted::{Accepted, MeanErrors, TimedProgress, USUALLY_ACCEPTED_MM};
+pub use climb::{Adequate, predict_adequately};
 pub use duration::{NEWTON_MAY_TAKE, SECOND_ORDER_TAKES};
 pub(super) use objection::CandidateAnswer;
 pub use objection::Objection;

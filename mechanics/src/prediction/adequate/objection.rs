@@ -5,7 +5,7 @@
 //! | `cells-inverted` | always: estimates hold near states that tissue can have | yes, finite strain keeps every cell as it is turned |
 //! | `skin-outruns-plan` | of small strain | yes, finite strain confirms it or not |
 //! | `pressure-turned` | of small strain | yes, at finite strain pressure follows its faces |
-//! | `another-equilibrium` | where the state that was found is not stable | no |
+//! | `another-equilibrium` | where the state that was found is not stable, or lies farther from the second order than that from the linear answer | no |
 //! | `skin-overlaps` | without contact, where it is deeper than at rest by more than is accepted, or nobody knows how deep | no |
 //! | `contact-overlap`, `contact-points-move` | by more than is accepted | no |
 //! | `contact-chatter` | always: there contact may pull | no |

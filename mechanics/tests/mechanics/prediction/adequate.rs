@@ -1,16 +1,14 @@
 //! The cheapest adequate model: what is taken, what is called met, and what is said where nothing is adequate.
 
-use std::collections::BTreeMap;
-
 use mechanics::material::{Fibre, FibreLaw, PlaneStress, Sheet};
 use mechanics::mesh::refinement::refine;
-use mechanics::mesh::sample::{block, hard_block};
+use mechanics::mesh::sample::hard_block;
 use mechanics::mesh::{CellShape, Vector};
 use mechanics::plan::RigidMovement;
 use mechanics::prediction::{
     Accepted, Adequate, Case, CaseSegment, ContactKind, ElementChoice, FibreDirection, MeanErrors,
-    Method, Plan, Prediction, RegionNames, Rung, Scene, Settings, SkinMembrane, Sliding,
-    SlidingNormal, TimedProgress, predict, predict_adequately,
+    Method, Plan, Prediction, Rung, Scene, Settings, SkinMembrane, TimedProgress, predict,
+    predict_adequately,
 };
 use mechanics::progress::{Progress, Unobserved};
 
@@ -41,7 +39,7 @@ pub(super) fn within(skin_mm: f64) -> Accepted {
 }
 
 /// The mean over the skin that moves of the distance to Newton's answer of stabilised elements on a mesh of which every edge is halved.
-fn true_error(case: &Case, plan: &Plan, displacement: &[Vector]) -> f64 {
+pub(super) fn true_error(case: &Case, plan: &Plan, displacement: &[Vector]) -> f64 {
     let fine = Case { volume: refine(&case.volume).into(), ..case.clone() };
     let settings = Settings { method: Method::FemNonlinear, ..Settings::default() };
     let scene = Scene::new(&fine, plan, &settings).unwrap();
@@ -377,37 +375,4 @@ fn finite_strain_is_passed_over_where_there_is_no_room_for_it() {
     assert!(found.scene.is_none() && !found.is_met);
     let newton = found.considered.iter().find(|other| other.rung == Rung::FiniteStrain).unwrap();
     assert_eq!(newton.passed_over.as_deref(), Some("no room"));
-}
-
-/// A slab of hexahedra whose middle layer of one cell is stiff, between side walls, on bone that moves askew by 6 mm.
-#[test]
-fn stiff_layers_between_walls_are_expected_to_be_off_by_more_than_is_estimated() {
-    for stiffer in [2.0, 5.0, 9.0, 11.0, 20.0, 100.0] {
-        let mut mesh = block(Vector::new(75.0, 57.0, 13.0), [5, 6, 3], CellShape::Hex8);
-        let in_middle = |cell: usize| {
-            let height = mesh.corners(cell).map(|x| x.z).sum::<f64>() / 8.0;
-            i64::from((height - 6.5).abs() < 2.0)
-        };
-        let labels = (0..mesh.cells.len()).map(in_middle).collect();
-        mesh.cell_labels.insert("layer".to_owned(), labels);
-        let mut case = case_of(mesh, material(15.0, 0.45));
-        let names = BTreeMap::from([(1, "stiff".to_owned())]);
-        case.regions = Some(RegionNames { array: "layer".to_owned(), names });
-        case.materials.insert("stiff".to_owned(), material(15.0 * stiffer, 0.45));
-        case.skin = Some(set("z_max"));
-        case.segments = vec![CaseSegment { name: "bone".to_owned(), nodes: set("z_min") }];
-        case.allow_unfixed = true;
-        for side in ["x_min", "x_max", "y_min", "y_max"] {
-            let nodes = set(side);
-            case.sliding.push(Sliding { nodes, normal: SlidingNormal::Surface, segment: None });
-        }
-        let movement =
-            RigidMovement::new(nalgebra::Matrix3::identity(), Vector::new(3.5, 2.5, 4.2)).unwrap();
-        let plan = plan_of(&case, &[movement]);
-        let found = adequate(&case, &plan, &Settings::default(), within(0.1));
-        let error = true_error(&case, &plan, &found.prediction.displacement);
-        let told = found.errors.mesh.map(|mesh| mesh.skin_mm).unwrap_or_default();
-        println!("{stiffer}: {:?} met {} mesh {told:.4} true {error:.4}", found.rung, found.is_met);
-        assert!(!found.is_met || error <= 0.1, "{stiffer}: {error}");
-    }
 }

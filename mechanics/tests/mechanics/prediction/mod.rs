@@ -35,6 +35,7 @@ mod skin;
 mod slab_table;
 mod sliding;
 mod sliding_edges;
+mod stiff_layers;
 mod stress;
 mod suspicious;
 mod tension_on_all_sides;
