@@ -1,4 +1,4 @@
-//! Doubt that a state at finite strain is the one that a movement from rest leads to.
+//! Doubt that a state at finite strain is the one that a finer mesh would have.
 //!
 //! The linear answer and the second order are the beginning of a series about rest. A state that lies farther from their sum than the
 //! second order is large is not its limit, or the series has none: on the subject's face of the shared data, jaw 7 mm back and 8 mm
@@ -24,7 +24,7 @@ pub(super) fn another_branch(
     let [off, second_order] = [mean(&off), mean(second_order)];
     let detail = format!(
         "at finite strain the skin ends {off:.2} mm in the mean from the second order of the movement, which is {second_order:.2} mm from \
-         the linear solution: a movement in small steps may lead to another equilibrium"
+         the linear solution: the tissue may come to another equilibrium, as it may on a finer mesh"
     );
     let warning = Warning::new("another-equilibrium", detail).with("off_second_order_mm", off);
     let warning = warning.with("second_order_mm", second_order);
