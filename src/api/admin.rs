@@ -15,8 +15,7 @@ use axum::routing::{MethodFilter, MethodRouter, on};
 use bytes::Bytes;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
-use tokio::net::TcpListener;
-use tokio::time::timeout;
+use tokio::{net::TcpListener, time::timeout};
 use utoipa::IntoParams;
 
 use super::access::{Access, Audit, Declared, RouteAccess};
@@ -29,7 +28,7 @@ use super::error::{ApiError, ApiResult};
 use super::hosts::{Hosts, check_named_once};
 use super::key_lookup::unauthorized;
 use super::known_parameters::KnownParameters;
-use super::middleware::named;
+use super::middleware::{check_transfer_coding, named};
 use super::paging::PageParameters;
 use super::parameters::Parameters;
 use super::{body, json, keys, server_loop, time};
@@ -245,6 +244,7 @@ impl AdminListener {
     /// Refuses a request for an untrusted host name.
     fn is_meant(&self, request: &Request) -> ApiResult<()> {
         check_named_once(request)?;
+        check_transfer_coding(request.headers())?;
         self.hosts.as_ref().map_or(Ok(()), |hosts| hosts.check(request))
     }
 

@@ -232,11 +232,7 @@ fn check_head(request: &Request) -> ApiResult<()> {
         let detail = format!("the address has {uri_length} bytes, {LONGEST_URI} are allowed");
         return Err(Problem::new(ErrorCode::UriTooLong, detail).with("limit", LONGEST_URI).into());
     }
-    let codings = request.headers().get_all(header::TRANSFER_ENCODING);
-    if codings.iter().any(|coding| !coding.as_bytes().eq_ignore_ascii_case(b"chunked")) {
-        let detail = "a body has no transfer coding but `chunked`";
-        return Err(ApiError::new(ErrorCode::MalformedRequest, detail));
-    }
+    check_transfer_coding(request.headers())?;
     let head: usize =
         request.headers().iter().map(|(name, value)| name.as_str().len() + value.len()).sum();
     if head > LARGEST_HEAD {
@@ -246,6 +242,18 @@ fn check_head(request: &Request) -> ApiResult<()> {
             .into());
     }
     Ok(())
+}
+
+/// Refuses a body whose end is uncertain: one coded otherwise than in chunks, or more than once.
+pub fn check_transfer_coding(headers: &HeaderMap) -> ApiResult<()> {
+    let codings = || headers.get_all(header::TRANSFER_ENCODING).iter();
+    let is_plain = |coding: &HeaderValue| coding.as_bytes().eq_ignore_ascii_case(b"chunked");
+    if codings().count() <= 1 && codings().all(is_plain) {
+        return Ok(());
+    }
+    let detail = "a body has no transfer coding but `chunked`, once";
+    let error = ApiError::new(ErrorCode::MalformedRequest, detail);
+    Err(error.header(header::CONNECTION, HeaderValue::from_static("close")))
 }
 
 /// For routes with JSON responses only.

@@ -253,7 +253,10 @@ async fn lock(folder: &Path) -> Result<(File, PlacedFile), StoreError> {
     let path = folder.join("lock");
     let until = Instant::now() + LOCK_WITHIN;
     loop {
-        let held = File::create(&path).map_err(at(&path))?;
+        // What is there is neither emptied nor, where it is a pipe, waited for.
+        let mut options = File::options();
+        let options = options.read(true).write(true).create(true).truncate(false);
+        let held = options.open(&path).map_err(at(&path))?;
         if held.try_lock().is_ok() {
             let lock = PlacedFile::new(path.clone(), &held.metadata()?);
             // One that was removed meanwhile keeps nobody out.

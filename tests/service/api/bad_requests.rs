@@ -167,7 +167,11 @@ async fn what_has_no_certain_length_is_refused_and_its_connection_closed() {
         ("72 a chunk with a bare LF", format!("{chunked}2\n{{}}\n0\n\n")),
         (
             "72 a coding besides chunks",
-            "Connection: close\r\nTransfer-Encoding: gzip, chunked\r\n\r\n2\r\n{}\r\n0\r\n\r\n"
+            "Transfer-Encoding: gzip, chunked\r\n\r\n2\r\n{}\r\n0\r\n\r\n".to_owned(),
+        ),
+        (
+            "72 chunks twice",
+            "Transfer-Encoding: chunked\r\nTransfer-Encoding: chunked\r\n\r\n2\r\n{}\r\n0\r\n\r\n"
                 .to_owned(),
         ),
         (
