@@ -1,5 +1,6 @@
 //! Solution of a scene: its equilibrium, its discretisation error and its linearisation error.
 
+use super::branch::another_branch;
 use super::contact::{
     InTouch, Touch, expected_touch_at_finite_strain, facing_surfaces, touch, touch_at_finite_strain,
 };
@@ -7,6 +8,7 @@ use super::following_pressure::{has_pressure, pressed_in_solution};
 use super::method::MethodKind;
 use super::nonlinearity::{self, Estimated, NonlinearityUnknown};
 use super::numerical_error::{self, NotEstimated, NumericalError};
+use super::pressed_tissue::may_buckle;
 use super::scene::Scene;
 use crate::model::fem::linear_system::{LinearSystem, Solved};
 use crate::model::problem::{Equilibrium, ModelError};
@@ -37,6 +39,20 @@ pub(super) struct LinearAnswer<'a> {
 
 /// Solves a scene by its method, and estimates what the answer leaves out where that is possible and asked for.
 pub(super) fn solve(scene: &Scene, progress: &dyn Progress) -> Result<Answer, ModelError> {
+    let mut answer = solve_without_doubt(scene, progress)?;
+    let is_at_finite_strain = scene.settings.method.kind() == MethodKind::FemNonlinear;
+    if is_at_finite_strain && scene.settings.estimate && answer.contact.is_none() {
+        let doubt = another_branch(scene, &answer.equilibrium, progress)?;
+        answer.equilibrium.warnings.extend(doubt);
+    }
+    Ok(answer)
+}
+
+/// The same, where whether there are other states at finite strain is not asked.
+pub(super) fn solve_without_doubt(
+    scene: &Scene,
+    progress: &dyn Progress,
+) -> Result<Answer, ModelError> {
     Ok(match linear(scene, progress)? {
         Linear::Solved(answer) => answer.into_answer(scene)?,
         Linear::Other(answer) => *answer,
@@ -134,7 +150,7 @@ fn answered<'a>(
             contact: None,
         }));
     };
-    let solved = system.solve(&[scene.load_case()], progress)?.remove(0);
+    let mut solved = system.solve(&[scene.load_case()], progress)?.remove(0);
     let touched = touch(scene, &system, &solved, of_mesh.is_none(), progress)?;
     let in_contact = touched.as_ref().and_then(|touched| touched.numerical_error.clone());
     let numerical_error = match (of_mesh, in_contact) {
@@ -151,6 +167,9 @@ fn answered<'a>(
         Some(reason) => Err(reason),
         None => nonlinearity::estimate(scene, &system, &solved, progress)?,
     };
+    if nonlinearity.is_ok() {
+        solved.equilibrium.warnings.extend(may_buckle(scene, &system, &solved, progress)?);
+    }
     let answer = LinearAnswer { system, solved, numerical_error, nonlinearity };
     Ok(Linear::Solved(Box::new(answer)))
 }

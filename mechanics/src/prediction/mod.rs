@@ -5,6 +5,7 @@ mod adequate;
 mod answer;
 mod at_points;
 mod bone_in_tissue;
+mod branch;
 mod build;
 #[cfg(test)]
 mod build_tests;
@@ -39,6 +40,7 @@ mod numerical_error;
 mod numerics_revision;
 mod off_wall;
 mod point_force;
+mod pressed_tissue;
 mod pressure_kind;
 mod problem;
 mod reaction;

@@ -106,6 +106,18 @@ pub(super) fn estimate(
     }
 }
 
+/// The linear answer of a scene whatever its method, and what the second order adds to it, for each node; none of elements that
+/// have no linear system.
+pub(super) fn second_order_of(
+    scene: &Scene,
+    progress: &dyn Progress,
+) -> Result<Option<[Vec<Vector>; 2]>, ModelError> {
+    let Some(system) = scene.assemble(progress)? else { return Ok(None) };
+    let solved = system.solve(&[scene.load_case()], progress)?.remove(0);
+    let second = second_order(scene, &system, &solved, progress)?;
+    Ok(Some([solved.equilibrium.displacement, second.displacement]))
+}
+
 /// The answer to second order, with the forces of its holds, and the third order.
 pub(super) fn to_second_order(
     scene: &Scene,

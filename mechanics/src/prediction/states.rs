@@ -2,7 +2,7 @@
 
 use super::scene::Scene;
 use crate::mesh::{Vector, Warning};
-use crate::model::cell_state::CellStates;
+use crate::model::cell_state::{CellState, CellStates};
 use crate::model::fem::law_states::at_second_order;
 use crate::model::fem::linear_states::{Displaced, at_small_strain};
 use crate::model::fem::linear_system::{LinearSystem, Solved};
@@ -19,7 +19,7 @@ impl Scene {
         }
         let cases = [self.load_case()];
         let mut answer = quadratic::solve_with_edges(&self.problem(), &cases, progress)?.remove(0);
-        answer.states = self.states(&answer.displacement, &[])?;
+        answer.states = self.states(&answer.displacement)?;
         answer.displacement.truncate(self.mesh.nodes.len());
         Ok(answer)
     }
@@ -40,13 +40,27 @@ impl Scene {
         system: &LinearSystem,
         solved: &Solved,
     ) -> Result<CellStates, InvertedCell> {
+        match self.settings.states {
+            true => Ok(CellStates { cells: self.cell_states(system, solved)?, is_green: false }),
+            false => Ok(CellStates::default()),
+        }
+    }
+
+    /// The state of each cell of the answer of a linear system, asked for or not.
+    pub(super) fn cell_states(
+        &self,
+        system: &LinearSystem,
+        solved: &Solved,
+    ) -> Result<Vec<CellState>, InvertedCell> {
         let pressures = self.mean_pressures(system, &solved.pressures);
-        self.states(&solved.equilibrium.displacement, &pressures)
+        let displacement = &solved.equilibrium.displacement;
+        let displaced = Displaced { displacement, edges: None, pressures: &pressures };
+        at_small_strain(&self.tissue(), &self.distributed.inner, &displaced)
     }
 
     /// The answer of elements without pressures, with the states of its cells.
     pub(super) fn with_states(&self, answer: Equilibrium) -> Result<Equilibrium, ModelError> {
-        let states = self.states(&answer.displacement, &[])?;
+        let states = self.states(&answer.displacement)?;
         Ok(Equilibrium { states, ..answer })
     }
 
@@ -72,24 +86,21 @@ impl Scene {
         (CellStates { cells, is_green: true }, (unknown > 0).then_some(warning))
     }
 
-    fn states(
-        &self,
-        displacement: &[Vector],
-        pressures: &[Option<f64>],
-    ) -> Result<CellStates, InvertedCell> {
+    /// Those of elements without pressures.
+    fn states(&self, displacement: &[Vector]) -> Result<CellStates, InvertedCell> {
         if !self.settings.states {
             return Ok(CellStates::default());
         }
         let edges = self.edge_nodes();
-        let displaced = Displaced { displacement, edges: edges.as_ref(), pressures };
+        let displaced = Displaced { displacement, edges: edges.as_ref(), pressures: &[] };
         let cells = at_small_strain(&self.tissue(), &self.distributed.inner, &displaced)?;
         Ok(CellStates { cells, is_green: false })
     }
 
     fn mean_pressures(&self, system: &LinearSystem, pressures: &[f64]) -> Vec<Option<f64>> {
         match &system.pressures {
-            Some(own) if self.settings.states => own.cells.means(pressures, self.mesh.cells.len()),
-            Some(_) | None => Vec::new(),
+            Some(own) => own.cells.means(pressures, self.mesh.cells.len()),
+            None => Vec::new(),
         }
     }
 }

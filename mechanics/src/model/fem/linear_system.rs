@@ -326,6 +326,10 @@ impl<'a> LinearSystem<'a> {
         internal
     }
 
+    pub(super) fn solver(&self) -> &Solver {
+        &self.solver
+    }
+
     pub(super) fn constrained(&self) -> Constrained<'_> {
         Constrained { constraints: self.constraints, dof_map: &self.dof_map }
     }

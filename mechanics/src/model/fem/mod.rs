@@ -18,5 +18,6 @@ pub mod mass_tensor;
 pub mod mass_tensor_nonlinear;
 pub mod membrane;
 pub mod quadratic;
+mod stability;
 pub mod strain;
 mod stretched_membrane;

@@ -3,10 +3,9 @@
 use std::collections::BTreeMap;
 
 use super::accepted::{Accepted, MeanErrors, TimedProgress, not_met};
-use super::branch::another_branch;
 use super::duration::{ROUNDS_TAKE, SECOND_ORDER_TAKES, least_det_f, newton_relative_time};
 use super::finite_strain::{self, NoAnswer};
-use super::objection::{CandidateAnswer, Objection};
+use super::objection::{CandidateAnswer, Objection, why_dearer};
 use super::rung::{
     Considered, Errors, Rung, WORTHWHILE, cheapest, collapses, error_over_estimate,
     error_over_estimate_at_rest,
@@ -136,8 +135,8 @@ impl Climb<'_> {
         // 3. At finite strain.
         let finite_strain = self.at_finite_strain(case, plan)?;
         if let (Some(known), Some((_, found))) = (known, &finite_strain) {
-            let means = |values: &[Vector]| self.means(values).skin_mm;
-            let objection = another_branch(known, found, self.accepted, means);
+            let mean = |values: &[Vector]| self.means(values).skin_mm;
+            let objection = finite_strain::another_branch(known, found, self.accepted, mean);
             for rung in [Rung::FiniteStrain, Rung::FiniteStrainCorrected] {
                 self.objections.entry(rung).or_default().extend(objection.clone());
             }
@@ -323,28 +322,30 @@ impl Climb<'_> {
         let expected_s = self.time_of(solution);
         for rung in Rung::ALL.into_iter().filter(|rung| rung.solution() == solution) {
             let error = self.errors.on(rung);
-            let passed_over = self.why_not(rung, error.is_some(), found);
-            let spent_s = Some(spent_s);
+            let (spent_s, passed_over) = (Some(spent_s), self.why_not(rung, error.as_ref(), found));
             self.considered.push(Considered { rung, error, spent_s, expected_s, passed_over });
         }
     }
 
     /// Why an answer that is there is not taken where a dearer model may do.
-    fn why_not(&mut self, rung: Rung, is_known: bool, found: &CandidateAnswer) -> Option<String> {
+    fn why_not(
+        &mut self,
+        rung: Rung,
+        error: Option<&MeanErrors>,
+        found: &CandidateAnswer,
+    ) -> Option<String> {
         if self.least_share() <= 1.0 {
             // The answer itself is adequate: what is corrected is not looked at, which takes its time.
             return None;
         }
-        if rung.is_corrected() && !is_known {
+        if rung.is_corrected() && error.is_none() {
             return Some("its error is not known".to_owned());
         }
         if let Some(why) = self.why_not_corrected(found).filter(|_| rung.is_corrected()) {
             return Some(why.to_owned());
         }
         let objections = found.objections(rung.is_corrected(), self.accepted);
-        let of_model = objections.iter().filter(|own| own.is_of_model);
-        let told: Vec<&str> = of_model.map(|own| own.warning.detail.as_str()).collect();
-        let why = (!told.is_empty()).then(|| told.join("; "));
+        let why = why_dearer(&objections, self.accepted.share(error) <= 1.0);
         self.objections.insert(rung, objections);
         why
     }

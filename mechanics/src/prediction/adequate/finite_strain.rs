@@ -1,8 +1,12 @@
 //! The answer at finite strain that a search for the cheapest adequate model tries.
 
+use super::accepted::Accepted;
+use super::objection::Objection;
+use crate::mesh::Vector;
 use crate::model::fem::finite_strain::Advance;
 use crate::model::problem::ModelError;
-use crate::prediction::answer::{self, Answer};
+use crate::prediction::answer::{self, Answer, LinearAnswer};
+use crate::prediction::branch::Branches;
 use crate::prediction::case::{Case, Plan, Settings};
 use crate::prediction::fibres::FIBRES_IGNORED;
 use crate::prediction::method::Method;
@@ -10,6 +14,22 @@ use crate::prediction::problem::NoScene;
 use crate::prediction::scene::Scene;
 use crate::progress::{Progress, StopQuery};
 use crate::solver::SolverError;
+
+/// What speaks against a state that the second order does not lead to; `mean` is the mean length of displacements over the skin, in mm.
+pub(super) fn another_branch(
+    linear: &LinearAnswer,
+    found: &Answer,
+    accepted: &Accepted,
+    mean: impl Fn(&[Vector]) -> f64,
+) -> Option<Objection> {
+    let branches = Branches {
+        linear: &linear.equilibrium().displacement,
+        second_order: &linear.nonlinearity.as_ref().ok()?.left_out,
+        found: &found.equilibrium.displacement,
+    };
+    let warning = branches.another(accepted.skin_mm, mean)?;
+    Some(Objection { warning, is_of_model: false })
+}
 
 /// Why there is none.
 pub(super) enum NoAnswer {
@@ -37,7 +57,7 @@ pub(super) fn solved(
         let why = "at finite strain fibres only pull, and those of this tissue also push";
         return Err(NoAnswer::Refused(why.to_owned()));
     }
-    match answer::solve(&scene, progress) {
+    match answer::solve_without_doubt(&scene, progress) {
         Ok(answer) => Ok((scene, answer)),
         Err(error @ ModelError::Solver(SolverError::Stopped)) => Err(NoAnswer::Stopped(error)),
         Err(error) => Err(NoAnswer::Refused(error.to_string())),

@@ -9,7 +9,6 @@
 //! none, the cheapest that is nearly as good as the best, which is then said not to be adequate.
 
 mod accepted;
-mod branch;
 mod climb;
 mod duration;
 mod finite_strain;

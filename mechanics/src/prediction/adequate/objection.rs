@@ -5,6 +5,7 @@
 //! | `cells-inverted` | always: estimates hold near states that tissue can have | yes, finite strain keeps every cell as it is turned |
 //! | `skin-outruns-plan` | of small strain | yes, finite strain confirms it or not |
 //! | `pressure-turned` | of small strain | yes, at finite strain pressure follows its faces |
+//! | `tissue-may-buckle` | of small strain | yes, finite strain knows whether it is stable |
 //! | `another-equilibrium` | where the state that was found is not stable, or lies farther from the second order than that from the linear answer | no |
 //! | `skin-overlaps` | without contact, where it is deeper than at rest by more than is accepted, or nobody knows how deep | no |
 //! | `contact-overlap`, `contact-points-move` | by more than is accepted | no |
@@ -19,6 +20,7 @@
 
 use super::accepted::Accepted;
 use crate::mesh::{Vector, Warning};
+use crate::model::fem::finite_strain::ANOTHER_EQUILIBRIUM;
 use crate::model::fem::strain::{determinants, inverted_cells};
 use crate::model::problem::Equilibrium;
 use crate::prediction::answer::{Answer, Linear};
@@ -26,6 +28,7 @@ use crate::prediction::contact::Touch;
 use crate::prediction::far_skin;
 use crate::prediction::following_pressure::{PRESSURE_UNSETTLED, pressure_turned};
 use crate::prediction::loosely;
+use crate::prediction::pressed_tissue::MAY_BUCKLE;
 use crate::prediction::scene::Scene;
 use crate::prediction::skin_overlap::{Deepest, SKIN_OVERLAPS, added_overlap, skin_overlap};
 use crate::prediction::stiff_layer::{THIN_STIFF_LAYER, has_stiff_layers};
@@ -84,11 +87,12 @@ impl<'a> CandidateAnswer<'a> {
         let outruns = far_skin::outrun(scene, &displacement).filter(|_| is_small_strain);
         let inverted = inverted_cells(&determinants(&scene.mesh, &displacement));
         let turned = pressure_turned(scene, &displacement);
-        let of_model = inverted.into_iter().chain(outruns).chain(turned);
+        let pressed = equilibrium.warnings.iter().filter(|own| own.code == MAY_BUCKLE).cloned();
+        let of_model = inverted.into_iter().chain(outruns).chain(turned).chain(pressed);
         let newton = equilibrium.solver.newton.as_ref();
         let is_unstable = newton.is_some_and(|newton| newton.is_stable == Some(false));
         let speaks = |own: &&Warning| match own.code {
-            "another-equilibrium" => is_unstable,
+            ANOTHER_EQUILIBRIUM => is_unstable,
             code => code == PRESSURE_UNSETTLED,
         };
         let of_solution = equilibrium.warnings.iter().filter(speaks);
@@ -118,6 +122,16 @@ impl Objection {
         let numbers = self.warning.numbers.iter();
         numbers.fold(warning, |warning, (name, value)| warning.with(name, *value))
     }
+}
+
+/// Why a dearer model is tried: what it may be without. An accurate answer with something that no model is without is the best there
+/// is.
+pub(super) fn why_dearer(objections: &[Objection], is_accurate: bool) -> Option<String> {
+    let (of_model, others): (Vec<&Objection>, Vec<_>) =
+        objections.iter().partition(|own| own.is_of_model);
+    let told: Vec<&str> = of_model.iter().map(|own| own.warning.detail.as_str()).collect();
+    let is_best = is_accurate && !others.is_empty();
+    (!told.is_empty() && !is_best).then(|| told.join("; "))
 }
 
 fn speaks_against_contact(warning: &Warning, accepted: &Accepted) -> bool {

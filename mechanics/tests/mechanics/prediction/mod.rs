@@ -4,6 +4,7 @@ mod adaptive;
 mod adequate;
 mod bent_cells;
 mod bone_in_the_mesh;
+mod buckling;
 mod closed_form;
 mod conditions;
 mod contact;

@@ -12,11 +12,13 @@ use crate::mesh::Warning;
 use crate::model::cell_state::CellStates;
 use crate::solver::NewtonReport;
 
+pub const ANOTHER_EQUILIBRIUM: &str = "another-equilibrium";
+
 /// The pressure along an axis from which on a cell is pressed, as a share of its shear modulus.
-const PRESSED: f64 = 0.1;
+pub const PRESSED: f64 = 0.1;
 
 /// The share of the energy that pressed cells have where tissue may buckle.
-const BUCKLES: f64 = 0.2;
+pub const BUCKLES: f64 = 0.2;
 
 /// Whether the way to rest, or rest itself, gives reason to ask.
 pub(super) fn is_doubtful(newton: &NewtonReport) -> bool {
@@ -46,7 +48,7 @@ pub(super) fn another_rest(
         newton.path.len().saturating_sub(1),
         100.0 * pressed
     );
-    let warning = Warning::new("another-equilibrium", detail);
+    let warning = Warning::new(ANOTHER_EQUILIBRIUM, detail);
     let warning = warning.with("indefinite_steps", newton.indefinite_steps as f64);
     let warning = warning.with("pressed_energy_share", pressed);
     Some(warning.with("energy_mn_mm", newton.energy))

@@ -5,6 +5,7 @@ use super::tissue::Deformed;
 use super::touching::{Change, Touching, TrialState};
 use crate::mesh::Vector;
 use crate::model::dofs::{Constrained, PrescribedValues};
+use crate::model::fem::stability::Tangent;
 use crate::model::problem::LoadCase;
 use crate::progress::{Inner, Progress};
 use crate::solver::conjugate_gradient::{self, StoppingCriterion};
@@ -12,18 +13,11 @@ use crate::solver::mixed;
 use crate::solver::mixed_system::{Coupling, MixedRightHandSide, MixedSystem};
 use crate::solver::multigrid::Multigrid;
 use crate::solver::preconditioned::Preconditioned;
-use crate::solver::pressed_curvature;
 use crate::solver::{Solver, SolverError, System, Unknowns};
 
 /// Inner iterations after which a direction is taken as it is, without pressures and with them.
 const MOST_INNER: usize = 200;
 const MOST_INNER_MIXED: usize = 60;
-
-/// A load of no pattern has in the mean one part in the root of the unknowns along any one direction, and no iteration makes that
-/// smaller where the tangent has no positive curvature along it, unless it meets that. A tangent is known to be positive definite
-/// at this part of it; with pressures, whose bulk modulus makes what is left of the tangent stiff, in so many iterations.
-const SURE: f64 = 0.01;
-const MOST_STIFF: usize = 400;
 
 /// The smallest relative residual of the linear system of a step, once bones stand still.
 const SHARPEST: f64 = 1e-3;
@@ -165,8 +159,7 @@ impl Directions {
         })
     }
 
-    /// Whether the tangent, with pressures that answer to displacements, is positive definite along all that iterations meet on
-    /// the way to a load of no pattern; none where they end before they meet it.
+    /// Whether the tangent, with pressures that answer to displacements, is positive definite; none where that is not known.
     pub fn is_stable(
         &mut self,
         deformed: &Deformed,
@@ -174,41 +167,13 @@ impl Directions {
         nodes: &[Vector],
         progress: &dyn Progress,
     ) -> Result<Option<bool>, SolverError> {
-        let system = constrained.system(deformed.tangent(progress)?, nodes);
-        // Multiples of the golden ratio, each less its whole part: as even and as patternless as random numbers.
-        let mut number = 0.5;
-        let mut next = || {
-            number = (number + 0.618_033_988_749_895) % 1.0;
-            number - 0.5
-        };
-        let forces = nodes.iter().map(|_| Vector::new(next(), next(), next())).collect();
-        let case = LoadCase {
-            held: vec![Vector::zeros(); constrained.constraints.len()],
-            forces,
-            ..LoadCase::default()
-        };
-        let load = constrained.known(&case).right_hand_side(&system);
+        let system = &constrained.system(deformed.tangent(progress)?, nodes);
         // The hierarchy of the last step is that of a tangent near by.
         let hierarchy = self.hierarchy.take().unwrap_or_else(|| self.new_hierarchy());
-        let inner = Inner(progress);
         let coupling = self.pressures.as_mut();
         let coupling = coupling.map(|own| own.coupling_at(&|cell| deformed.gradients(cell)));
-        let relative_residual = SURE / (load.as_flattened().len().max(1) as f64).sqrt();
-        let criterion = StoppingCriterion { relative_residual, most_iterations: MOST_INNER };
-        let multigrid = hierarchy.solver.hierarchy(&system, progress)?;
-        let alone = conjugate_gradient::direction(&system, multigrid, &load, criterion, &inner)?;
-        // Pressures can only make it stiffer, by B^T C^-1 B.
-        let is_known = alone.is_convex && alone.iterations < MOST_INNER;
-        let is_stable = match coupling {
-            _ if is_known => Some(true),
-            None => (!alone.is_convex).then_some(false),
-            Some(coupling) => {
-                let criterion =
-                    StoppingCriterion { relative_residual, most_iterations: MOST_STIFF };
-                let mixed = MixedSystem { stiffness: &system, coupling, solver: &hierarchy.solver };
-                pressed_curvature::is_positive_definite(&mixed, &load, criterion, &inner)?
-            }
-        };
+        let tangent = Tangent { constrained, system, coupling, solver: &hierarchy.solver };
+        let is_stable = tangent.is_positive_definite(progress)?;
         self.hierarchy = Some(hierarchy);
         Ok(is_stable)
     }
