@@ -67,6 +67,10 @@ fn print_found(found: &ReproductionDocument) {
             segment.rotation_deg,
             told(&segment.fit)
         );
+        let error = &segment.standard_error;
+        if let (Some(rotation), Some(displacement)) = (error.rotation_deg, error.displacement_mm) {
+            println!("           standard error {displacement:.2} mm and {rotation:.2} degrees");
+        }
         if let Some(beyond) = &segment.from_planned {
             let [x, y, z] = beyond.displacement_mm.0;
             println!(

@@ -19,9 +19,11 @@
 use nalgebra::{Matrix6, Rotation3, Vector6};
 use rayon::prelude::*;
 
+use super::masked_points::{places, points_in_mask, samples_in_mask};
+use super::uncertainty::{Observation, RigidUncertainty};
 use super::{AlignmentError, RigidTransform, SphereOrBox, Start};
 use crate::mesh::closest_point::Feature;
-use crate::mesh::{SurfaceSearch, TriangleSurface, Vector, area_sampling};
+use crate::mesh::{SurfaceSearch, TriangleSurface, Vector};
 use crate::progress::Progress;
 
 /// Points of the fixed surface: few to come near, many to end.
@@ -92,6 +94,8 @@ pub struct SurfaceAlignment {
     pub pairs: usize,
     /// Share of the points with something opposite that are left more than [`FAR`] from it, 0 to 1.
     pub share_far: f64,
+    /// Of `transform`; nothing where the shape of what counted leaves a movement free.
+    pub uncertainty: Option<RigidUncertainty>,
 }
 
 /// A point of the fixed surface, and the closest one of the moving surface as it lies.
@@ -101,7 +105,16 @@ struct Pair {
     moving: Vector,
     /// Between the two, or the normal of the moving surface where they are about the same.
     direction: Vector,
+    /// Of the moving surface.
+    normal: Vector,
     squared_distance: f64,
+}
+
+impl Pair {
+    /// Of a pair that stands for an area in mm².
+    fn observation(&self, area: f64) -> Observation {
+        Observation { point: self.fixed, normal: self.normal, area }
+    }
 }
 
 /// When an iteration ends.
@@ -113,6 +126,8 @@ pub(super) struct StopRule {
 /// The state of an iteration when it ended.
 pub(super) struct IterationState {
     pub alignment: SurfaceAlignment,
+    /// Those that counted.
+    pairs: Vec<Pair>,
     /// The last relative change of the mean squared distance.
     pub change: f64,
     pub has_converged: bool,
@@ -136,7 +151,8 @@ impl IterativeClosestPoint {
         let near = iterate(&points, &search, start, &coarse, progress)?.alignment;
         let fine =
             StopRule { relative_change: self.relative_change, max_iterations: self.max_iterations };
-        let points = points_in_mask(fixed, self.mask.as_ref(), FINE_POINTS)?;
+        let samples = samples_in_mask(fixed, self.mask.as_ref(), FINE_POINTS)?;
+        let (piece, points) = (samples[0].area, places(samples));
         let ended = iterate(&points, &search, near.transform, &fine, progress)?;
         let iterations = near.iterations + ended.alignment.iterations;
         if !ended.has_converged {
@@ -146,31 +162,10 @@ impl IterativeClosestPoint {
                 wanted: self.relative_change,
             });
         }
-        Ok(SurfaceAlignment { iterations, ..ended.alignment })
-    }
-}
-
-/// About `count` points spread over the part of a surface in the mask.
-pub(super) fn points_in_mask(
-    surface: &TriangleSurface,
-    mask: Option<&SphereOrBox>,
-    count: usize,
-) -> Result<Vec<Vector>, AlignmentError> {
-    /// Small masks are found on a denser sampling, up to this many times as dense.
-    const DENSER: usize = 64;
-    let mut total = count;
-    loop {
-        let samples = area_sampling::equal_areas(surface, total);
-        let points: Vec<Vector> = samples
-            .into_iter()
-            .map(|sample| sample.point)
-            .filter(|point| mask.is_none_or(|mask| mask.holds(point)))
-            .collect();
-        if 2 * points.len() >= count || total >= count * DENSER {
-            return if points.is_empty() { Err(AlignmentError::EmptyMask) } else { Ok(points) };
-        }
-        let missing = count.div_ceil(points.len().max(1)).clamp(2, 8);
-        total = (total * missing).min(count * DENSER);
+        let observations: Vec<Observation> =
+            ended.pairs.iter().map(|pair| pair.observation(piece)).collect();
+        let uncertainty = RigidUncertainty::new(&observations, ended.alignment.rms);
+        Ok(SurfaceAlignment { iterations, uncertainty, ..ended.alignment })
     }
 }
 
@@ -220,6 +215,20 @@ impl State {
         let sum: f64 = self.counting(limit).map(|pair| pair.squared_distance).sum();
         Ok((pairs, sum / pairs as f64))
     }
+
+    /// What it is as an alignment, of no known uncertainty, and the pairs that count.
+    fn into_alignment(
+        self,
+        limit: f64,
+        iterations: usize,
+    ) -> Result<(SurfaceAlignment, Vec<Pair>), AlignmentError> {
+        let (pairs, mean) = self.mean(limit)?;
+        let (transform, rms, points) = (self.transform, mean.sqrt(), self.points);
+        let (share_far, uncertainty) = (self.share_far(), None);
+        let alignment =
+            SurfaceAlignment { transform, iterations, rms, points, pairs, share_far, uncertainty };
+        Ok((alignment, self.counting(limit).copied().collect()))
+    }
 }
 
 pub(super) fn iterate(
@@ -235,16 +244,13 @@ pub(super) fn iterate(
     let (mut iterations, mut steps, mut damping, mut change) = (0, 0, 0.0, f64::INFINITY);
     let mut still = 0;
     loop {
-        let (pairs, mean) = state.mean(limit)?;
+        let (_, mean) = state.mean(limit)?;
         let is_still = change <= stop.relative_change && damping < 1.0;
         let is_still = is_still || still >= STILL_STEPS;
         let has_converged = is_still || damping > LAST_DAMPING || mean <= rounding * rounding;
         if has_converged || iterations >= stop.max_iterations {
-            let (transform, rms, points) = (state.transform, mean.sqrt(), points.len());
-            let share_far = state.share_far();
-            let alignment =
-                SurfaceAlignment { transform, iterations, rms, points, pairs, share_far };
-            return Ok(IterationState { alignment, change, has_converged });
+            let (alignment, pairs) = state.into_alignment(limit, iterations)?;
+            return Ok(IterationState { alignment, pairs, change, has_converged });
         }
         if progress.is_cancelled() {
             return Err(AlignmentError::Cancelled { iterations });
@@ -281,14 +287,16 @@ fn pairs_of(points: &[Vector], search: &SurfaceSearch, transform: &RigidTransfor
                 return None;
             }
             let between = (query - closest.point).try_normalize(SAME_PLACE);
+            let normal = search.pseudo_normal(&closest);
             let direction = match closest.feature {
-                Feature::Face => search.pseudo_normal(&closest),
-                _ => between.unwrap_or_else(|| search.pseudo_normal(&closest)),
+                Feature::Face => normal,
+                _ => between.unwrap_or(normal),
             };
             Some(Pair {
                 fixed: *fixed,
                 moving: transform.apply(&closest.point),
                 direction: transform.rotation * direction,
+                normal: transform.rotation * normal,
                 squared_distance: closest.distance * closest.distance,
             })
         })

@@ -6,7 +6,8 @@
 
 use nalgebra::Matrix3;
 
-use super::closest_point::{StopRule, SurfaceAlignment, iterate, points_in_mask};
+use super::closest_point::{StopRule, SurfaceAlignment, iterate};
+use super::masked_points::points_in_mask;
 use super::start::{half_turns, inertia};
 use super::{AlignmentError, RigidTransform, SphereOrBox};
 use crate::mesh::{SurfaceSearch, TriangleSurface, Vector};

@@ -1,18 +1,21 @@
 //! Registration of one shape onto another: rigid movement from pairs of points, and iterative closest point.
 
 pub mod closest_point;
+mod masked_points;
 pub mod mirror;
 pub mod performed;
 mod rigid;
 mod sphere_or_box;
 mod start;
 pub mod thin_plate_spline;
+mod uncertainty;
 
 pub use closest_point::{IterativeClosestPoint, SurfaceAlignment};
 pub use rigid::{PointAlignment, RigidTransform, align_points, align_weighted_points};
 pub use sphere_or_box::SphereOrBox;
 pub use start::Start;
 pub use thin_plate_spline::ThinPlateSpline;
+pub use uncertainty::{RigidUncertainty, StandardError, undetermined};
 
 use crate::mesh::SearchError;
 

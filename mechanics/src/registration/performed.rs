@@ -8,8 +8,11 @@
 
 use rayon::prelude::*;
 
-use super::closest_point::{SurfaceAlignment, points_in_mask};
-use super::{AlignmentError, IterativeClosestPoint, RigidTransform, SphereOrBox, Start};
+use super::closest_point::SurfaceAlignment;
+use super::masked_points::points_in_mask;
+use super::{
+    AlignmentError, IterativeClosestPoint, RigidTransform, SphereOrBox, StandardError, Start,
+};
 use crate::mesh::{SurfaceSearch, TriangleSurface, Vector};
 use crate::progress::Progress;
 
@@ -32,6 +35,8 @@ pub struct Performed {
     pub fit: SurfaceAlignment,
     /// The rotation in radians between the start of its search and where it was found.
     pub turned_from_start: f64,
+    /// Of the movement of the segment, by base and segment together; nothing where the shape of one leaves a movement free.
+    pub standard_error: Option<StandardError>,
     /// Of the segment before the operation, in mm.
     pub centre: Vector,
 }
@@ -100,21 +105,39 @@ fn left(
 pub fn performed(
     segment: &BoneBefore,
     after: &TriangleSurface,
-    base: &RigidTransform,
+    base: &SurfaceAlignment,
     progress: &dyn Progress,
 ) -> Result<Performed, AlignmentError> {
     let start = match segment.start {
-        Start::AsItLies => Start::Known(*base),
+        Start::AsItLies => Start::Known(base.transform),
         other => other,
     };
     let fit = fit(&BoneBefore { start, ..segment.clone() }, after, progress)?;
-    let movement = fit.transform.inverse().then(base);
+    let movement = fit.transform.inverse().then(&base.transform);
     let started = match start {
         Start::Known(transform) => transform,
-        Start::AsItLies | Start::Boxes | Start::Inertia => *base,
+        Start::AsItLies | Start::Boxes | Start::Inertia => base.transform,
     };
     let turned_from_start = fit.transform.inverse().then(&started).angle();
-    Ok(Performed { movement, fit, turned_from_start, centre: centre(segment) })
+    let standard_error = standard_error(segment, base, &fit, &movement)?;
+    Ok(Performed { movement, fit, turned_from_start, standard_error, centre: centre(segment) })
+}
+
+/// Both registrations are off independently of each other.
+fn standard_error(
+    segment: &BoneBefore,
+    base: &SurfaceAlignment,
+    own: &SurfaceAlignment,
+    movement: &RigidTransform,
+) -> Result<Option<StandardError>, AlignmentError> {
+    let (Some(base), Some(own)) = (base.uncertainty, own.uncertainty) else { return Ok(None) };
+    let points = points_in_mask(segment.surface, segment.mask.as_ref(), POINTS)?;
+    let of =
+        |point: &Vector| own.displacement(point).hypot(base.displacement(&movement.apply(point)));
+    Ok(Some(StandardError {
+        rotation: own.rotation().hypot(base.rotation()),
+        displacement: points.iter().map(of).fold(0.0, f64::max),
+    }))
 }
 
 /// Points on bone that tell how far it lies from another.

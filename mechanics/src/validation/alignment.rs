@@ -7,7 +7,8 @@ use crate::progress::Progress;
 use crate::registration::closest_point::FAR;
 use crate::registration::mirror::{MirrorCheck, check_mirror};
 use crate::registration::{
-    IterativeClosestPoint, RigidTransform, SphereOrBox, Start, SurfaceAlignment, align_points,
+    IterativeClosestPoint, RigidTransform, SphereOrBox, StandardError, Start, SurfaceAlignment,
+    align_points, undetermined,
 };
 
 /// A landmark may lie outside the box around its surface by this share of the box's diagonal.
@@ -83,15 +84,20 @@ pub struct AlignmentReport {
     pub pairs: usize,
     /// Of what decided, the share that is left more than 1 mm away, 0 to 1; of iterative closest point only.
     pub share_far: Option<f64>,
+    /// Of what is compared, by its registration; absent too where the shape of what decided leaves a movement free.
+    pub standard_error: Option<StandardError>,
     /// What landmarks would leave if they were mirrored as well, in mm.
     mirrored_rms: Option<f64>,
 }
 
 impl AlignmentReport {
-    fn decided_by(&mut self, found: &SurfaceAlignment) {
+    fn decided_by(&mut self, found: &SurfaceAlignment, prediction: &TriangleSurface) {
         (self.transform, self.rms) = (found.transform, Some(found.rms));
         (self.iterations, self.pairs) = (found.iterations, found.pairs);
         self.share_far = Some(found.share_far);
+        let uncertainty = found.uncertainty.as_ref();
+        self.standard_error =
+            uncertainty.map(|own| StandardError::of_points(own, &prediction.points));
     }
 }
 
@@ -99,7 +105,7 @@ impl AlignmentReport {
 pub struct Aligned {
     pub surface: TriangleSurface,
     pub report: AlignmentReport,
-    /// A mirror image fits better, or bone does not fit.
+    /// A mirror image fits better, bone does not fit, or its shape does not determine where it lies.
     pub warnings: Vec<Warning>,
 }
 
@@ -112,7 +118,8 @@ pub fn aligned(
 ) -> Result<Aligned, ComparisonError> {
     let report = align(prediction, actual, alignment, progress)?;
     let mirrored = mirror_warning(prediction, actual, alignment, &report);
-    let warnings = mirrored.into_iter().chain(another_bone(&report)).collect();
+    let doubts = another_bone(&report).into_iter().chain(undetermined_place(&report));
+    let warnings = mirrored.into_iter().chain(doubts).collect();
     let mut surface = actual.clone();
     if *alignment != Alignment::None {
         surface.points.iter_mut().for_each(|point| *point = report.transform.apply(point));
@@ -135,6 +142,7 @@ fn align(
         rms: None,
         pairs: 0,
         share_far: None,
+        standard_error: None,
         mirrored_rms: None,
     };
     match alignment {
@@ -151,12 +159,12 @@ fn align(
         }
         Alignment::ClosestPoint { mask } => {
             let method = IterativeClosestPoint { mask: *mask, ..IterativeClosestPoint::default() };
-            report.decided_by(&method.align(prediction, actual, progress)?);
+            report.decided_by(&method.align(prediction, actual, progress)?, prediction);
         }
         Alignment::Surfaces(bones) => {
             let (mask, start) = (bones.mask, bones.start);
             let method = IterativeClosestPoint { mask, start, ..IterativeClosestPoint::default() };
-            report.decided_by(&method.align(&bones.fixed, &bones.moving, progress)?);
+            report.decided_by(&method.align(&bones.fixed, &bones.moving, progress)?, prediction);
         }
     }
     let middle = middle_of_box(actual);
@@ -205,6 +213,13 @@ fn another_bone(report: &AlignmentReport) -> Option<Warning> {
     let warning = Warning::new("another-person-suspect", detail);
     let warning = warning.with("share_above_1_mm", share).with("rms_mm", rms);
     (report.method == Alignment::SURFACES && share > BONE_SHARE).then_some(warning)
+}
+
+/// A warning where the surfaces that were aligned fit in other places as well.
+fn undetermined_place(report: &AlignmentReport) -> Option<Warning> {
+    let is_by_surfaces = report.share_far.is_some();
+    let told = || undetermined("the place of the actual surface", report.standard_error.as_ref());
+    is_by_surfaces.then(told).flatten()
 }
 
 fn refuse_outside(

@@ -397,7 +397,7 @@ fn a_planted_operation_comes_back_from_bone_before_and_after_it() {
         assert!(base.rms < 0.05 && base.share_far < 0.001, "{base:?}");
 
         let segment = BoneBefore { surface: &before.jaw, mask: None, start: Start::AsItLies };
-        let found = performed(&segment, &after, &base.transform, &Unobserved).unwrap();
+        let found = performed(&segment, &after, &base, &Unobserved).unwrap();
         let (angle, shift) = difference(&found.movement, &planted, &found.centre);
         assert!(angle < 0.05 && shift < 0.05, "{angle} degrees, {shift} mm, {found:?}");
         assert!(found.fit.rms < 0.05 && found.fit.share_far < 0.05, "{found:?}");

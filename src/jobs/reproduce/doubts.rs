@@ -5,7 +5,7 @@ use mechanics::mesh::{TriangleSurface, Warning};
 use mechanics::plan::RigidMovement;
 use mechanics::registration::mirror::check_mirror;
 use mechanics::registration::performed::{BoneBefore, Performed, median_distance, share_in_common};
-use mechanics::registration::{RigidTransform, SurfaceAlignment};
+use mechanics::registration::{RigidTransform, SurfaceAlignment, undetermined};
 
 /// The code of scans that are in the wrong order.
 pub(super) const BEFORE_OPERATION: &str = "before-operation-suspect";
@@ -112,6 +112,19 @@ pub(super) fn turned_over(
         let warning = Warning::new("segment-misfit", detail).with("turned_deg", turned);
         warning.with("share_above_1_mm", found.fit.share_far)
     })
+}
+
+/// A movement that the shape of the base, or of the segment, leaves open.
+pub(super) fn undetermined_movement(
+    segment: &ReproducedSegmentDocument,
+    base: &SurfaceAlignment,
+    found: &Performed,
+) -> Option<Warning> {
+    let rotation =
+        |fit: &SurfaceAlignment| fit.uncertainty.map_or(f64::INFINITY, |of| of.rotation());
+    let worst = if rotation(base) > rotation(&found.fit) { "base" } else { "segment" };
+    let what = format!("the movement of segment `{}` (the {worst} worst)", segment.name.trim());
+    undetermined(&what, found.standard_error.as_ref())
 }
 
 /// Segments of which both hold the same bone: it can have moved with one of them only.

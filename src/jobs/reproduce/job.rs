@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use super::doubts::{
     BEFORE_OPERATION, base_warnings, bone_in_common, lies_on_the_other_scan, misfit, reversed_plan,
-    same_scan, turned_over, unmasked,
+    same_scan, turned_over, undetermined_movement, unmasked,
 };
 use super::input::ReproduceInput;
 use crate::jobs::clock::Observed;
@@ -19,6 +19,7 @@ use crate::jobs::result::warnings::warning_documents;
 use crate::jobs::source::StoredMesh;
 use crate::schema::case::document::FrameName;
 use crate::schema::compare::document::{MeshReference, StartName};
+use crate::schema::compare::result::StandardErrorDocument;
 use crate::schema::plan::document::{PlanContext, PlanSegmentDocument};
 use crate::schema::predict::document::OutputName;
 use crate::schema::predict::result::ResultDocument;
@@ -175,9 +176,10 @@ impl Scans<'_> {
                 mask: segment.mask.as_ref().and_then(place_of),
                 start: self::start(segment.start, &segment.landmarks)?,
             };
-            let found = performed(&bone, later, &base.transform, self.clock)
-                .map_err(|error| self.failed(&error))?;
+            let found =
+                performed(&bone, later, &base, self.clock).map_err(|error| self.failed(&error))?;
             warnings.extend(misfit(segment, &found).or_else(|| turned_over(segment, &found)));
+            warnings.extend(undetermined_movement(segment, &base, &found));
             let plan = self.planned_of(segment).map(|planned| &planned.movement);
             let swapped = match segment.before {
                 Some(_) => lies_on_the_other_scan(segment, &bone, scans, &base),
@@ -245,6 +247,7 @@ impl Scans<'_> {
             axis: axis(movement).into(),
             centre_mm: (*centre).into(),
             displacement_mm: (movement.apply(centre) - centre).into(),
+            standard_error: StandardErrorDocument::from(found.standard_error.as_ref()),
             fit: FitDocument::from(&found.fit),
             from_planned: plan.map(|plan| deviation(found, &plan.movement)),
             name,

@@ -11,6 +11,7 @@ use super::measures::{
 pub use super::statistics::StatDocument;
 use crate::schema::case::acquisition::AcquisitionDocument;
 use crate::schema::{Matrix4x4, Triple};
+use mechanics::registration::StandardError;
 use mechanics::validation::{AlignmentReport, BothDirections, Comparison, DistanceStatistics};
 
 /// Statistics of unsigned distances in mm, weighted by area, and of the signed ones.
@@ -110,6 +111,30 @@ pub struct AlignmentDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub share_above_1_mm: Option<f64>,
+    /// Of the position of the compared skin, from the shape and residual of the surfaces aligned; of `icp` and `surfaces`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub standard_error: Option<StandardErrorDocument>,
+}
+
+/// The standard error of a registration of surfaces; null if their shape leaves a movement free.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct StandardErrorDocument {
+    /// Of the rotation.
+    #[serde(default)]
+    pub rotation_deg: Option<f64>,
+    /// The largest of all displacements.
+    #[serde(default)]
+    pub displacement_mm: Option<f64>,
+}
+
+impl From<Option<&StandardError>> for StandardErrorDocument {
+    fn from(error: Option<&StandardError>) -> Self {
+        StandardErrorDocument {
+            rotation_deg: error.map(|error| error.rotation.to_degrees()),
+            displacement_mm: error.map(|error| error.displacement),
+        }
+    }
 }
 
 /// The share of each surface that the other covers, 0 to 1, and distances of that part alone.
@@ -201,6 +226,9 @@ impl From<&AlignmentReport> for AlignmentDocument {
             pairs: report.pairs as u64,
             rms_mm: report.rms,
             share_above_1_mm: report.share_far,
+            standard_error: report
+                .share_far
+                .map(|_| StandardErrorDocument::from(report.standard_error.as_ref())),
         }
     }
 }

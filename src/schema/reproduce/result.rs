@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 use crate::schema::compare::document::StartName;
+use crate::schema::compare::result::StandardErrorDocument;
 use crate::schema::{Matrix4x4, PlanDocument, Triple};
 use mechanics::registration::SurfaceAlignment;
 
@@ -43,6 +44,9 @@ pub struct PerformedDocument {
     pub centre_mm: Triple,
     /// Its displacement.
     pub displacement_mm: Triple,
+    /// Of this movement, from the shapes and residuals of base and segment together.
+    #[serde(default)]
+    pub standard_error: StandardErrorDocument,
     pub fit: FitDocument,
     /// From the plan, if it moves the segment.
     #[serde(default, skip_serializing_if = "Option::is_none")]
