@@ -11,7 +11,7 @@ use crate::jobs::{MadeMesh, MeshSize, StoredMesh, StoredShape};
 use crate::schema::ErrorCode;
 use crate::schema::Problem;
 use crate::schema::case::document::{FrameName, LengthUnit};
-use crate::schema::mesh::MeshDocument;
+use crate::schema::mesh::{MeshDocument, MeshKind, MeshReport};
 use crate::schema::wire::canonical::sha256_hex;
 use crate::schema::wire::warning::WarningDocument;
 use crate::store::NewMesh;
@@ -19,6 +19,7 @@ use mechanics::format::{
     self, FormatError, Member, Mesh, ReadLimits, ReadMesh, SurfaceOutput, VolumeInLps,
     VolumeOutput, vtk,
 };
+use mechanics::mesh::duplicate_cells::DUPLICATE_CELLS;
 use mechanics::mesh::{Frame, TriangleSurface, VolumeMesh};
 
 /// Statements of an upload about its bytes.
@@ -102,6 +103,7 @@ fn validate_upload(
     let frame = read.frame.or(statement.frame.map(Frame::from)).unwrap_or_default();
     let (mut report, stored) =
         rayon::join(|| mesh_report(&read), || encode_read(&read.mesh, frame));
+    check_boundary(&report)?;
     let size = MeshSize {
         diagonal: report.diagonal,
         units: units.unwrap_or_default(),
@@ -201,6 +203,16 @@ fn check_frame(read: &ReadMesh, statement: &Statement) -> Result<(), Problem> {
         }
         _ => Ok(()),
     }
+}
+
+/// Refuses a volume without a face on its boundary, of which no case can be made.
+fn check_boundary(report: &MeshReport) -> Result<(), Problem> {
+    if report.kind != MeshKind::Volume || report.triangles > 0 {
+        return Ok(());
+    }
+    let doubled = report.warnings.iter().find(|warning| warning.code == DUPLICATE_CELLS);
+    let why = doubled.map_or_else(String::new, |warning| format!(": {}", warning.detail));
+    Err(Problem::new(ErrorCode::MeshDegenerate, format!("the mesh has no boundary face{why}")))
 }
 
 /// A mesh in another format, as `GET /v1/meshes/{id}/content` hands it out.

@@ -14,6 +14,7 @@ pub mod error;
 mod file;
 pub mod glb;
 mod gmsh;
+mod gzip;
 mod ignored_field;
 pub mod limits;
 mod lps;

@@ -72,6 +72,14 @@ impl Parsed {
         }
     }
 
+    /// Says that bytes follow the last one that the file declares, if any do.
+    pub fn note_trailing(&mut self, bytes: u64, last: &str) {
+        if bytes > 0 {
+            let warning = Warning::new("trailing-bytes", format!("{bytes} bytes follow {last}"));
+            self.warnings.push(warning.with("bytes", bytes as f64));
+        }
+    }
+
     /// Checks the whole and sorts it into a mesh.
     pub fn into_mesh(
         mut self,

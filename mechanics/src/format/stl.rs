@@ -10,7 +10,7 @@ use super::limits::{ReadLimits, room_for};
 use super::output::{SurfaceOutput, WriteError};
 use super::parsed::Parsed;
 use super::scalar::{ByteOrder, Scalar};
-use crate::mesh::{Vector, Warning};
+use crate::mesh::Vector;
 
 const HEADER_BYTES: u64 = 80;
 const TRIANGLE_BYTES: u64 = 50;
@@ -77,11 +77,7 @@ fn read_binary(cursor: &mut Cursor<'_>, limits: &ReadLimits) -> Result<Parsed, F
         parsed.triangles.push(corners);
     }
     parsed.points = welded.points;
-    if beyond > 0 {
-        let detail = format!("{beyond} bytes follow the {declared} triangles declared");
-        let warning = Warning::new("trailing-bytes", detail);
-        parsed.warnings.push(warning.with("bytes", beyond as f64));
-    }
+    parsed.note_trailing(beyond, &format!("the {declared} triangles declared"));
     Ok(parsed)
 }
 

@@ -4,7 +4,8 @@ use rayon::prelude::*;
 
 use super::{CellShape, VolumeMesh, Warning};
 
-const DUPLICATE_CELLS: &str = "duplicate-cells";
+/// The code of their warning.
+pub const DUPLICATE_CELLS: &str = "duplicate-cells";
 
 /// The lowest two corners of a cell, which cells of the same corners share.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]

@@ -62,6 +62,7 @@ fn volumes() -> Vec<(&'static str, Vec<u8>, u16, &'static str)> {
         &[(10, &[0, 1, 2, 3]), (10, &[0, 1, 2, 4])],
         "",
     );
+    let twice = ascii_vtu(&TETRAHEDRON, &[(10, &[0, 1, 2, 3]), (10, &[0, 1, 2, 3])], "");
     let pyramid = ascii_vtu(&TETRAHEDRON, &[(14, &[0, 1, 2, 3, 0])], "");
     let long = "x".repeat(10_000);
     let named = format!(
@@ -95,6 +96,7 @@ fn volumes() -> Vec<(&'static str, Vec<u8>, u16, &'static str)> {
         ),
         ("35 a pyramid", pyramid.into(), 422, "mesh-parse"),
         ("36 some inverted", inverted.into(), 422, "mesh-inverted-elements"),
+        ("37 every cell twice", twice.into(), 422, "mesh-degenerate"),
         (
             "40 a name of 10 kB",
             ascii_vtu(&TETRAHEDRON, &[(10, &[0, 1, 2, 3])], &named).into(),

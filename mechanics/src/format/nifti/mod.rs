@@ -10,11 +10,10 @@ mod refusal;
 
 use std::io::Read;
 
-use flate2::read::MultiGzDecoder;
-
 use super::arrays::SurfaceArrays;
 use super::cursor::Cursor;
 use super::error::FormatError;
+use super::gzip::{self, GzipReader};
 use super::limits::{DecodeBudget, ReadLimits};
 use super::voxels::{check_promise, decode, trailing};
 use super::{Mesh, MeshFormat, ReadMesh};
@@ -23,28 +22,27 @@ use crate::mesh::{Frame, IgnoredArrays};
 use header::{Header, PREFIX};
 use refusal::{FORMAT, bad};
 
-const GZIP: &[u8] = b"\x1f\x8b";
 /// Bytes between the header and the voxels: extensions.
 const MOST_EXTENSION_BYTES: u64 = 16 << 20;
 
 /// Whether this is NIfTI, compressed or not.
 pub(super) fn is_nifti(bytes: &[u8]) -> bool {
-    if !bytes.starts_with(GZIP) {
+    if !bytes.starts_with(gzip::MAGIC) {
         return header::is_nifti(bytes);
     }
     let mut start = Vec::new();
-    let read = MultiGzDecoder::new(bytes).take(PREFIX as u64).read_to_end(&mut start);
+    let read = GzipReader::new(bytes).take(PREFIX as u64).read_to_end(&mut start);
     read.is_ok() && header::is_nifti(&start)
 }
 
 pub(super) fn read(bytes: &[u8], limits: &ReadLimits) -> Result<ReadMesh, FormatError> {
     let place = Cursor::new(FORMAT, bytes);
-    if bytes.starts_with(GZIP) {
+    if bytes.starts_with(gzip::MAGIC) {
         let check = |header: &Header| {
             let wanted = header.storage.bytes().saturating_add(header.voxels_at);
             check_promise(wanted, &place, bytes.len(), limits)
         };
-        return read_stream(MultiGzDecoder::new(bytes), &place, limits, check);
+        return read_stream(GzipReader::new(bytes), &place, limits, check);
     }
     let check = |header: &Header| {
         let wanted = header.storage.bytes().saturating_add(header.voxels_at);

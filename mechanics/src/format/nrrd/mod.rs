@@ -9,12 +9,12 @@ mod segments;
 use std::io::Write;
 
 use flate2::Compression;
-use flate2::read::MultiGzDecoder;
 use flate2::write::GzEncoder;
 
 use super::arrays::SurfaceArrays;
 use super::cursor::Cursor;
 use super::error::FormatError;
+use super::gzip::GzipReader;
 use super::limits::{DecodeBudget, ReadLimits};
 use super::voxels::{Storage, check_promise, decode, trailing};
 use super::{Mesh, MeshFormat, ReadMesh};
@@ -59,7 +59,7 @@ fn inflate(
     limits: &ReadLimits,
 ) -> Result<Voxels, FormatError> {
     let budget = check_promise(storage.bytes(), place, file_bytes, limits)?;
-    let decoded = decode(MultiGzDecoder::new(place.rest()), storage, place, budget)?;
+    let decoded = decode(GzipReader::new(place.rest()), storage, place, budget)?;
     if decoded.followed_by > 0 {
         let wanted = storage.bytes();
         return Err(place.bad_bytes(format!("{wanted} bytes declared, more are there")));

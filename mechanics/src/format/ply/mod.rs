@@ -35,6 +35,10 @@ pub(super) fn read(bytes: &[u8], limits: &ReadLimits) -> Result<Parsed, FormatEr
             _ => reader.skip_element(element)?,
         }
     }
+    if reader.binary.is_none() {
+        reader.cursor.skip_space();
+    }
+    reader.parsed.note_trailing(reader.cursor.remaining(), "the last element declared");
     Ok(reader.parsed)
 }
 

@@ -15,6 +15,7 @@ use rayon::prelude::*;
 
 use super::document::{Appended, Content, DataArray, Document};
 use super::source::Source;
+use crate::format::cursor::find;
 use crate::format::error::{FilePosition, FormatError};
 use crate::format::limits::{DecodeBudget, MOST_BYTES_OF_ONE, ReadLimits, room_for};
 use crate::format::scalar::Scalar;
@@ -25,6 +26,8 @@ const BLOCKS_AT_ONCE: usize = 256;
 pub(super) struct Decoder<'d, 'a> {
     document: &'d Document<'a>,
     budget: DecodeBudget,
+    /// How much of raw appended data was read, from its start to the end of the last of its arrays.
+    raw_end: usize,
 }
 
 impl<'d, 'a> Decoder<'d, 'a> {
@@ -33,7 +36,18 @@ impl<'d, 'a> Decoder<'d, 'a> {
     }
 
     pub fn new(document: &'d Document<'a>, file_bytes: usize, limits: &ReadLimits) -> Self {
-        Decoder { document, budget: limits.decode_budget(file_bytes) }
+        Decoder { document, budget: limits.decode_budget(file_bytes), raw_end: 0 }
+    }
+
+    /// How many bytes follow the end of the document, without white space around them. To be asked when its arrays are read.
+    pub fn trailing_bytes(&self) -> u64 {
+        let after = match &self.document.appended {
+            // An array that nobody read is no text.
+            Some(Appended::Raw(data)) => after_end(&data[self.raw_end..]),
+            Some(Appended::Base64(data)) => after_end(data),
+            None => self.document.after,
+        };
+        after.trim_ascii().len() as u64
     }
 
     fn bad(&self, array: &DataArray<'_>, detail: impl std::fmt::Display) -> FormatError {
@@ -181,11 +195,16 @@ impl<'d, 'a> Decoder<'d, 'a> {
         if source.is_empty() {
             return Ok(Cow::Borrowed(&[]));
         }
-        if self.document.compressed {
-            return self.inflate(array, &mut source).map(Cow::Owned);
+        let bytes = if self.document.compressed {
+            self.inflate(array, &mut source).map(Cow::Owned)
+        } else {
+            let [length] = self.header_numbers(array, &mut source)?;
+            self.take(array, &mut source, length)
+        };
+        if let (Source::Raw(rest), Some(Appended::Raw(data))) = (&source, &self.document.appended) {
+            self.raw_end = self.raw_end.max(data.len() - rest.len());
         }
-        let [length] = self.header_numbers(array, &mut source)?;
-        self.take(array, &mut source, length)
+        bytes
     }
 
     fn source(&self, array: &DataArray<'a>) -> Result<Source<'a>, FormatError> {
@@ -297,6 +316,15 @@ impl<'d, 'a> Decoder<'d, 'a> {
         drop(places);
         Ok(decoded)
     }
+}
+
+/// What follows the end tag of a file whose appended data ends within these bytes; nothing where they have no such tag.
+fn after_end(mut bytes: &[u8]) -> &[u8] {
+    for mark in ["</AppendedData", "</VTKFile", ">"] {
+        let Some(at) = find(bytes, mark.as_bytes()) else { return &[] };
+        bytes = &bytes[at + mark.len()..];
+    }
+    bytes
 }
 
 /// Inflates a block to the place that it has to fill; what is wrong with it otherwise.

@@ -83,6 +83,8 @@ pub(super) struct Document<'a> {
     pub cells: u64,
     pub arrays: Vec<DataArray<'a>>,
     pub appended: Option<Appended<'a>>,
+    /// What follows the end of a document without appended data, from the first that is neither white space nor a comment.
+    pub after: &'a [u8],
 }
 
 impl<'a> Document<'a> {
@@ -96,6 +98,7 @@ impl<'a> Document<'a> {
         let mut parser = Parser {
             reader: Reader::from_str(head),
             open: Vec::new(),
+            is_closed: false,
             pieces: 0,
             is_appended_base64: false,
             document: Document {
@@ -107,9 +110,12 @@ impl<'a> Document<'a> {
                 cells: 0,
                 arrays: Vec::new(),
                 appended: None,
+                after: &[],
             },
         };
-        parser.run(tail.is_some())?;
+        if let Some(end) = parser.run(tail.is_some())? {
+            parser.document.after = head.as_bytes().get(end as usize..).unwrap_or_default();
+        }
         if let Some(tail) = tail {
             parser.document.appended = Some(parser.appended(tail)?);
         }
@@ -152,6 +158,8 @@ struct Parser<'a> {
     reader: Reader<&'a [u8]>,
     /// Names of the open elements, and whether each is an array.
     open: Vec<(Option<Section>, bool)>,
+    /// Whether the element that holds all others has ended.
+    is_closed: bool,
     pieces: usize,
     is_appended_base64: bool,
     document: Document<'a>,
@@ -166,33 +174,42 @@ impl<'a> Parser<'a> {
         }
     }
 
-    fn run(&mut self, has_appended: bool) -> Result<(), FormatError> {
+    /// Where something follows the end of the document, if anything does.
+    fn run(&mut self, has_appended: bool) -> Result<Option<u64>, FormatError> {
+        let mut after = None;
         loop {
+            let at = self.reader.buffer_position();
             let event = self.reader.read_event().map_err(|error| self.bad(error.to_string()))?;
+            if self.is_closed && !may_follow(&event) {
+                after = after.or(Some(at));
+            }
             match event {
                 Event::Start(tag) => {
                     self.start(&tag)?;
                     if tag.name().as_ref() == "AppendedData" && has_appended {
-                        return Ok(());
+                        return Ok(None);
                     }
                 }
                 Event::Empty(tag) => {
                     self.start(&tag)?;
-                    self.open.pop();
+                    self.end();
                 }
-                Event::End(_) => {
-                    self.open.pop();
-                }
+                Event::End(_) => self.end(),
                 Event::Text(text) => self.text(text.into_inner()),
                 Event::DocType(_) => return Err(self.bad("document types are refused")),
                 Event::GeneralRef(_) | Event::CData(_) if self.is_in_array() => {
                     return Err(self.bad("entities and CDATA are refused in arrays"));
                 }
-                Event::Eof if self.open.is_empty() => return Ok(()),
+                Event::Eof if self.open.is_empty() => return Ok(after),
                 Event::Eof => return Err(self.bad("the file ends inside an element")),
                 _ => {}
             }
         }
+    }
+
+    fn end(&mut self) {
+        self.open.pop();
+        self.is_closed |= self.open.is_empty();
     }
 
     fn is_in_array(&self) -> bool {
@@ -334,6 +351,15 @@ impl<'a> Parser<'a> {
             true => Appended::Base64(cursor.rest()),
             false => Appended::Raw(cursor.rest()),
         })
+    }
+}
+
+/// Whether this may follow the end of a document.
+fn may_follow(event: &Event<'_>) -> bool {
+    match event {
+        Event::Text(text) => text.trim_ascii().is_empty(),
+        Event::Comment(_) | Event::PI(_) | Event::Eof => true,
+        _ => false,
     }
 }
 

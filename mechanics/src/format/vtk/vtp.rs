@@ -28,6 +28,7 @@ pub(in crate::format) fn read(bytes: &[u8], limits: &ReadLimits) -> Result<Parse
     if document.cells > 0 {
         read_polygons(&document, &mut decoder, &mut parsed, limits)?;
     }
+    parsed.note_trailing(decoder.trailing_bytes(), "the end of the document");
     Ok(parsed)
 }
 

@@ -32,6 +32,7 @@ pub(in crate::format) fn read(bytes: &[u8], limits: &ReadLimits) -> Result<Parse
         nodes: read_nodes(&document, &mut decoder, Section::Cells)?,
     };
     table.move_to(&mut parsed, limits, |detail| at_array(&document, types, &detail))?;
+    parsed.note_trailing(decoder.trailing_bytes(), "the end of the document");
     Ok(parsed)
 }
 

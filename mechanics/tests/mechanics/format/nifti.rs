@@ -186,6 +186,17 @@ fn bytes_behind_the_last_voxel_are_reported() {
 }
 
 #[test]
+fn zeros_behind_the_compressed_bytes_are_no_part_of_the_image() {
+    let plain = read_default(&file());
+    let filled = [gzip(&file()), vec![0; 1000]].concat();
+    let read = read_default(&filled);
+    assert!(read.warnings.is_empty(), "{:?}", read.warnings);
+    assert_eq!(image(read), image(plain));
+    let error = error_of(&[&filled[..], b"x"].concat());
+    assert!(error.contains("1001 bytes follow the compressed ones"), "{error}");
+}
+
+#[test]
 fn the_check_sum_behind_megabytes_of_trailing_bytes_is_verified() {
     let more = [file(), vec![0; 2 << 20]].concat();
     let whole = gzip(&more);

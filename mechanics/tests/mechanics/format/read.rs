@@ -233,6 +233,34 @@ fn assert_is_the_tetrahedron(bytes: &[u8]) {
     assert_eq!(mesh.cells.nodes(0), [0, 1, 2, 3]);
 }
 
+/// The same of a VTU, which says what follows its end.
+fn assert_is_the_tetrahedron_alone(bytes: &[u8]) {
+    assert_is_the_tetrahedron(bytes);
+    for (behind, told) in [("", None), (" \r\n\t", None), ("\nmore \n", Some(4.0))] {
+        assert_eq!(trailing(&[bytes, behind.as_bytes()].concat()), told, "{behind:?}");
+    }
+}
+
+/// How many bytes are told to follow the end of a file.
+fn trailing(bytes: &[u8]) -> Option<f64> {
+    let mut warnings = read_default(bytes).warnings.into_iter();
+    warnings.find(|warning| warning.code == "trailing-bytes").map(|warning| warning.numbers[0].1)
+}
+
+#[test]
+fn what_follows_the_end_of_text_is_told_unless_it_is_white_space_or_a_comment() {
+    let vtu = ascii_vtu(&TETRAHEDRON, &[(10, &[0, 1, 2, 3])], "");
+    for (file, behind, told) in [
+        (vtu.as_str(), "\n<!-- made by hand -->\n", None),
+        (&vtu, "<!-- a --> <b/>", Some(4.0)),
+        (&vtu, "\0\0", Some(2.0)),
+        (PLY, " \r\n", None),
+        (PLY, "0 1\r\n", Some(5.0)),
+    ] {
+        assert_eq!(trailing(format!("{file}{behind}").as_bytes()), told, "{behind:?}");
+    }
+}
+
 #[test]
 fn inline_base64_is_read_in_both_byte_orders_and_header_widths() {
     let binary = |text: String| ("format=\"binary\"".to_string(), text);
@@ -240,13 +268,13 @@ fn inline_base64_is_read_in_both_byte_orders_and_header_widths() {
         let length = (bytes.len() as u32).to_le_bytes();
         binary(STANDARD.encode([&length[..], &bytes].concat()))
     };
-    assert_is_the_tetrahedron(&encoded_vtu("byte_order=\"LittleEndian\"", small, b""));
+    assert_is_the_tetrahedron_alone(&encoded_vtu("byte_order=\"LittleEndian\"", small, b""));
     let big_apart = |bytes: Vec<u8>| {
         let length = STANDARD.encode((bytes.len() as u64).to_be_bytes());
         binary(format!("\n  {length}{}\n", STANDARD.encode(bytes)))
     };
     let file = "byte_order=\"BigEndian\" header_type=\"UInt64\"";
-    assert_is_the_tetrahedron(&encoded_vtu(file, big_apart, b""));
+    assert_is_the_tetrahedron_alone(&encoded_vtu(file, big_apart, b""));
 }
 
 #[test]
@@ -268,7 +296,9 @@ fn appended_data_is_read_raw_and_as_base64() {
     );
     raw.extend(b"</AppendedData>");
     let end = head.len() - b"</VTKFile>".len();
-    assert_is_the_tetrahedron(&[&head[..end], &raw, b"</VTKFile>"].concat());
+    let file_of_raw = [&head[..end], &raw, b"</VTKFile>"].concat();
+    assert_is_the_tetrahedron_alone(&file_of_raw);
+    assert_eq!(trailing(&file_of_raw.repeat(2)), Some(file_of_raw.len() as f64));
 
     let mut text = String::new();
     let head = encoded_vtu(
@@ -282,7 +312,7 @@ fn appended_data_is_read_raw_and_as_base64() {
         b"",
     );
     let tail = format!("<AppendedData encoding=\"base64\">_{text}</AppendedData></VTKFile>");
-    assert_is_the_tetrahedron(&[&head[..end], tail.as_bytes()].concat());
+    assert_is_the_tetrahedron_alone(&[&head[..end], tail.as_bytes()].concat());
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! What the readers do about dirt in surfaces.
 
-use mechanics::mesh::{TriangleSurface, Vector};
+use mechanics::format::{self, SurfaceOutput};
+use mechanics::mesh::{Frame, TriangleSurface, Vector};
 
 use crate::samples::{TRIANGLE, binary_stl, code_of, read_default, surface, warning_codes};
 
@@ -86,6 +87,20 @@ fn a_far_origin_costs_no_digits_of_the_volume() {
         points.iter().map(|point| Vector::from(*point) + Vector::repeat(1e7)).collect();
     let cube = TriangleSurface { points: far, triangles, node_ids: None };
     assert_eq!(cube.signed_volume(), 1e6);
+}
+
+#[test]
+fn bytes_behind_the_end_of_what_is_written_are_a_warning() {
+    let (points, triangles) = cube();
+    let points = points.into_iter().map(Vector::from).collect();
+    let cube = TriangleSurface { points, triangles, node_ids: None };
+    let output = SurfaceOutput::plain(&cube, Frame::Lps);
+    for bytes in [format::ply::write(&output).unwrap(), format::vtk::vtp::write(&output).unwrap()] {
+        assert_eq!(warning_codes(&read_default(&bytes)), [""; 0]);
+        let read = read_default(&[&bytes[..], b"more"].concat());
+        assert_eq!(warning_codes(&read), ["trailing-bytes"]);
+        assert_eq!(read.warnings[0].numbers, [("bytes", 4.0)]);
+    }
 }
 
 #[test]
