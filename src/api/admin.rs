@@ -378,15 +378,10 @@ async fn lost_jobs(
     let page = parameters.page()?;
     let mut rows = admin.store.lost_jobs(page.after.as_deref(), page.rows()).await?;
     let next = page.cut(&mut rows, |row| &row.id);
-    let view = |row: LostRow| -> ApiResult<LostJob> {
-        Ok(LostJob {
-            id: row.id,
-            tenant: row.tenant,
-            kind: row.kind,
-            attempts: row.attempt,
-            finished: time::rfc3339(row.finished),
-            error: serde_json::from_str(&row.error).map_err(ApiError::internal)?,
-        })
+    let view = |LostRow { id, tenant, kind, attempt, finished, error }| -> ApiResult<LostJob> {
+        let error = serde_json::from_str(&error).map_err(ApiError::unreadable("job", &id))?;
+        let finished = time::rfc3339(finished);
+        Ok(LostJob { id, tenant, kind, attempts: attempt, finished, error })
     };
     let items = rows.into_iter().map(view).collect::<ApiResult<Vec<_>>>()?;
     Ok(page.linked(json(StatusCode::OK, &items), "/lost-jobs", next))

@@ -142,7 +142,7 @@ async fn known(service: &Service, given: &str, case: Option<String>) -> ApiResul
     if row.hash != sha256_hex(key.text.as_bytes()) {
         return Err(not_in_force());
     }
-    let scopes = scopes_of(&row.scopes).map_err(ApiError::internal)?;
+    let scopes = scopes_of(&row.scopes).map_err(ApiError::unreadable("key", &row.id))?;
     let key: Arc<str> = row.id.into();
     let lookup = KeyLookup::of(key.clone(), at);
     let caller = Caller { tenant: row.tenant.into(), key, scopes, lookup };

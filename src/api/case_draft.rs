@@ -18,7 +18,9 @@ use crate::jobs::{
 use crate::library::upload::{Statement, Upload};
 use crate::schema::case::meshed::{CaseBody, MeshedCaseDocument};
 use crate::schema::predict::check::CheckDocument;
-use crate::schema::{CaseDocument, ErrorCode, Faults, Pointer, PredictDocument, Problem, hashes};
+use crate::schema::{
+    CaseDocument, ErrorCode, Faults, MeshingDocument, Pointer, PredictDocument, Problem, hashes,
+};
 use crate::store::{AddedCase, NewCase, NewJob};
 
 /// The part of a form with the document; the other parts are meshes.
@@ -228,18 +230,20 @@ impl Draft {
         let text = |value: serde_json::Result<String>| value.map_err(ApiError::internal);
         let (rows, meshes): (Vec<_>, Vec<_>) =
             self.uploads.into_iter().map(|upload| (upload.row, upload.mesh)).unzip();
+        let mut document = self.document;
+        let tags_of_job = document.take_tags_of_job();
         let check = match checked {
             Checked::Whole(check) => check.as_ref().as_ref(),
             Checked::ToMesh { .. } => None,
         };
         let new = NewCase {
             id: id.clone(),
-            document: text(serde_json::to_string(&self.document))?,
+            document: text(serde_json::to_string(&document))?,
             report: text(serde_json::to_string(&check))?,
-            tags: self.document.tags().to_vec(),
-            mesh_ids: self.document.mesh_ids(),
+            tags: document.tags().to_vec(),
+            mesh_ids: document.mesh_ids(),
             meshes: rows,
-            meshing: meshing_of(id, &self.document, checked, traceparent)?,
+            meshing: meshing_of(id, &document, tags_of_job, checked, traceparent)?,
         };
         match service.store.add_case(&new, LONGEST_QUEUE).await? {
             AddedCase::Stored => {}
@@ -289,18 +293,19 @@ fn require_image(sources: &dyn MeshSource, image: &str) -> Result<(), JobError> 
 fn meshing_of(
     case: &str,
     document: &CaseBody,
+    tags: Vec<String>,
     checked: &Checked,
     traceparent: Option<String>,
 ) -> ApiResult<Option<NewJob>> {
     let (CaseBody::ToMesh(document), Checked::ToMesh { contents }) = (document, checked) else {
         return Ok(None);
     };
-    let spec = document.meshing.clone();
+    let spec = MeshingDocument { tags: tags.clone(), ..document.meshing.clone() };
     let accepted = Accepted {
         case_id: Some(case.to_owned()),
         shared_cases: Vec::new(),
         spec_hash: hashes::meshing_hash(&spec, &|id| contents.get(id).cloned(), Some(case)),
-        tags: spec.tags.clone(),
+        tags,
         mesh_ids: document
             .clone()
             .mesh_references_mut()

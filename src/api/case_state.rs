@@ -58,7 +58,7 @@ pub fn state(row: &CaseRow, body: &CaseBody) -> CaseState {
 }
 
 pub fn body_of(row: &CaseRow) -> ApiResult<CaseBody> {
-    CaseBody::stored(&row.document).map_err(ApiError::internal)
+    CaseBody::stored(&row.document).map_err(ApiError::unreadable("case", &row.id))
 }
 
 /// The ETag of a case beside its version: the same version may be meshing, and fail.
@@ -86,7 +86,8 @@ pub fn meshing_view(meshing: &CaseMeshing, state: CaseState) -> ApiResult<CaseMe
 fn error_of(meshing: &CaseMeshing) -> ApiResult<JobErrorDocument> {
     let ended = JobErrorDocument::of_unended_meshing;
     match (&meshing.error, meshing.status) {
-        (Some(error), _) => serde_json::from_str(error).map_err(ApiError::internal),
+        (Some(error), _) => serde_json::from_str(error)
+            .map_err(ApiError::unreadable("the error of job", &meshing.job)),
         (None, None) => Ok(ended("removed")),
         (None, Some(_)) => Ok(ended("dismissed")),
     }

@@ -216,7 +216,8 @@ fn view(row: &CaseRow) -> ApiResult<CaseView> {
         meshing: meshing.transpose()?,
         case,
         meshes: Vec::new(),
-        check: serde_json::from_str(&row.report).map_err(ApiError::internal)?,
+        check: serde_json::from_str(&row.report)
+            .map_err(ApiError::unreadable("the check of case", &row.id))?,
     })
 }
 

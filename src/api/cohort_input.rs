@@ -83,5 +83,5 @@ async fn result_of(service: &Service, at: &str, job: &str) -> ApiResult<ResultDo
     let file = service.store.job_file(&row.id, RESULT).await?;
     let file = file.ok_or_else(|| compared_nothing(at))?;
     let bytes = service.store.read_blob(&file.blob).await?;
-    serde_json::from_slice(&bytes).map_err(ApiError::internal)
+    serde_json::from_slice(&bytes).map_err(ApiError::unreadable("the result of job", &row.id))
 }

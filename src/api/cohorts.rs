@@ -124,8 +124,10 @@ fn entry(row: &CohortRow) -> CohortEntry {
     }
 }
 
-fn member_view(row: &MemberRow) -> ApiResult<CohortMemberView> {
-    let member = serde_json::from_str(&row.document).map_err(ApiError::internal)?;
+fn member_view(cohort: &str, row: &MemberRow) -> ApiResult<CohortMemberView> {
+    let what = format!("member {} of cohort", row.number);
+    let member = serde_json::from_str(&row.document);
+    let member = member.map_err(ApiError::unreadable(&what, cohort))?;
     Ok(CohortMemberView { number: row.number, case: row.case_id.clone(), member })
 }
 
@@ -154,8 +156,11 @@ async fn answer(service: &Service, status: StatusCode, row: &CohortRow) -> ApiRe
         created: time::rfc3339(row.created),
         updated: time::rfc3339(row.updated),
         name: row.name.clone(),
-        consent: consent.map_err(ApiError::internal)?,
-        members: members.iter().map(member_view).collect::<ApiResult<_>>()?,
+        consent: consent.map_err(ApiError::unreadable("the consent of cohort", &row.id))?,
+        members: members
+            .iter()
+            .map(|member| member_view(&row.id, member))
+            .collect::<ApiResult<_>>()?,
         models: models.iter().filter_map(|model| model_view(model, &left)).collect(),
         left: left
             .into_iter()

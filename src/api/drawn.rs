@@ -103,9 +103,11 @@ async fn drawn(service: &Service, job: &JobRow, wanted: DrawingRequest) -> ApiRe
 /// The result of the job, if it can be drawn.
 async fn finished(service: &Service, job: &JobRow) -> ApiResult<Option<Finished>> {
     let document = service.store.job_document(&job.id).await?.ok_or_else(no_such_job)?;
-    let input: JobInput = serde_json::from_str(&document).map_err(ApiError::internal)?;
+    let input: JobInput = serde_json::from_str(&document)
+        .map_err(ApiError::unreadable("the input of job", &job.id))?;
     let result = job.result.as_deref().unwrap_or("null");
-    let result = serde_json::from_str(result).map_err(ApiError::internal)?;
+    let result =
+        serde_json::from_str(result).map_err(ApiError::unreadable("the result of job", &job.id))?;
     let study = stored_report(service, &job.id).await?.map(|(_, report)| report);
     Ok(Finished::of_job(&job.id, input, result, study))
 }

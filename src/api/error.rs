@@ -67,6 +67,11 @@ impl ApiError {
         tracing::error!(%reason, "internal error");
         ApiError::new(ErrorCode::Internal, "the log has the details under the request's id")
     }
+
+    /// An internal error at a stored row, which the log names: one that cannot be read ends the whole page that it is on.
+    pub fn unreadable<E: std::fmt::Display>(what: &str, id: &str) -> impl Fn(E) -> ApiError {
+        move |error| ApiError::internal(format_args!("{what} {id} cannot be read: {error}"))
+    }
 }
 
 impl From<Problem> for ApiError {

@@ -10,8 +10,8 @@ use crate::store::JobRow;
 
 pub fn status_info(row: &JobRow, deduplicated: bool) -> ApiResult<StatusInfo> {
     let kind = JobKind::from_name(&row.kind)
-        .ok_or_else(|| ApiError::internal(format!("kind of job `{}`", row.kind)))?;
-    let results: Option<ResultDocument> = parsed(row.result.as_deref())?;
+        .ok_or_else(|| ApiError::internal(format!("job {} is of kind `{}`", row.id, row.kind)))?;
+    let results: Option<ResultDocument> = parsed(row, row.result.as_deref())?;
     let warnings = results.as_ref().map(|results| results.warnings.clone());
     let is_running = row.status == JobStatus::Running;
     Ok(StatusInfo {
@@ -34,20 +34,23 @@ pub fn status_info(row: &JobRow, deduplicated: bool) -> ApiResult<StatusInfo> {
         attempt: u32::try_from(row.attempt).unwrap_or(u32::MAX),
         queue_position: row.queue_position.and_then(|position| u64::try_from(position).ok()),
         spec_hash: row.spec_hash.clone(),
-        engine: serde_json::from_str(&row.engine).map_err(ApiError::internal)?,
+        engine: serde_json::from_str(&row.engine).map_err(ApiError::unreadable("job", &row.id))?,
         case: row.case_id.clone(),
         tags: row.tags.clone(),
         deduplicated,
-        truths: parsed(row.truths.as_deref())?.unwrap_or_default(),
-        error: parsed(row.error.as_deref())?,
+        truths: parsed(row, row.truths.as_deref())?.unwrap_or_default(),
+        error: parsed(row, row.error.as_deref())?,
         warnings: warnings.unwrap_or_default(),
         links: links(row, results.as_ref()),
         results,
     })
 }
 
-fn parsed<T: serde::de::DeserializeOwned>(text: Option<&str>) -> ApiResult<Option<T>> {
-    text.map(serde_json::from_str).transpose().map_err(ApiError::internal)
+fn parsed<T: serde::de::DeserializeOwned>(
+    row: &JobRow,
+    text: Option<&str>,
+) -> ApiResult<Option<T>> {
+    text.map(serde_json::from_str).transpose().map_err(ApiError::unreadable("job", &row.id))
 }
 
 fn message(row: &JobRow) -> String {

@@ -71,7 +71,7 @@ struct ListParameters {
 }
 
 /// Accepts a job. Equal inputs, from any client of the tenant, give the same job, which gets the tags of each
-/// request; a job that was dismissed, or failed by its budget or by infrastructure, is accepted again. With
+/// request; where that was dismissed, or failed by its budget or by infrastructure, it is a new job. With
 /// `Prefer: wait=n` the response comes when the job has ended, after at most n seconds (at most 30). One with
 /// `keep` stores meshes, which needs a key with `write`.
 #[utoipa::path(

@@ -62,7 +62,7 @@ pub struct NewKey {
 
 impl KeyView {
     fn of(row: &KeyRow) -> ApiResult<KeyView> {
-        let scopes = scopes_of(&row.scopes).map_err(ApiError::internal)?;
+        let scopes = scopes_of(&row.scopes).map_err(ApiError::unreadable("key", &row.id))?;
         Ok(KeyView {
             id: row.id.clone(),
             label: row.label.clone(),

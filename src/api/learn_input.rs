@@ -99,7 +99,8 @@ pub async fn learned_from(service: &Service, model: &str, case: &str) -> ApiResu
 pub(super) async fn learned(service: &Service, at: &str, job: &str) -> ApiResult<LearnedCase> {
     let row = successful_job(service, at, job).await?;
     let document = service.store.job_document(&row.id).await?.unwrap_or_default();
-    let input: JobInput = serde_json::from_str(&document).map_err(ApiError::internal)?;
+    let input: JobInput = serde_json::from_str(&document)
+        .map_err(ApiError::unreadable("the input of job", &row.id))?;
     match input {
         JobInput::Predict(mut prediction) => {
             // What it was compared with or corrected by is not learned from.

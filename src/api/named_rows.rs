@@ -41,7 +41,7 @@ pub async fn stored_plan(
         )
     };
     let found = found.ok_or_else(unknown)?;
-    serde_json::from_str(&found.document).map(Some).map_err(ApiError::internal)
+    serde_json::from_str(&found.document).map(Some).map_err(ApiError::unreadable("plan", &found.id))
 }
 
 /// A case that has to exist.

@@ -59,7 +59,7 @@ fn view(row: &PlanRow) -> ApiResult<PlanView> {
         version: row.version,
         created: time::rfc3339(row.created),
         updated: time::rfc3339(row.updated),
-        plan: serde_json::from_str(&row.document).map_err(ApiError::internal)?,
+        plan: serde_json::from_str(&row.document).map_err(ApiError::unreadable("plan", &row.id))?,
     })
 }
 

@@ -200,7 +200,8 @@ pub(super) async fn stored_report(
     let bytes = bytes.map_err(|error| {
         ApiError::from(error).of_bytes(format_args!("{REPORT_JSON} of job {job}"))
     })?;
-    let report = serde_json::from_slice(&bytes).map_err(ApiError::internal)?;
+    let report =
+        serde_json::from_slice(&bytes).map_err(ApiError::unreadable("the report of job", job))?;
     Ok(Some((row, report)))
 }
 

@@ -37,7 +37,8 @@ pub fn router() -> Resources {
 async fn manifest(service: Service, Id(id): Id, headers: HeaderMap) -> ApiResult {
     let job = successful(&service, &id, &headers).await?;
     let result = job.result.as_deref().unwrap_or("null");
-    let result: serde_json::Value = serde_json::from_str(result).map_err(ApiError::internal)?;
+    let result: serde_json::Value =
+        serde_json::from_str(result).map_err(ApiError::unreadable("the result of job", &id))?;
     conditional::document(&headers, json(StatusCode::OK, &result)).await
 }
 

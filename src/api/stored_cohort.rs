@@ -30,10 +30,15 @@ impl Members {
             fault(AT, ErrorCode::UnknownCohort, detail)
         };
         let row = row.ok_or_else(unknown)?;
-        let of_all: Option<ConsentDocument> = row.consent.as_deref().map(parsed).transpose()?;
+        let of_all: Option<ConsentDocument> = row
+            .consent
+            .as_deref()
+            .map(|text| parsed("the consent of cohort", &row.id, text))
+            .transpose()?;
         let mut members = Vec::new();
         for stored in service.store.cohort_members(&row.id).await? {
-            let member: MemberDocument = parsed(&stored.document)?;
+            let what = format!("member {} of cohort", stored.number);
+            let member: MemberDocument = parsed(&what, &row.id, &stored.document)?;
             let consent = member.consent.as_ref().or(of_all.as_ref());
             if !consent.is_some_and(|consent| consent.uses.contains(&asked)) {
                 let (name, word) = (member.called(stored.number), asked.name());
@@ -68,6 +73,6 @@ impl Members {
     }
 }
 
-fn parsed<T: serde::de::DeserializeOwned>(text: &str) -> ApiResult<T> {
-    serde_json::from_str(text).map_err(ApiError::internal)
+fn parsed<T: serde::de::DeserializeOwned>(what: &str, id: &str, text: &str) -> ApiResult<T> {
+    serde_json::from_str(text).map_err(ApiError::unreadable(what, id))
 }

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::settings::Arguments as Settings;
 use crate::config::{BlobLocation, Config, DatabaseLocation, StorageLocations};
+use crate::jobs::JobInput;
 use crate::store::{ClockDoubt, Store, StoreError, TransferCounts};
 
 #[derive(Debug, thiserror::Error)]
@@ -83,7 +84,7 @@ async fn connect(config: &Config) -> Result<Store, AdminError> {
         StoreError::Files(_) if !error.is_full() => AdminError::Folder(error),
         other => other.into(),
     })?;
-    Ok(store.with_key_limit(config.most_keys))
+    Ok(store.with_key_limit(config.most_keys).with_input_reader(JobInput::check_stored))
 }
 
 pub async fn export(to: &Path, settings: &Settings) -> Result<TransferCounts, AdminError> {

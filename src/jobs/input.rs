@@ -1,6 +1,7 @@
 //! Job input: a job as queued, and the common parts of the inputs of all kinds.
 
 use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value};
 
 use super::cohort::CohortInput;
 use super::compare::CompareInput;
@@ -13,6 +14,8 @@ use super::predict::PredictInput;
 use super::reproduce::ReproduceInput;
 use super::response::ResponseInput;
 use super::study::StudyInput;
+use crate::schema::CaseDocument;
+use crate::schema::case::document::LengthUnit;
 use crate::schema::job_document::JobKind;
 use crate::schema::study::document::StudyKind;
 
@@ -52,6 +55,18 @@ impl JobInput {
         }
     }
 
+    /// Reads a stored input, which lacks its case as long as that waits for its mesh.
+    pub fn check_stored(text: &str) -> serde_json::Result<()> {
+        let mut stored: Value = serde_json::from_str(text)?;
+        let inputs = stored.as_object_mut().into_iter().flat_map(Map::values_mut);
+        if let Some(case) =
+            inputs.filter_map(|input| input.get_mut("case")).find(|case| case.is_null())
+        {
+            *case = serde_json::to_value(CaseDocument::of_volume("", LengthUnit::Mm))?;
+        }
+        serde_json::from_value::<JobInput>(stored).map(drop)
+    }
+
     /// An error of the job with its places in the document that was posted: the parts of an input have them in theirs. The meshing of a
     /// case is a member of that.
     pub fn as_posted(&self, error: JobError) -> JobError {
@@ -80,5 +95,31 @@ impl JobInput {
             JobInput::Study(input) => (input.job, input.queue_s) = (job, queue_s),
         }
         self
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_stored_input_may_lack_its_case_and_nothing_else() {
+        let whole = r#"{"predict":{"case":{"units":"mm","volume":"a"},"plan":{},"spec":{}}}"#;
+        let waiting = r#"{"predict":{"case":null,"plan":{},"spec":{}}}"#;
+        for text in [whole, waiting] {
+            JobInput::check_stored(text).unwrap();
+        }
+        let wrong = [
+            "",
+            "{}",
+            r#"{"predict":{}}"#,
+            r#"{"predict":{"plan":{},"spec":{}}}"#,
+            r#"{"predict":{"case":{},"plan":{},"spec":{}}}"#,
+            r#"{"predict":{"case":null,"plan":null,"spec":{}}}"#,
+            r#"{"guess":{"case":null,"plan":{},"spec":{}}}"#,
+        ];
+        for text in wrong {
+            assert!(JobInput::check_stored(text).is_err(), "{text}");
+        }
     }
 }

@@ -65,8 +65,9 @@ impl MeshCard {
 
 /// The document of a stored mesh.
 pub fn document_of(row: &MeshRow) -> Result<MeshDocument, StoreError> {
-    serde_json::from_str(&row.report)
-        .map_err(|error| StoreError::Schema(format!("report of a mesh: {error}")))
+    serde_json::from_str(&row.report).map_err(|error| {
+        StoreError::Schema(format!("the report of mesh {} cannot be read: {error}", row.id))
+    })
 }
 
 /// Parses bytes that our own writers made: they may compress better than a stranger's file is allowed to.

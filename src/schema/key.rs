@@ -212,10 +212,11 @@ mod tests {
             wanted.check().err().map(|problem| problem.errors[0].code)
         };
         assert_eq!(code(&"\u{e9}".repeat(100)), None);
-        let wrong = ["", " ", &"a".repeat(101), "\u{1b}[2J", "a\nroot", "\u{9b}2J"];
+        let wrong =
+            ["", " ", "\u{200d}\u{200c}", &"a".repeat(101), "\u{1b}[2J", "a\nroot", "\u{9b}2J"];
         assert!(wrong.into_iter().all(|label| code(label) == Some(ErrorCode::BadName)));
         for unseen in
-            ['\u{ad}', '\u{200b}', '\u{2029}', '\u{202e}', '\u{2066}', '\u{feff}', '\u{e0041}']
+            "\u{ad}\u{115f}\u{1160}\u{200b}\u{2029}\u{202e}\u{2066}\u{2800}\u{3164}\u{feff}\u{ffa0}\u{e0041}".chars()
         {
             assert_eq!(code(&format!("ward{unseen} 7")), Some(ErrorCode::BadName), "{unseen:?}");
         }

@@ -72,8 +72,11 @@ impl Store {
             events.push(EventRow {
                 number: row.try_get("number")?,
                 at: row.try_get("at")?,
-                status: JobStatus::from_name(&status)
-                    .ok_or_else(|| sqlx::Error::Decode(format!("job status `{status}`").into()))?,
+                status: JobStatus::from_name(&status).ok_or_else(|| {
+                    sqlx::Error::Decode(
+                        format!("status `{status}` of an event of job {job}").into(),
+                    )
+                })?,
                 phase: row.try_get("phase")?,
                 progress: row.try_get("progress")?,
                 iteration: row.try_get("iteration")?,

@@ -12,7 +12,9 @@ use super::StoreError;
 use super::database::{
     Column, Executor, Row, Statement, Transaction, Value, is_duplicate, is_reference, query_of,
 };
-use super::exported_values::{TextForm, other_integer, wrong_file};
+use super::exported_files::open_plain;
+use super::exported_values::{JsonReader, TextForm, other_integer, told, wrong_file};
+use crate::schema::wire::canonical::sha256_hex;
 
 /// The first line of a file of rows: the names of the columns and their types.
 #[derive(Serialize, Deserialize)]
@@ -44,20 +46,6 @@ impl Kind {
             Kind::Integer => "integers",
             Kind::Real => "numbers",
         }
-    }
-}
-
-/// An error of the file system with its place and what has to be there.
-pub(super) fn at(path: &Path, wanted: &'static str) -> impl Fn(std::io::Error) -> std::io::Error {
-    let path = path.display().to_string();
-    move |error| std::io::Error::new(error.kind(), format!("{path}: {error}; {wanted}"))
-}
-
-/// What an export lacks is a fault of the export, and not of the disk.
-pub(super) fn absent(error: std::io::Error) -> StoreError {
-    match error.kind() {
-        ErrorKind::NotFound => StoreError::Export(error.to_string()),
-        _ => StoreError::Files(error),
     }
 }
 
@@ -96,8 +84,8 @@ impl ExportedRows {
     /// `None` where the table had no rows.
     pub fn open(folder: &Path, table: &str) -> Result<Option<ExportedRows>, StoreError> {
         let file = folder.join(format!("{table}.ndjson"));
-        let opened = File::open(&file).map_err(at(&file, "the manifest of the export names it"));
-        let mut lines = BufReader::new(opened.map_err(absent)?).lines();
+        let opened = open_plain(&file, "the manifest of the export names it")?;
+        let mut lines = BufReader::new(opened).lines();
         let (table, file) = (table.to_owned(), file.display().to_string());
         let Some(head) = lines.next() else { return Ok(None) };
         let unreadable = |what: String| StoreError::Export(format!("{file}, line 1: {what}"));
@@ -131,10 +119,44 @@ impl ExportedRows {
         values.into_iter().zip(&self.columns).map(value).collect::<Result<_, _>>().map(Some)
     }
 
-    /// Of the row that was read last, whose line comes after the first one, that of the columns.
-    fn fault(&self, what: &str) -> StoreError {
+    /// The line of the row with this id, with its file.
+    pub fn place_of(folder: &Path, table: &str, id: &str) -> Result<String, StoreError> {
+        let file = folder.join(format!("{table}.ndjson")).display().to_string();
+        let Some(mut rows) = ExportedRows::open(folder, table)? else { return Ok(file) };
+        while let Some(values) = rows.next_row()? {
+            if rows.id(&values) == Some(id) {
+                return Ok(rows.place());
+            }
+        }
+        Ok(file)
+    }
+
+    /// What is wrong with a file that has more rows than the manifest says, which are read once more.
+    pub fn surplus(mut self, found: usize, declared: usize) -> StoreError {
+        let counted = format!("the file has {found} rows, and the manifest says {declared}");
+        let mut lines = BTreeMap::new();
+        while let Some(line) = self.lines.next() {
+            self.read += 1;
+            let hash = match text_of(line, &|what| self.fault(&what)) {
+                Ok(line) => sha256_hex(line.as_bytes()),
+                Err(error) => return error,
+            };
+            if let Some(before) = lines.insert(hash, self.read + 1) {
+                return self.fault(&format!("it repeats line {before}: {counted}"));
+            }
+        }
+        StoreError::Export(format!("{} is longer than what was exported: {counted}", self.file))
+    }
+
+    /// The place of the row that was read last, whose line comes after the first one, that of the columns.
+    fn place(&self) -> String {
         let (row, line) = (self.read, self.read + 1);
-        StoreError::Export(format!("{}, line {line} (row {row}): {what}", self.file))
+        format!("{}, line {line} (row {row})", self.file)
+    }
+
+    /// What is wrong with the row that was read last.
+    fn fault(&self, what: &str) -> StoreError {
+        StoreError::Export(format!("{}: {what}", self.place()))
     }
 
     /// An error of the database that is a fault of the row.
@@ -190,11 +212,30 @@ impl ExportedRows {
                 return Err(self.fault(&format!("column {name} holds {wanted}, not {number}")));
             }
             let (Value::Text(Some(text)), Some(wanted)) = (value, wanted) else { continue };
-            if !wanted.is(text) {
-                return Err(self.fault(&format!("column {name} holds {}", wanted.name())));
+            if let Err(reason) = wanted.read(text) {
+                let holds = format!("column {name} holds {}", wanted.name);
+                let Some(reason) = reason else { return Err(self.fault(&holds)) };
+                let of =
+                    self.id(values).map_or("this one".to_owned(), |id| format!("that of {id}"));
+                let why = told(&reason);
+                return Err(self.fault(&format!("{holds}, and {of} cannot be read: {why}")));
             }
         }
         Ok(())
+    }
+
+    /// The value of a row in one of the columns, if that is there.
+    fn value<'a>(&self, values: &'a [Value], column: &str) -> Option<&'a Value> {
+        let place = self.columns.iter().position(|(name, _)| name == column);
+        place.map(|place| &values[place])
+    }
+
+    /// The id of a row that has one.
+    fn id<'a>(&self, values: &'a [Value]) -> Option<&'a str> {
+        match self.value(values, "id") {
+            Some(Value::Text(Some(id))) => Some(id),
+            _ => None,
+        }
     }
 
     /// A row that names a blob has to name one of the manifest, and a file of a job to be that blob.
@@ -203,10 +244,7 @@ impl ExportedRows {
         values: &[Value],
         blobs: &BTreeMap<String, u64>,
     ) -> Result<(), StoreError> {
-        let of = |wanted: &str| {
-            let place = self.columns.iter().position(|(name, _)| name == wanted);
-            place.map(|place| &values[place])
-        };
+        let of = |wanted: &str| self.value(values, wanted);
         let bytes = match of("blob") {
             None => return Ok(()),
             Some(Value::Text(Some(blob))) => blobs.get(blob),
@@ -226,18 +264,19 @@ impl ExportedRows {
         Ok(())
     }
 
-    /// Reads all rows, whose values have to be what the columns of the table take and what the service can read. `blobs` are those
-    /// of the manifest, with their sizes, as far as they are known. Returns how many.
+    /// Reads all rows, whose values have to be what the columns of the table take and what the service can read; `input` reads the
+    /// inputs of jobs. `blobs` are those of the manifest, with their sizes, as far as they are known. Returns how many.
     pub fn check(
         mut self,
         known: &[Column],
+        input: JsonReader,
         blobs: Option<&BTreeMap<String, u64>>,
     ) -> Result<usize, StoreError> {
         self.check_columns(known)?;
         let is_needed =
             |name: &str| known.iter().any(|column| column.name == name && column.is_needed);
         let wanted =
-            |(name, _): &(String, Kind)| (is_needed(name), TextForm::of(&self.table, name));
+            |(name, _): &(String, Kind)| (is_needed(name), TextForm::of(&self.table, name, input));
         let wanted: Vec<(bool, Option<TextForm>)> = self.columns.iter().map(wanted).collect();
         while let Some(values) = self.next_row()? {
             self.check_values(&values, &wanted)?;
@@ -305,13 +344,4 @@ fn text_of(
         ErrorKind::InvalidData => fault(error.to_string()),
         _ => StoreError::Files(error),
     })
-}
-
-/// What is wrong with a line of JSON, and at which column. Its number is that of a file.
-fn told(error: &serde_json::Error) -> String {
-    let (text, column) = (error.to_string(), error.column());
-    match text.strip_suffix(&format!(" at line {} column {column}", error.line())) {
-        Some(what) => format!("{what} at column {column}"),
-        None => text,
-    }
 }

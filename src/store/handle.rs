@@ -3,6 +3,7 @@
 use super::blobs::Blobs;
 use super::database::{Address, Database, EarlierSchema, PlacedFile};
 use super::error::{StoreError, at};
+use super::exported_values::{JsonReader, any_object};
 use super::notes::Notes;
 use super::open_actions::OpenActions;
 use super::spare::Spare;
@@ -46,6 +47,8 @@ pub struct Store {
     pub(super) most_keys: i64,
     /// Requests of a tenant that may wait to write.
     pub(super) most_waiting: usize,
+    /// Reads the inputs of jobs of an export.
+    pub(super) reads_input: JsonReader,
     pub(super) open_actions: OpenActions,
     pub(super) notes: Notes,
     /// Whether nothing is begun any more.
@@ -94,6 +97,7 @@ impl Store {
             last_written: Arc::default(),
             most_keys: MOST_KEYS,
             most_waiting: MOST_WAITING,
+            reads_input: any_object,
             notes: Notes::of(open_actions.clone()),
             open_actions,
             closing: Arc::new(watch::Sender::new(false)),
@@ -116,6 +120,11 @@ impl Store {
     /// The same store with another bound on the requests of a tenant that wait to write.
     pub fn with_waiting_limit(self, most_waiting: u32) -> Store {
         Store { most_waiting: most_waiting as usize, ..self }
+    }
+
+    /// The same store, which exports, imports and checks only such inputs of jobs as this reads. Without it they are objects of JSON.
+    pub fn with_input_reader(self, reads_input: JsonReader) -> Store {
+        Store { reads_input, ..self }
     }
 
     /// Brings the schema of the database up to date.

@@ -114,21 +114,23 @@ const ENDED: &str = "SELECT 1 FROM jobs WHERE id = $1 AND tenant = $2 \
      AND ($3 = 0 OR updated < (SELECT now_ms FROM clock) - $3) FOR UPDATE";
 const REMOVE: &str = "DELETE FROM jobs WHERE id = $1";
 
-fn status_of(row: &Row) -> Result<JobStatus, sqlx::Error> {
+/// The status in the row of a job, which an error names.
+fn status_of(row: &Row, job: &str) -> Result<JobStatus, sqlx::Error> {
     let status: String = row.try_get("status")?;
     JobStatus::from_name(&status)
-        .ok_or_else(|| sqlx::Error::Decode(format!("job status `{status}`").into()))
+        .ok_or_else(|| sqlx::Error::Decode(format!("status `{status}` of job {job}").into()))
 }
 
 fn job_row(row: &Row) -> Result<JobRow, sqlx::Error> {
     let tags: String = row.try_get::<Option<_>, _>("tags")?.unwrap_or_default();
+    let id: String = row.try_get("id")?;
     Ok(JobRow {
-        id: row.try_get("id")?,
+        status: status_of(row, &id)?,
+        id,
         kind: row.try_get("kind")?,
         case_id: row.try_get("case_id")?,
         spec_hash: tenants::plain(row.try_get("spec_hash")?),
         engine: row.try_get("engine")?,
-        status: status_of(row)?,
         phase: row.try_get("phase")?,
         progress: row.try_get("progress")?,
         iteration: row.try_get("iteration")?,
@@ -188,7 +190,7 @@ impl Store {
             .bind(self.tenant())
             .fetch_optional(self.database.reader())
             .await?;
-        Ok(row.as_ref().map(status_of).transpose()?)
+        Ok(row.as_ref().map(|row| status_of(row, id)).transpose()?)
     }
 
     /// Jobs newest first.

@@ -21,6 +21,7 @@ mod database;
 mod engines;
 mod error;
 mod events;
+mod exported_files;
 mod exported_rows;
 mod exported_values;
 mod files;
@@ -65,6 +66,7 @@ pub use cohorts::{CohortModelRow, CohortRow, LeftRow, MemberRow, NewCohort, Outd
 pub use database::Migrated;
 pub use error::StoreError;
 pub use events::EventRow;
+pub use exported_values::JsonReader;
 pub use files::FoundBlob;
 pub use fsck::{Dangling, Findings, Repaired, Unreached};
 pub use handle::{DEFAULT_TENANT, Store, address_fault};

@@ -108,6 +108,8 @@ impl Store {
             .bind(self.tenant())
             .execute(&self.database.writer().await?)
             .await?;
+        // What it was before is in the files of the database until they are wiped.
+        self.mark_erased();
         self.plan_change(case_id, id, changed).await
     }
 

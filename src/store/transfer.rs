@@ -3,19 +3,20 @@
 //!
 //! Where bytes are is a deployment's own affair: places are left out, and made anew by the import.
 
+use std::cmp::Ordering;
 use std::collections::{BTreeMap, BTreeSet};
-use std::fs::{DirBuilder, File};
-use std::io::Write;
+use std::fs::DirBuilder;
+use std::io::Read;
 use std::os::unix::fs::DirBuilderExt;
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
 use super::database::{Transaction, newest_step, query, query_of};
-use super::exported_rows::{ExportedRows, absent, at, export_table, import_table};
+use super::exported_files::{at, open_plain, read_exported, write_durably};
+use super::exported_rows::{ExportedRows, export_table, import_table};
 use super::references::{Content, hold};
 use super::{Store, StoreError};
-use crate::schema::wire::canonical::sha256_hex;
 
 /// Every table with rows of a deployment, each behind those that it refers to.
 const TABLES: [&str; 23] = [
@@ -71,22 +72,6 @@ struct Manifest {
     schema: i64,
     rows: BTreeMap<String, usize>,
     blobs: BTreeSet<String>,
-}
-
-/// The bytes of an exported blob, whose file has their hash for its name.
-fn read_exported(folder: &Path, sha256: &str) -> Result<Vec<u8>, StoreError> {
-    let file = folder.join("blobs").join(sha256);
-    let failed = at(&file, "the manifest of the export names it");
-    let is_file = std::fs::symlink_metadata(&file).map_err(&failed).map_err(absent)?.is_file();
-    if !is_file {
-        return Err(StoreError::Export(format!("{} is no plain file", file.display())));
-    }
-    let bytes = std::fs::read(&file).map_err(failed).map_err(absent)?;
-    let found = sha256_hex(&bytes);
-    if found == *sha256 {
-        return Ok(bytes);
-    }
-    Err(StoreError::Export(format!("{} is damaged: its hash is {found}", file.display())))
 }
 
 impl Store {
@@ -175,9 +160,9 @@ impl Store {
     /// Takes in what was exported, all of it or nothing. Only into a deployment in which there is nothing.
     pub async fn import(&self, folder: &Path) -> Result<TransferCounts, StoreError> {
         let file = folder.join(MANIFEST);
-        let text = std::fs::read(&file)
-            .map_err(at(&file, "it has to be what `admin export` wrote"))
-            .map_err(absent)?;
+        let mut text = Vec::new();
+        let mut opened = open_plain(&file, "it has to be what `admin export` wrote")?;
+        opened.read_to_end(&mut text)?;
         let manifest: Manifest = serde_json::from_slice(&text)
             .map_err(|error| StoreError::Export(format!("{}: {error}", file.display())))?;
         if manifest.schema != newest_step() {
@@ -221,11 +206,8 @@ impl Store {
         for table in TABLES {
             let columns = self.database.columns(table).await?;
             let rows = ExportedRows::open(folder, table)?;
-            let rows = rows.map_or(Ok(0), |rows| rows.check(&columns, blobs))?;
-            if manifest.rows.get(table) != Some(&rows) {
-                let file = folder.join(format!("{table}.ndjson"));
-                return Err(StoreError::Export(format!("{} is cut short", file.display())));
-            }
+            let found = rows.map_or(Ok(0), |rows| rows.check(&columns, self.reads_input, blobs))?;
+            check_count(folder, table, found, manifest.rows.get(table).copied())?;
         }
         Ok(())
     }
@@ -255,25 +237,47 @@ fn check_blobs(folder: &Path, manifest: &Manifest) -> Result<BTreeMap<String, u6
     manifest.blobs.iter().map(size).collect()
 }
 
+/// Refuses another number of rows than the manifest says.
+fn check_count(
+    folder: &Path,
+    table: &str,
+    found: usize,
+    declared: Option<usize>,
+) -> Result<(), StoreError> {
+    let file = folder.join(format!("{table}.ndjson"));
+    let file = file.display();
+    let Some(declared) = declared else {
+        let detail = format!("{MANIFEST} does not say how many rows {file} has");
+        return Err(StoreError::Export(detail));
+    };
+    match found.cmp(&declared) {
+        Ordering::Equal => Ok(()),
+        Ordering::Less => Err(StoreError::Export(format!(
+            "{file} is cut short: it has {found} rows, and the manifest says {declared}"
+        ))),
+        Ordering::Greater => ExportedRows::open(folder, table)?
+            .map_or(Ok(()), |rows| Err(rows.surplus(found, declared))),
+    }
+}
+
 /// Refuses rows that belong together, of two tenants.
-async fn check_tenants(transaction: &mut Transaction) -> Result<(), StoreError> {
+async fn check_tenants(transaction: &mut Transaction, folder: &Path) -> Result<(), StoreError> {
     for (table, [(one, of), (other, others)]) in OF_ONE_TENANT {
         let first = query_of(format!(
             "SELECT a.id, a.tenant, b.id, b.tenant FROM {table} AS tied JOIN {of} AS a ON a.id = tied.{one} \
              JOIN {others} AS b ON b.id = tied.{other} WHERE a.tenant <> b.tenant ORDER BY a.id, b.id LIMIT 1"
         ));
         let found = first.without_timeout().fetch_optional(&mut *transaction).await?;
-        if let Some(row) = found {
-            let text = |place: usize| row.try_get::<String, _>(place);
-            let detail = format!(
-                "{table}.ndjson: {of} {} is of tenant {:?}, and {others} {}, which belongs to it, of {:?}",
-                text(0)?,
-                text(1)?,
-                text(2)?,
-                text(3)?
-            );
-            return Err(StoreError::Export(detail));
-        }
+        let Some(row) = found else { continue };
+        let text = |place: usize| row.try_get::<String, _>(place);
+        let (id, tenant, other_id, other_tenant) = (text(0)?, text(1)?, text(2)?, text(3)?);
+        // Either may have the wrong tenant, and neither may be meant.
+        let place = ExportedRows::place_of(folder, of, &id)?;
+        let other_place = ExportedRows::place_of(folder, others, &other_id)?;
+        return Err(StoreError::Export(format!(
+            "{place}: {id} is of tenant {tenant:?}, and {other_place}: {other_id} of {other_tenant:?}; by {table}.ndjson they belong \
+             together"
+        )));
     }
     Ok(())
 }
@@ -283,20 +287,15 @@ async fn import_tables(transaction: &mut Transaction, folder: &Path) -> Result<u
     for table in TABLES {
         rows += import_table(transaction, table, folder).await?;
     }
-    check_tenants(transaction).await?;
+    check_tenants(transaction, folder).await?;
     Ok(rows)
-}
-
-fn write_durably(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
-    let mut file = File::create(path)?;
-    file.write_all(bytes)?;
-    file.sync_all()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::schema::key::{KeyDocument, Scope};
+    use crate::schema::wire::canonical::sha256_hex;
 
     #[tokio::test]
     async fn what_cannot_be_read_of_an_export_is_named_by_its_file_and_line() {
@@ -308,14 +307,31 @@ mod tests {
         store.make_key(&key).await.unwrap();
         store.export(&export).await.unwrap();
         let keys = std::fs::read_to_string(export.join("keys.ndjson")).unwrap();
-        let head = keys.lines().next().unwrap();
-        let faults: [(&str, &[u8], &str); 6] = [
+        let (head, row) = keys.trim_end().split_once('\n').unwrap();
+        let twice = format!("{head}\n{row}\n{row}\n");
+        let another = format!("{head}\n{row}\n{}\n", row.replace("test", "tests"));
+        let faults: [(&str, &[u8], &str); 9] = [
             ("export.json", b"{}", ": missing field `schema` at line 1 column 2"),
             ("export.json", b"5", ", expected an object with `schema`, `rows` and `blobs`"),
             ("keys.ndjson", b"{}\n", ", line 1: missing field `columns` at column 2"),
             ("keys.ndjson", b"[]\n", ", line 1: invalid length 0, expected an object with"),
             ("keys.ndjson", b"\xff\n", ", line 1: stream did not contain valid UTF-8"),
             ("keys.ndjson", &[head.as_bytes(), b"\n[1,\n"].concat(), ", line 2 (row 1): EOF"),
+            (
+                "keys.ndjson",
+                head.as_bytes(),
+                " is cut short: it has 0 rows, and the manifest says 1",
+            ),
+            (
+                "keys.ndjson",
+                twice.as_bytes(),
+                ", line 3 (row 2): it repeats line 2: the file has 2 ",
+            ),
+            (
+                "keys.ndjson",
+                another.as_bytes(),
+                " is longer than what was exported: the file has 2 ",
+            ),
         ];
         for (name, text, wanted) in faults {
             let file = export.join(name);
@@ -326,6 +342,16 @@ mod tests {
             assert!(told.contains(&place) && told.contains(wanted), "{wanted:?}: {told}");
             assert!(!told.contains("struct"), "{told}");
             std::fs::write(&file, whole).unwrap();
+        }
+        for name in ["export.json", "keys.ndjson"] {
+            let file = export.join(name);
+            let moved = folder.path().join("moved");
+            std::fs::rename(&file, &moved).unwrap();
+            std::fs::create_dir(&file).unwrap();
+            let told = empty.import(&export).await.unwrap_err().to_string();
+            assert!(told.contains(&format!("{} is no plain file", file.display())), "{told}");
+            std::fs::remove_dir(&file).unwrap();
+            std::fs::rename(&moved, &file).unwrap();
         }
         empty.import(&export).await.unwrap();
     }

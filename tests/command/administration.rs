@@ -273,3 +273,52 @@ async fn a_clock_far_behind_is_told_until_it_is_confirmed() {
     assert_eq!(text(&trusted.stdout), "retention trusts the clock\n");
     assert_eq!(text(&facies(&clock).stdout), "retention trusts the clock\n");
 }
+
+#[tokio::test]
+async fn a_document_that_the_service_could_not_read_is_neither_exported_nor_imported() {
+    const CASE: &str = "INSERT INTO cases (id, document, report, version, created, updated) \
+         VALUES ('a', '{\"units\":\"mm\",\"volume\":\"\"}', 'null', 1, 0, 0)";
+    const JOB: &str = "INSERT INTO jobs (id, kind, document, spec_hash, engine, status, progress, attempt, losses, claimable_from, \
+         created, updated) VALUES ('b', 'predict', '{\"predict\":{\"case\":null,\"plan\":{},\"spec\":{}}}', '', \
+         '{\"name\":\"\",\"version\":\"\",\"target\":\"\",\"profile\":\"\"}', 'accepted', 0, 0, 0, 0, 0, 0)";
+    let folder = tempfile::tempdir().unwrap();
+    let [data, new, backup] = ["data", "new", "backup"].map(|name| folder.path().join(name));
+    made(&data);
+    changed(&data, CASE).await;
+    // It waits for the mesh of its case.
+    changed(&data, JOB).await;
+    let fsck = ["admin", "fsck", "--read-all", "--data", path(&data)];
+    assert_eq!(facies(&fsck).status.code(), Some(0));
+    let export = |to: &Path| facies(&["admin", "export", "--data", path(&data), "--to", path(to)]);
+    assert_eq!(export(&backup).status.code(), Some(0));
+    let faults = [
+        (
+            "cases.ndjson",
+            "\"{\\\"units\\\":\\\"mm\\\",\\\"volume\\\":\\\"\\\"}\"",
+            "a case, and that of a cannot",
+        ),
+        (
+            "jobs.ndjson",
+            "\"{\\\"predict\\\":{\\\"case\\\":null,\\\"plan\\\":{},\\\"spec\\\":{}}}\"",
+            "the input of a job, and that of b cannot",
+        ),
+    ];
+    for (file, document, wanted) in faults {
+        let file = backup.join(file);
+        let whole = fs::read_to_string(&file).unwrap();
+        let changed = whole.replace(document, "\"{}\"");
+        assert_ne!(changed, whole);
+        fs::write(&file, changed).unwrap();
+        let import = ["admin", "import", "--from", path(&backup), "--data", path(&new)];
+        let told = facies(&import);
+        let place = format!("{}, line 2 (row 1): column document holds {wanted}", file.display());
+        refused(&told, 2, &place);
+        assert!(!new.exists(), "nothing of it is stored");
+        fs::write(&file, whole).unwrap();
+    }
+    changed(&data, "UPDATE jobs SET document = '{}'").await;
+    let row =
+        "jobs.ndjson, line 2 (row 1): column document holds the input of a job, and that of b";
+    refused(&facies(&fsck), 1, row);
+    refused(&export(&folder.path().join("other")), 1, row);
+}

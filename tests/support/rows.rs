@@ -11,6 +11,14 @@ use tempfile::TempDir;
 pub const LEASE: Duration = Duration::from_secs(60);
 pub const PAUSE: Duration = Duration::from_millis(500);
 
+/// Documents as the service reads them.
+pub const CASE: &str = r#"{"units":"mm","volume":""}"#;
+const ENGINE: &str = r#"{"name":"facies","version":"","target":"","profile":"release"}"#;
+pub const RESULT: &str = r#"{"files":[],"warnings":[],"provenance":{"engine":
+    {"name":"facies","version":"","target":"","profile":"release"},"spec_hash":"of a result","inputs":[],"threads":1,
+    "determinism":"bitwise","timing":{"validate_s":0,"mesh_s":0,"assemble_s":0,"solve_s":0,"contact_s":0,"surface_s":0,
+    "compare_s":0,"write_s":0,"total_s":0},"frame":"LPS","units":"mm","created":"","statement":""}}"#;
+
 pub async fn store() -> (TempDir, Store) {
     let folder = TempDir::new().unwrap();
     let store = Store::open(folder.path()).await.unwrap();
@@ -29,7 +37,7 @@ pub fn new_job(document: &str, hash: &str) -> NewJob {
         spec_hash: hash.into(),
         rows_key: None,
         truths: None,
-        engine: "{}".into(),
+        engine: ENGINE.into(),
         tags: vec!["a".into()],
         mesh_ids: vec![],
         learns_from: None,
@@ -42,8 +50,8 @@ pub fn new_job(document: &str, hash: &str) -> NewJob {
 pub fn new_case() -> NewCase {
     NewCase {
         id: uuid::Uuid::now_v7().to_string(),
-        document: "{}".into(),
-        report: "{}".into(),
+        document: CASE.into(),
+        report: "null".into(),
         tags: vec![],
         mesh_ids: vec![],
         meshes: vec![],

@@ -34,7 +34,7 @@ pub struct MeshedCaseDocument {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     pub acquisition: Option<AcquisitionDocument>,
-    /// The job that makes the mesh, as posted. Its tags are those of the job.
+    /// The job that makes the mesh, as posted. Its tags are given to the job, and the stored case has none of them.
     pub meshing: MeshingDocument,
     /// By region name; `*` is for every region without an entry.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -124,6 +124,14 @@ impl CaseBody {
         match self {
             CaseBody::Whole(case) => &case.tags,
             CaseBody::ToMesh(case) => &case.tags,
+        }
+    }
+
+    /// Takes the tags of its meshing out of it: they are those of the job, and change with it.
+    pub fn take_tags_of_job(&mut self) -> Vec<String> {
+        match self {
+            CaseBody::Whole(_) => Vec::new(),
+            CaseBody::ToMesh(case) => std::mem::take(&mut case.meshing.tags),
         }
     }
 

@@ -4,6 +4,7 @@ use std::ops::RangeInclusive;
 
 use serde_json::Map;
 
+use super::letters::is_blank;
 use super::numbers::with_short_numbers;
 pub use super::pointer::{FieldError, Pointer};
 use super::problem::Problem;
@@ -130,7 +131,7 @@ impl Faults {
         inside
     }
 
-    /// Refuses names that are empty, too long, or contain control characters.
+    /// Refuses names that are empty, too long, contain control characters, or nothing that is seen.
     pub fn check_name(&mut self, at: &Pointer, name: &str, longest: usize) {
         let characters = name.trim().chars().count();
         if characters == 0 || characters > longest {
@@ -141,6 +142,9 @@ impl Faults {
             );
         } else if name.chars().any(char::is_control) {
             self.add(at, ErrorCode::BadName, "a name has no control characters");
+        } else if is_blank(name) {
+            let detail = "a name has letters that are seen, and this one has none";
+            self.add(at, ErrorCode::BadName, detail);
         }
     }
 
@@ -184,5 +188,27 @@ impl From<SceneErrors> for Problem {
             faults.add(&Pointer::from_text(&error.pointer), error.code.into(), &error.detail);
         }
         faults.into_problem()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_name_has_letters_that_are_seen_in_whatever_direction_they_are_written() {
+        let told = |name: &str| {
+            let mut faults = Faults::default();
+            faults.check_name(&Pointer::root().key("name"), name, 20);
+            faults.into_result().err().map(|problem| problem.errors[0].detail.clone())
+        };
+        for unseen in ["\u{200b}", "\u{200d}\u{200c}", "\u{3164} \u{2800}", "\u{202e}\u{202c}"] {
+            let detail = told(unseen).unwrap();
+            assert_eq!(detail, "a name has letters that are seen, and this one has none");
+        }
+        let right_to_left = "\u{202b}\u{5de}\u{5d8}\u{5d5}\u{5e4}\u{5dc}\u{202c}";
+        for name in ["maxilla", right_to_left, "\u{645}\u{6cc}\u{200c}\u{62e}\u{648}\u{627}"] {
+            assert_eq!(told(name), None, "{name:?}");
+        }
     }
 }

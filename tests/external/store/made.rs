@@ -5,7 +5,7 @@ use facies::store::{
 };
 
 use crate::deployments::Deployment;
-use crate::rows::{LEASE, blob_count, enqueue, file, mesh, new_case, new_job};
+use crate::rows::{LEASE, RESULT, blob_count, enqueue, file, mesh, new_case, new_job};
 use crate::support::trials::trials;
 
 trials! {
@@ -25,7 +25,7 @@ pub fn made(content: &'static str) -> MadeMesh {
 }
 
 fn published(meshes: &[MadeMesh]) -> Published<'_> {
-    Published { result: "{}", files: &[], meshes, case: None }
+    Published { result: RESULT, files: &[], meshes, case: None }
 }
 
 /// The mesh as a worker looks for it.

@@ -6,7 +6,7 @@ use facies::schema::wire::canonical::sha256_hex;
 use facies::store::{MeshDeletion, Store, StoreError};
 
 use crate::deployments::Deployment;
-use crate::rows::{LEASE, blob_count, enqueue, file, job, mesh, result};
+use crate::rows::{LEASE, RESULT, blob_count, enqueue, file, job, mesh, result};
 use crate::support::trials::trials;
 
 trials! {
@@ -34,7 +34,7 @@ trials! {
 async fn published(store: &Store, content: &'static str) -> String {
     let id = enqueue(store, content).await;
     let lease = store.claim(LEASE).await.unwrap().unwrap().lease;
-    assert!(store.publish(&lease, result("{}", &[file(content)])).await.unwrap());
+    assert!(store.publish(&lease, result(RESULT, &[file(content)])).await.unwrap());
     id
 }
 
@@ -133,7 +133,7 @@ async fn a_repair_finds_bytes_again_and_has_lost_results_solved_again(on: Deploy
     let again = job(&store, &lost).await;
     assert_eq!((again.status, again.result), (JobStatus::Accepted, None));
     let lease = store.claim(LEASE).await.unwrap().unwrap().lease;
-    assert!(store.publish(&lease, result("{}", &[file("lost")])).await.unwrap());
+    assert!(store.publish(&lease, result(RESULT, &[file("lost")])).await.unwrap());
     let row = store.job_file(&lost, "result.json").await.unwrap().unwrap();
     assert_eq!(store.read_blob(&row.blob).await.unwrap(), "lost");
 

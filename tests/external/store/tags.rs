@@ -2,13 +2,16 @@
 
 use std::sync::Arc;
 
+use facies::store::Enqueued;
+
 use crate::deployments::Deployment;
-use crate::rows::{enqueue, job};
+use crate::rows::{enqueue, job, new_job};
 use crate::support::trials::trials;
 
 trials! {
     on_both {
         tags_are_put_on_and_taken_off_and_others_stay
+        a_tag_that_goes_is_not_in_the_document_of_its_job_either
         beyond_the_bound_those_put_on_longest_ago_go
         changes_at_the_same_time_all_succeed_and_none_goes_beyond_the_bound
     }
@@ -35,6 +38,26 @@ async fn tags_are_put_on_and_taken_off_and_others_stay(on: Deployment) {
     }
     let foreign = store.of_tenant("other").change_tags(&id, &words(&["f"]), &[], 9).await.unwrap();
     assert_eq!((foreign, job(&store, &id).await.tags.len()), (false, 4));
+}
+
+async fn a_tag_that_goes_is_not_in_the_document_of_its_job_either(on: Deployment) {
+    let store = on.open().await;
+    let document = |tags: &str| format!(r#"{{"predict":{{"spec":{{"tags":{tags}}}}}}}"#);
+    let mut new = new_job(&document(r#"["a","b","c"]"#), "tagged");
+    new.tags = words(&["a", "b", "c"]);
+    assert_eq!(store.enqueue(&new, 100).await.unwrap(), Enqueued::Accepted);
+    // One is taken off, one has to make room, and what is put on later is in no document.
+    let steps: [(&[&str], &[&str], &str); 3] = [
+        (&[], &["b", "none"], r#"["a","c"]"#),
+        (&["d", "e", "f"], &[], r#"["c"]"#),
+        (&[], &["c"], "[]"),
+    ];
+    for (add, remove, left) in steps {
+        assert!(store.change_tags(&new.id, &words(add), &words(remove), MOST).await.unwrap());
+        let stored = store.job_document(&new.id).await.unwrap();
+        assert_eq!(stored.as_deref(), Some(document(left).as_str()));
+    }
+    assert_eq!(job(&store, &new.id).await.tags, words(&["d", "e", "f"]));
 }
 
 async fn beyond_the_bound_those_put_on_longest_ago_go(on: Deployment) {

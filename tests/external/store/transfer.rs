@@ -13,7 +13,7 @@ use serde_json::{Value, json};
 
 use crate::deployments::Deployment;
 use crate::rows::mesh;
-use crate::rows::{LEASE, blob_count, enqueue, file, new_case, new_job};
+use crate::rows::{CASE, LEASE, RESULT, blob_count, enqueue, file, new_case, new_job};
 use crate::store::made::made;
 use crate::support::trials::trials;
 
@@ -31,11 +31,13 @@ trials! {
     }
 }
 
+const CONSENT: &str = r#"{"statement":"a form","uses":["learn"]}"#;
+
 /// Something in every table, with every kind of value.
 async fn fill(store: &Store) {
     let case_mesh = mesh("of the case", "units=mm");
     let case = NewCase {
-        document: "{\"name\":\"Ünï\\u0000\"}".into(),
+        document: CASE.replace('{', "{\"name\":\"Ünï\\u0000\","),
         tags: vec!["~".into(), "a".into()],
         mesh_ids: vec![case_mesh.id.clone()],
         meshes: vec![case_mesh.clone()],
@@ -59,7 +61,7 @@ async fn fill(store: &Store) {
     let point = facies::store::Point { residual: Some(1.0 / 3.0), ..Default::default() };
     assert!(store.renew(&lease, LEASE, &point).await.unwrap());
     let (files, meshes) = ([file("a result")], [made("of the job")]);
-    let result = Published { result: "{}", files: &files, meshes: &meshes, case: None };
+    let result = Published { result: RESULT, files: &files, meshes: &meshes, case: None };
     assert!(store.publish(&lease, result).await.unwrap());
     let removed = enqueue(store, "removed").await;
     let member = |number: i64, job: &String| MemberRow {
@@ -67,11 +69,11 @@ async fn fill(store: &Store) {
         case_id: case.id.clone(),
         job_id: job.clone(),
         mesh_id: case_mesh.id.clone(),
-        document: "{}".into(),
+        document: r#"{"prediction":"","actual":""}"#.into(),
     };
     let members = vec![member(1, &done), member(2, &removed)];
     let (id, name) = (uuid::Uuid::now_v7().to_string(), "blocks".into());
-    let cohort = NewCohort { id, name, consent: Some("{}".into()), members };
+    let cohort = NewCohort { id, name, consent: Some(CONSENT.into()), members };
     assert!(store.add_cohort(&cohort).await.unwrap());
     let mut waiting = new_job("{}", "waiting");
     waiting.learns_from = Some((cohort.id, 1));
@@ -253,12 +255,22 @@ async fn what_the_service_could_not_read_is_refused_with_its_row_and_column(on: 
     let faults = [
         ("jobs", "kind", json!("abc"), "column kind holds a kind of job"),
         ("jobs", "status", json!("abc"), "column status holds the status of a job"),
-        ("jobs", "engine", json!("[]"), "column engine holds an object of JSON"),
-        ("jobs", "truths", json!("{}"), "column truths holds a list of JSON"),
+        ("jobs", "engine", json!("[]"), "column engine holds the program of a job, and that of "),
+        ("jobs", "truths", json!("{}"), "column truths holds the costs of a study, and that of "),
         ("job_events", "status", json!(""), "column status holds the status of a job"),
-        ("cases", "document", json!(""), "column document holds an object of JSON"),
-        ("cases", "report", json!("abc"), "column report holds an object of JSON or null"),
-        ("plans", "document", json!("5"), "column document holds an object of JSON"),
+        ("jobs", "document", json!("[]"), "column document holds the input of a job, and that of "),
+        ("jobs", "error", json!("{}"), "column error holds the error of a job, and that of "),
+        ("jobs", "result", json!("{}"), "column result holds the result of a job, and that of "),
+        ("cases", "document", json!("{}"), "column document holds a case, and that of "),
+        ("cases", "report", json!("{}"), "column report holds the check of a case or null, and "),
+        ("plans", "document", json!("5"), "column document holds a plan, and that of "),
+        ("cohorts", "consent", json!("{}"), "column consent holds a consent, and that of "),
+        (
+            "cohort_members",
+            "document",
+            json!("{}"),
+            "column document holds a member of a cohort, and this one cannot be read: missing field `prediction`",
+        ),
         ("meshes", "report", json!("{}"), "column report holds the report of a mesh"),
         (
             "job_files",
@@ -313,10 +325,14 @@ async fn rows_of_two_tenants_that_belong_together_and_blobs_that_are_links_are_r
     let tenant = place_of(&changed[0], "tenant");
     changed[1][tenant] = json!("other");
     let error = refusal(&store, &folder, "meshes", &changed).await;
-    assert!(
-        error.contains("is of tenant \"default\"") && error.contains("of \"other\""),
-        "{error}"
-    );
+    // Where the tenants are stated, and what ties the rows together.
+    let mesh = changed[1][place_of(&changed[0], "id")].as_str().unwrap();
+    let wanted = [
+        "cases.ndjson, line 2 (row 1): ".to_owned(),
+        " is of tenant \"default\", and ".to_owned(),
+        format!("/meshes.ndjson, line 2 (row 1): {mesh} of \"other\"; by case_meshes.ndjson they "),
+    ];
+    assert!(wanted.iter().all(|words| error.contains(words)), "{wanted:?}: {error}");
     let blob = std::fs::read_dir(folder.join("blobs")).unwrap().next().unwrap().unwrap().path();
     let moved = folder.join("moved");
     std::fs::rename(&blob, &moved).unwrap();

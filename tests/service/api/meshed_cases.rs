@@ -58,6 +58,7 @@ async fn a_plan_that_is_posted_while_its_case_is_meshed_is_predicted_once_it_has
     assert_eq!(posted.header("location"), format!("/v1/cases/{}", id(&case)));
     assert_eq!(case["state"], "meshing", "{case}");
     assert_eq!(case["case"]["meshing"]["scan"], case["meshes"][0]["id"]);
+    assert_eq!(case["case"]["meshing"].get("tags"), None, "they are those of the job");
     assert_eq!(posted.header("etag"), "\"1-meshing\"");
     let meshing = case["meshing"]["job"].as_str().unwrap();
     assert_eq!(case["meshing"]["link"]["href"], format!("/v1/jobs/{meshing}"));

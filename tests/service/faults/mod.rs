@@ -5,3 +5,4 @@ mod outages;
 mod replaced;
 mod storage;
 mod unmounted;
+mod unreadable;
