@@ -10,11 +10,11 @@ Lengths are mm in the frame of the case. Arrays of surfaces come as f32 (a relat
 Documents are dictionaries as docs/case.md shows them. `facies_client` beside this package has every operation, typed.
 """
 
-from .errors import FaciesError, JobFailed, Refused
+from .errors import FaciesError, JobFailed, Refused, Unreachable
 from .response import Response, rigid
 from .results import Applied, Case, Comparison, Optimisation, Prediction
 from .service import Facies
 from .surface import Surface
 
 __all__ = ["Applied", "Case", "Comparison", "Facies", "FaciesError", "JobFailed", "Optimisation", "Prediction",
-           "Refused", "Response", "Surface", "rigid"]
+           "Refused", "Response", "Surface", "Unreachable", "rigid"]

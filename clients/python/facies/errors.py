@@ -1,4 +1,4 @@
-"""Refusals of the service as exceptions with their code."""
+"""Refusals of the service, and its absence, as exceptions with their code."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from typing import Any
 
 
 class FaciesError(Exception):
-    """Something that the service says went wrong; `code` is a word of docs/errors.md."""
+    """Something went wrong; `code` is a word of docs/errors.md, or `unreachable`."""
 
     def __init__(self, code: str, detail: str) -> None:
         super().__init__(f"{code}: {detail}")
@@ -27,6 +27,15 @@ class Refused(FaciesError):
         several = self.errors if len(self.errors) > 1 else []
         places = "".join(f"\n  {error['pointer']}: {error['detail']}" for error in several)
         super().__init__(problem["code"], problem["detail"] + places)
+
+
+class Unreachable(FaciesError):
+    """A request got no answer. `job` is the id of the job that it was about, which the service goes on with; `None` where it was about
+    none, or the answer would have told its id. What httpx said is the `__cause__`."""
+
+    def __init__(self, request: str, why: str, job: str | None = None) -> None:
+        super().__init__("unreachable", f"no answer to {request}: {why}")
+        self.job = job
 
 
 class JobFailed(FaciesError):

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import json
-import time
-from collections.abc import Iterator, Sequence
+import re
+from collections.abc import Generator, Iterator, Sequence
 from os import PathLike
 from pathlib import Path
 from typing import Any
@@ -12,7 +12,8 @@ from typing import Any
 import httpx
 import numpy as np
 
-from .errors import JobFailed, Refused
+from .errors import JobFailed, Refused, Unreachable
+from .patience import BROKEN, Patience
 from .response import Response
 from .results import Applied, Case, Comparison, Optimisation, Prediction
 from .sending import Document, File, Progress, Sending, authorization
@@ -23,14 +24,16 @@ WAIT = {"Prefer": "wait=30"}
 PATIENCE_S = 60.0
 SKIN = "skin.glb"
 BUSY = (429, 503)
-# Between two requests to a busy service, also where something between us and it says less, or what is no number.
-LEAST_PAUSE_S = 1.0
+# What a proxy says of a service that it does not reach. The request may have reached it.
+OF_PROXY = (502, 504)
+ENDED = ("successful", "failed", "dismissed")
 # Of the spec of a case file: what names the job and its files. All else says how tissue is computed.
 OF_FILES = ("kind", "case", "outputs", "range_mm", "keep", "tags")
 
 
 class Facies:
-    """The service at `address`, with a key where it asks for one. A busy one is waited for, `patience_s` in all."""
+    """The service at `address`, with a key where it asks for one. A busy one is waited for, `patience_s` in all; so is one that is out of
+    reach, as while it is started again, by requests that only read. Whatever asks raises `Unreachable` where it gets no answer."""
 
     def __init__(self, address: str, key: str | None = None, patience_s: float = PATIENCE_S) -> None:
         self.patience_s = patience_s
@@ -47,18 +50,22 @@ class Facies:
         self._http.close()
 
     def ask(self, method: str, path: str, **request: Any) -> httpx.Response:
-        """The answer to any request; raises `Refused` where it is a refusal."""
-        until = time.monotonic() + self.patience_s
+        """The answer to any request; raises `Refused` where it is a refusal, and `Unreachable` where there is none. One that may change
+        something is sent again to a busy service alone, unless it has an `Idempotency-Key`."""
+        patience = Patience(self.patience_s)
+        may_repeat = method in ("GET", "HEAD") or "Idempotency-Key" in httpx.Headers(request.get("headers"))
         while True:
-            answer = self._http.request(method, path, **request)
+            try:
+                answer = self._http.request(method, path, **request)
+            except BROKEN as error:
+                if may_repeat and patience.pause():
+                    continue
+                raise unreachable(method, path, error) from error
             if answer.is_success:
                 return answer
-            # In seconds, as the service sends it.
-            told = answer.headers.get("Retry-After", "")
-            pause = max(float(told), LEAST_PAUSE_S) if told.isdecimal() else LEAST_PAUSE_S
-            if answer.status_code not in BUSY or time.monotonic() + pause > until:
+            passes = BUSY + OF_PROXY if may_repeat else BUSY
+            if answer.status_code not in passes or not patience.pause(retry_after(answer)):
                 raise refusal(answer)
-            time.sleep(pause)
 
     def upload(self, mesh: File | bytes, *, units: str = "mm", frame: str = "unspecified",
                progress: Progress | None = None) -> str:
@@ -165,14 +172,16 @@ class Facies:
         return self.ask("GET", f"/v1/jobs/{job}/results/{name}").content
 
     def run(self, spec: Document, progress: Progress | None = None) -> Document:
-        """The last state of a job of any kind; raises `JobFailed` where it ended without results."""
+        """The last state of a job of any kind; raises `JobFailed` where it ended without results. Where `Unreachable` names no `job`, the
+        same call finds it again: equal inputs are one job."""
         waits = WAIT if progress is None else {}
         return self._ended(self.ask("POST", "/v1/jobs", json=spec, headers=waits).json(), progress)
 
     def _ended(self, job: Document, progress: Progress | None) -> Document:
         """The last state of a job; raises `JobFailed` where it ended without results."""
         if progress is not None:
-            for event in self.events(job["id"]):
+            # Where there is no place for a stream, the job is asked for.
+            for event in self._follow(job["id"]):
                 progress(event)
         while job["status"] in ("accepted", "running"):
             job = self.ask("GET", f"/v1/jobs/{job['id']}", headers=WAIT).json()
@@ -181,24 +190,42 @@ class Facies:
         return job
 
     def events(self, job: str) -> Iterator[Document]:
-        """What happens to a job until it has ended. A stream that breaks is taken up where it broke."""
-        last = 0
+        """What happens to a job until it has ended. A stream that breaks is taken up where it broke; raises `Unreachable`, or `Refused`
+        where the service is busy, when nothing has come of it for `patience_s`."""
+        refused = yield from self._follow(job)
+        if refused is not None:
+            raise refused
+
+    def _follow(self, job: str) -> Generator[Document, None, Refused | None]:
+        """The events, then the refusal of a busy service where they are not all."""
+        path, last, patience = f"/v1/jobs/{job}/events", 0, Patience(self.patience_s)
         while True:
+            has_ended, told, refused, broken = False, None, None, None
             headers = {"Accept": "text/event-stream", "Last-Event-ID": str(last)}
             try:
-                with self._http.stream("GET", f"/v1/jobs/{job}/events", headers=headers) as answer:
-                    if answer.status_code == 204 or answer.status_code in BUSY:
-                        return
+                with self._http.stream("GET", path, headers=headers) as answer:
+                    if answer.status_code == 204:
+                        return None
                     if not answer.is_success:
                         answer.read()
-                        raise refusal(answer)
+                        told, refused = retry_after(answer), refusal(answer)
                     for line in answer.iter_lines():
+                        # Events, and what the service sends in a silent stream.
+                        if line.startswith(("data:", ":")):
+                            patience.renew()
                         if line.startswith("data:"):
                             event = json.loads(line[len("data:"):])
-                            last = event["number"]
+                            last, has_ended = event["number"], event["status"] in ENDED
                             yield event
-            except (httpx.ReadError, httpx.RemoteProtocolError):
-                continue
+            except BROKEN as error:
+                has_ended, broken = False, error
+            if refused is not None and refused.status not in BUSY + OF_PROXY:
+                raise refused
+            # After the end there is one more answer, that it was the last.
+            if not has_ended and not patience.pause(told):
+                if refused is not None:
+                    return refused
+                raise unreachable("GET", path, broken) from broken
 
     def _stored(self, case: Case | File | Document, progress: Progress | None) -> Case:
         return case if isinstance(case, Case) else self.case(case, progress=progress)
@@ -257,3 +284,16 @@ def refusal(answer: httpx.Response) -> Refused:
     except (ValueError, KeyError, TypeError):
         detail = f"{answer.request.url} answered {answer.text[:200]!r}"
         return Refused({"status": answer.status_code, "code": "not-of-the-service", "detail": detail})
+
+
+def unreachable(method: str, path: str, error: httpx.HTTPError | None) -> Unreachable:
+    """A request without an answer, with the job that is in its path."""
+    why = "the stream ended" if error is None else str(error) or type(error).__name__
+    of_job = re.match("/v1/jobs/([^/?]+)", path)
+    return Unreachable(f"{method} {path}", why, of_job and of_job[1])
+
+
+def retry_after(answer: httpx.Response) -> float | None:
+    """The pause that an answer asks for, in seconds as the service sends it; `None` where it has no such number."""
+    told = answer.headers.get("Retry-After", "")
+    return float(told) if told.isdecimal() else None

@@ -11,6 +11,8 @@ from typing import TypeVar
 
 import httpx
 
+from facies.errors import Unreachable
+from facies.patience import BROKEN, Patience
 from facies.sending import authorization
 
 from .rest import Client
@@ -65,10 +67,17 @@ def present(member: T | Unset) -> T:
     return member
 
 
-def ended(client: Client, job: StatusInfo) -> StatusInfo:
-    """Waits until a job has ended well; raises `JobFailed` where it did not."""
+def ended(client: Client, job: StatusInfo, patience_s: float = 60.0) -> StatusInfo:
+    """Waits until a job has ended well; raises `JobFailed` where it did not, and `facies.Unreachable` with its id where the service
+    gives no answer for `patience_s`."""
+    patience = Patience(patience_s)
     while job.status in ("accepted", "running"):
-        job = answered(show_job.sync(job.id, client=client, prefer=WAIT))
+        try:
+            job = answered(show_job.sync(job.id, client=client, prefer=WAIT))
+            patience.renew()
+        except BROKEN as error:
+            if not patience.pause():
+                raise Unreachable(f"GET /v1/jobs/{job.id}", str(error) or type(error).__name__, str(job.id)) from error
     if job.status != "successful":
         raise JobFailed(job)
     return job

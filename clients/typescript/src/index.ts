@@ -2,8 +2,11 @@
 // file adds what a description cannot say: how to connect, that a refusal is an exception, how to wait.
 import createClient, { type Client } from "openapi-fetch";
 import type { components, paths } from "./rest.js";
+import { Unreachable } from "./errors.js";
+import { Patience } from "./patience.js";
 import { authorization } from "./sending.js";
 
+export { Unreachable } from "./errors.js";
 export type Documents = components["schemas"];
 /** What `data` and `error` are read as; files are asked for with `parseAs`. */
 type Media = "application/json" | "application/problem+json";
@@ -48,14 +51,24 @@ export async function answered<T>(
   return data as T;
 }
 
-/** Waits until a job has ended well; throws `JobFailed` where it did not. */
+/** Waits until a job has ended well; throws `JobFailed` where it did not, and `Unreachable` with its id where the service gives no
+ * answer for `patience_s`. */
 export async function ended(
   facies: Facies,
   job: Documents["StatusInfo"],
+  patience_s = 60,
 ): Promise<Documents["StatusInfo"]> {
+  const patience = new Patience(patience_s);
   while (job.status === "accepted" || job.status === "running") {
     const params = { path: { id: job.id }, header: { Prefer: WAIT } };
-    job = await answered(facies.GET("/v1/jobs/{id}", { params }));
+    try {
+      job = await answered(facies.GET("/v1/jobs/{id}", { params }));
+      patience.renew();
+    } catch (error) {
+      // Of `fetch`.
+      if (!(error instanceof TypeError)) throw error;
+      if (!await patience.pause()) throw new Unreachable("GET", `/v1/jobs/${job.id}`, error);
+    }
   }
   if (job.status !== "successful") throw new JobFailed(job);
   return job;

@@ -49,8 +49,8 @@ function byStream({ address, headers, file }: Posted, tell: (sent: number) => vo
     },
   });
   // A body that is a stream has to say that its answer comes afterwards, a member that types of `fetch` may not have.
-  // The service sends no redirect, and the key is for no other one.
-  const request = { method: "POST", headers, body, duplex: "half", redirect: "error" } as RequestInit;
+  // The service sends no redirect, and the key is for no other one: it is an answer as a refusal is.
+  const request = { method: "POST", headers, body, duplex: "half", redirect: "manual" } as RequestInit;
   return fetch(address, request);
 }
 
