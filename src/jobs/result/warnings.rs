@@ -5,7 +5,7 @@ use mechanics::mesh::Warning;
 
 /// Codes that precede all others, in this order: those of doubtful input or measurements, those of a result that
 /// has larger errors than reported elsewhere, and those of an impossible one.
-const GRAVE: [&str; 68] = [
+const GRAVE: [&str; 70] = [
     "nothing-moves",
     "nothing-performed",
     "units-suspect",
@@ -18,6 +18,7 @@ const GRAVE: [&str; 68] = [
     "landmark-doubtful",
     "mirrored?",
     "another-person-suspect",
+    "registration-undetermined",
     "before-operation-suspect",
     "unregistered-suspect",
     "model-suspect",
@@ -56,6 +57,7 @@ const GRAVE: [&str; 68] = [
     "outside-second-order-range",
     "nonlinearity-unknown",
     "another-equilibrium",
+    "tissue-may-buckle",
     "another-minimum",
     "membrane-wrinkles",
     "bulk-in-all-cells",
