@@ -20,7 +20,7 @@ pub struct Applied {
 
 /// Codes that need the mesh inside the skin, the surfaces of bones, or landmarks. What stands for `large-rotation` and `large-strain` is
 /// the estimate of the response, a mean over the skin: these two are of its largest part.
-const NEVER_MEASURED: [&str; 12] = [
+const NEVER_MEASURED: [&str; 13] = [
     NUMERICAL_ERROR_LARGE,
     "cells-inverted",
     "bones-overlap",
@@ -28,6 +28,7 @@ const NEVER_MEASURED: [&str; 12] = [
     "bone-through-skin",
     "large-rotation",
     "large-strain",
+    "tissue-may-buckle",
     "skin-outruns-plan",
     "sliding-off-wall",
     "landmark-far",

@@ -6,7 +6,7 @@ import time
 
 import httpx
 
-BROKEN = (httpx.NetworkError, httpx.ProxyError, httpx.RemoteProtocolError, httpx.TimeoutException)
+BROKEN = (httpx.NetworkError, httpx.ProxyError, httpx.RemoteProtocolError, httpx.TimeoutException, httpx.DecodingError)
 """What httpx raises where a request gets no whole answer."""
 
 # Between two attempts: also where something between us and the service says less, and however often it fails.

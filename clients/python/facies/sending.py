@@ -1,12 +1,19 @@
-"""Requests on their way to the service: the header with its key, and files piece by piece, so that they are never whole in
-memory, with their progress."""
+"""Requests on their way to the service: the header with its key, which no exception shows, and files piece by piece, so that
+they are never whole in memory, with their progress."""
 
 from __future__ import annotations
 
+import base64
+import html
+import json
+import re
+import urllib.parse
 from collections.abc import Callable, Iterator
 from os import PathLike
 from pathlib import Path
 from typing import Any
+
+import httpx
 
 Document = dict[str, Any]
 Progress = Callable[[Document], object]
@@ -15,6 +22,8 @@ Progress = Callable[[Document], object]
 File = str | PathLike[str]
 
 PIECE_BYTES = 1 << 20
+# The user and the password in an address, wherever it is in a text.
+USER = re.compile(r"(?<=://)[^/?#\s]*@")
 
 
 def authorization(key: str | None) -> dict[str, str]:
@@ -24,6 +33,39 @@ def authorization(key: str | None) -> dict[str, str]:
     if not all("!" <= letter <= "~" for letter in key):
         raise ValueError("the key has white space within it, a control character or one beyond ASCII, as no key has")
     return {"Authorization": f"Bearer {key}"} if key else {}
+
+
+class Secrets:
+    """What no exception shows: a key, and the user and password of an address."""
+
+    def __init__(self, address: str, key: str | None) -> None:
+        url = httpx.URL(address)
+        of_header = base64.b64encode(f"{url.username}:{url.password}".encode()).decode() if url.userinfo else ""
+        forms: set[str] = set()
+        # Also as HTML, JSON and addresses have them.
+        for secret in ((key or "").strip(), url.password, of_header):
+            forms |= {secret, html.escape(secret), json.dumps(secret)[1:-1], urllib.parse.quote(secret, safe="")}
+        self._forms = sorted(forms - {""}, key=len, reverse=True)
+
+    def hidden(self, said: Any) -> Any:
+        """A text, or a document with all its texts, with *** in place of secrets, and addresses without user and password."""
+        if isinstance(said, dict):
+            return {name: self.hidden(member) for name, member in said.items()}
+        if isinstance(said, list):
+            return [self.hidden(member) for member in said]
+        if isinstance(said, str):
+            said = USER.sub("", said)
+            for form in self._forms:
+                said = said.replace(form, "***")
+        return said
+
+    def why(self, error: BaseException) -> str:
+        """What an exception says, without secrets, as it and its causes say it from then on."""
+        of_chain: BaseException | None = error
+        while of_chain is not None:
+            of_chain.args = tuple(self.hidden(list(of_chain.args)))
+            of_chain = of_chain.__cause__ or of_chain.__context__
+        return str(error) or type(error).__name__
 
 
 class Sending:

@@ -16,7 +16,7 @@ from .errors import JobFailed, Refused, Unreachable
 from .patience import BROKEN, Patience
 from .response import Response
 from .results import Applied, Case, Comparison, Optimisation, Prediction
-from .sending import Document, File, Progress, Sending, authorization
+from .sending import Document, File, Progress, Secrets, Sending, authorization
 from .surface import Surface
 
 WAIT = {"Prefer": "wait=30"}
@@ -38,6 +38,7 @@ class Facies:
     def __init__(self, address: str, key: str | None = None, patience_s: float = PATIENCE_S) -> None:
         self.patience_s = patience_s
         self._http = httpx.Client(base_url=address, headers=authorization(key), timeout=PATIENCE_S)
+        self._secrets = Secrets(address, key)
 
     def __enter__(self) -> Facies:
         return self
@@ -60,20 +61,31 @@ class Facies:
             except BROKEN as error:
                 if may_repeat and patience.pause():
                     continue
-                raise unreachable(method, path, error) from error
+                raise unreachable(method, path, error, self._secrets) from error
             if answer.is_success:
                 return answer
             passes = BUSY + OF_PROXY if may_repeat else BUSY
             if answer.status_code not in passes or not patience.pause(retry_after(answer)):
-                raise refusal(answer)
+                raise refusal(answer, self._secrets)
+
+    def _document(self, method: str, path: str, **request: Any) -> Document:
+        """The document that answers a request."""
+        answer = self.ask(method, path, **request)
+        try:
+            document = answer.json()
+        except (ValueError, RecursionError):
+            document = None
+        if not isinstance(document, dict):
+            raise of_another(answer, self._secrets)
+        return document
 
     def upload(self, mesh: File | bytes, *, units: str = "mm", frame: str = "unspecified",
                progress: Progress | None = None) -> str:
         """The id of a mesh. The same bytes are the same mesh."""
         content = Sending(mesh, progress)
         headers = {"Content-Type": "application/octet-stream", "Content-Length": str(content.total)}
-        answer = self.ask("POST", "/v1/meshes", content=content, params={"units": units, "frame": frame}, headers=headers)
-        return str(answer.json()["id"])
+        made = self._document("POST", "/v1/meshes", content=content, params={"units": units, "frame": frame}, headers=headers)
+        return str(made["id"])
 
     def case(self, case: File | Document, *, progress: Progress | None = None) -> Case:
         """Stores a case. A file is a `case.json` of the command line, which names meshes by their paths and may say in its
@@ -86,10 +98,10 @@ class Facies:
             file = json.loads(Path(case).read_text(encoding="utf-8"))
             document = self._with_meshes(file.get("case", file), Path(case).parent, str, progress)
             spec = {name: value for name, value in file.get("spec", {}).items() if name not in OF_FILES}
-        made = self.ask("POST", "/v1/cases", json=document).json()
+        made = self._document("POST", "/v1/cases", json=document)
         if made.get("state") == "meshing":
-            self._ended(self.ask("GET", f"/v1/jobs/{made['meshing']['job']}").json(), progress)
-            made = self.ask("GET", f"/v1/cases/{made['id']}", headers=WAIT).json()
+            self._ended(self._document("GET", f"/v1/jobs/{made['meshing']['job']}"), progress)
+            made = self._document("GET", f"/v1/cases/{made['id']}", headers=WAIT)
         return Case(made["id"], made["case"], made.get("check"), spec)
 
     def predict(self, case: Case | File | Document, plan: Document, *, fixed: Sequence[str] = (),
@@ -127,7 +139,7 @@ class Facies:
         def form(media_type: str) -> httpx.Response:
             return self.ask("GET", path, params=which, headers={"Accept": media_type})
 
-        description = form("application/json").json()
+        description = self._document("GET", path, params=which, headers={"Accept": "application/json"})
         columns = np.frombuffer(form("application/octet-stream").content, "<f4")
         columns = columns.reshape(description["columns"]["count"], -1, 3)
         rest = Surface.from_glb(form("model/gltf-binary").content)
@@ -140,8 +152,8 @@ class Facies:
     def apply(self, response: Response, plan: Document) -> Applied:
         """How far each node of the skin goes as the service computes it, which refuses plans beyond its limits, and what
         it says of that: warnings, and the estimated linearisation error."""
-        said = self.ask("POST", f"/v1/cases/{response.case}/response/apply", json={"plan": plan},
-                        params={"job": response.job}, headers={"Accept": "application/json"}).json()
+        said = self._document("POST", f"/v1/cases/{response.case}/response/apply", json={"plan": plan},
+                              params={"job": response.job}, headers={"Accept": "application/json"})
         return Applied(np.array(said.pop("displacement_mm"), dtype=np.float32), said)
 
     def optimise(self, case: Case | File | Document, targets: list[Document], bounds: Document, *,
@@ -175,7 +187,7 @@ class Facies:
         """The last state of a job of any kind; raises `JobFailed` where it ended without results. Where `Unreachable` names no `job`, the
         same call finds it again: equal inputs are one job."""
         waits = WAIT if progress is None else {}
-        return self._ended(self.ask("POST", "/v1/jobs", json=spec, headers=waits).json(), progress)
+        return self._ended(self._document("POST", "/v1/jobs", json=spec, headers=waits), progress)
 
     def _ended(self, job: Document, progress: Progress | None) -> Document:
         """The last state of a job; raises `JobFailed` where it ended without results."""
@@ -184,7 +196,7 @@ class Facies:
             for event in self._follow(job["id"]):
                 progress(event)
         while job["status"] in ("accepted", "running"):
-            job = self.ask("GET", f"/v1/jobs/{job['id']}", headers=WAIT).json()
+            job = self._document("GET", f"/v1/jobs/{job['id']}", headers=WAIT)
         if job["status"] != "successful":
             raise JobFailed(job)
         return job
@@ -208,13 +220,13 @@ class Facies:
                         return None
                     if not answer.is_success:
                         answer.read()
-                        told, refused = retry_after(answer), refusal(answer)
+                        told, refused = retry_after(answer), refusal(answer, self._secrets)
                     for line in answer.iter_lines():
+                        event = event_of(line)
                         # Events, and what the service sends in a silent stream.
-                        if line.startswith(("data:", ":")):
+                        if event is not None or line.startswith(":"):
                             patience.renew()
-                        if line.startswith("data:"):
-                            event = json.loads(line[len("data:"):])
+                        if event is not None:
                             last, has_ended = event["number"], event["status"] in ENDED
                             yield event
             except BROKEN as error:
@@ -225,7 +237,7 @@ class Facies:
             if not has_ended and not patience.pause(told):
                 if refused is not None:
                     return refused
-                raise unreachable("GET", path, broken) from broken
+                raise unreachable("GET", path, broken, self._secrets) from broken
 
     def _stored(self, case: Case | File | Document, progress: Progress | None) -> Case:
         return case if isinstance(case, Case) else self.case(case, progress=progress)
@@ -277,18 +289,36 @@ def case_of_scan(scan: File, plan: Document) -> Document:
     return {"meshing": meshing | {name: plan[name] for name in ("frame",) if name in plan}}
 
 
-def refusal(answer: httpx.Response) -> Refused:
+def refusal(answer: httpx.Response, secrets: Secrets) -> Refused:
     """The problem of an answer, or its status where something between us and the service answered."""
     try:
-        return Refused(answer.json())
+        return Refused(secrets.hidden(answer.json()))
+    except (ValueError, KeyError, TypeError, RecursionError):
+        return of_another(answer, secrets)
+
+
+def of_another(answer: httpx.Response, secrets: Secrets) -> Refused:
+    """The status and the beginning of an answer of something between us and the service."""
+    # Without secrets before the cut, which would leave a part of them.
+    detail = f"{secrets.hidden(str(answer.request.url))} answered {secrets.hidden(answer.text)[:200]!r}"
+    return Refused({"status": answer.status_code, "code": "not-of-the-service", "detail": detail})
+
+
+def event_of(line: str) -> Document | None:
+    """The event of a line of a stream, or `None` where it has none; raises `httpx.RemoteProtocolError` where the stream broke in it."""
+    if not line.startswith("data:"):
+        return None
+    try:
+        event: Document = json.loads(line[len("data:"):])
+        event["number"], event["status"]
     except (ValueError, KeyError, TypeError):
-        detail = f"{answer.request.url} answered {answer.text[:200]!r}"
-        return Refused({"status": answer.status_code, "code": "not-of-the-service", "detail": detail})
+        raise httpx.RemoteProtocolError("the stream ended within an event") from None
+    return event
 
 
-def unreachable(method: str, path: str, error: httpx.HTTPError | None) -> Unreachable:
+def unreachable(method: str, path: str, error: httpx.HTTPError | None, secrets: Secrets) -> Unreachable:
     """A request without an answer, with the job that is in its path."""
-    why = "the stream ended" if error is None else str(error) or type(error).__name__
+    why = "the stream ended" if error is None else secrets.why(error)
     of_job = re.match("/v1/jobs/([^/?]+)", path)
     return Unreachable(f"{method} {path}", why, of_job and of_job[1])
 

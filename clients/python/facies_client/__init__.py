@@ -13,7 +13,7 @@ import httpx
 
 from facies.errors import Unreachable
 from facies.patience import BROKEN, Patience
-from facies.sending import authorization
+from facies.sending import Secrets, authorization
 
 from .rest import Client
 from .rest.api.jobs import show_job
@@ -52,6 +52,11 @@ def connect(address: str, key: str | None = None) -> Client:
     return Client(base_url=address, headers=authorization(key), timeout=patience, raise_on_unexpected_status=True)
 
 
+def secrets_of(client: Client) -> Secrets:
+    """What no exception shows of a client that `connect` made."""
+    return Secrets(client._base_url, client._headers.get("Authorization", "").removeprefix("Bearer "))
+
+
 def answered(answer: T | ProblemDocument | None) -> T:
     """What the service answered; raises `Refused` where it is a refusal."""
     if isinstance(answer, ProblemDocument):
@@ -77,7 +82,7 @@ def ended(client: Client, job: StatusInfo, patience_s: float = 60.0) -> StatusIn
             patience.renew()
         except BROKEN as error:
             if not patience.pause():
-                raise Unreachable(f"GET /v1/jobs/{job.id}", str(error) or type(error).__name__, str(job.id)) from error
+                raise Unreachable(f"GET /v1/jobs/{job.id}", secrets_of(client).why(error), str(job.id)) from error
     if job.status != "successful":
         raise JobFailed(job)
     return job

@@ -59,7 +59,7 @@ const difference = apart(here, there.displacement_mm);
 assert(difference < 1e-4, `${difference} mm from the answer of apply`);
 assert(there.within_linear_range && there.nonlinearity_estimate_mm! > 0, "the linearisation error is estimated");
 const unseen = [
-  "numerical-error-large", "cells-inverted", "bones-overlap", "bone-in-tissue", "bone-through-skin", "large-rotation", "large-strain",
+  "numerical-error-large", "cells-inverted", "bones-overlap", "bone-in-tissue", "bone-through-skin", "large-rotation", "large-strain", "tissue-may-buckle",
   "skin-outruns-plan", "sliding-off-wall", "landmark-far", "landmarks-crowded", "landmarks-swapped", "skin-overlaps",
 ];
 assert.deepEqual([there.warnings, there.not_measured], [[], unseen]);

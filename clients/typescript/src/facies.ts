@@ -3,7 +3,7 @@
 import { JobFailed, Refused, Unreachable } from "./errors.js";
 import { Patience } from "./patience.js";
 import { Response as PlanResponse } from "./response.js";
-import { authorization, post, type Uploading } from "./sending.js";
+import { authorization, post, Secrets, type Uploading } from "./sending.js";
 import { readGlb, type Surface } from "./surface.js";
 import type { components } from "./rest.js";
 
@@ -64,11 +64,13 @@ const OCTETS = { Accept: "application/octet-stream" };
 
 export class Facies {
   private readonly address: string;
+  private readonly secrets: Secrets;
 
   /** The service at an address, with a key where it asks for one; a busy one is waited for, so many seconds in all. So is one that is
    * out of reach, as while it is started again, by requests that only read. Whatever asks throws `Unreachable` where it gets no answer. */
   constructor(address: string, private readonly key?: string, private readonly patience_s = 60) {
     this.address = address.replace(/\/+$/, "");
+    this.secrets = new Secrets(address, key);
   }
 
   /** The answer to any request; throws `Refused` where it is a refusal, and `Unreachable` where there is none. One that may change
@@ -91,18 +93,19 @@ export class Facies {
   ): Promise<T> {
     const patience = new Patience(this.patience_s);
     for (;;) {
-      let answer: Response | undefined;
+      let answer: Response, refused: Refused;
       try {
         answer = await send();
         if (answer.ok) return await take(answer);
+        refused = await refusal(answer, this.secrets);
       } catch (error) {
-        // Of `fetch`, and of a body that breaks off. Of what is no JSON, the answer is there.
+        // Of `fetch`, and of a body that breaks off.
         if (!(error instanceof TypeError)) throw error;
         if (mayRepeat && await patience.pause()) continue;
-        throw new Unreachable(method, path, error);
+        throw new Unreachable(method, path, this.secrets.hiddenIn(error));
       }
       const passes = mayRepeat ? [...BUSY, ...OF_PROXY] : BUSY;
-      if (!passes.includes(answer.status) || !await patience.pause(retryAfter(answer))) throw await refusal(answer);
+      if (!passes.includes(answer.status) || !await patience.pause(retryAfter(answer))) throw refused;
     }
   }
 
@@ -114,7 +117,7 @@ export class Facies {
     const headers = { "Content-Type": "application/octet-stream" };
     if (uploading === undefined) return (await this.json("POST", path, mesh, headers)).id;
     const posted = { address: this.address + path, headers: { ...headers, ...this.authorization() }, file: mesh };
-    const answer = await this.asked((answer) => answer.json(), () => post(posted, uploading), "POST", path, false);
+    const answer = await this.asked((answer) => documentOf(answer, this.secrets), () => post(posted, uploading), "POST", path, false);
     return answer.id;
   }
 
@@ -214,20 +217,26 @@ export class Facies {
     for (let last = 0; ;) {
       let [hasEnded, told, refused, broken]: [boolean, number?, Refused?, unknown?] = [false];
       const headers = { Accept: "text/event-stream", "Last-Event-ID": String(last) };
-      const answer = await this.send("GET", path, undefined, headers).catch((error: unknown) => {
+      let answer: Response | undefined;
+      try {
+        answer = await this.send("GET", path, undefined, headers);
+        if (!answer.ok) [told, refused] = [retryAfter(answer), await refusal(answer, this.secrets)];
+      } catch (error) {
         if (!(error instanceof TypeError)) throw error;
-        broken = error;
-      });
-      if (answer?.status === 204) return undefined;
-      if (answer !== undefined && !answer.ok) {
-        [told, refused] = [retryAfter(answer), await refusal(answer)];
-        if (![...BUSY, ...OF_PROXY].includes(answer.status)) throw refused;
+        broken = this.secrets.hiddenIn(error);
       }
+      if (answer?.status === 204) return undefined;
+      if (refused !== undefined && ![...BUSY, ...OF_PROXY].includes(answer!.status)) throw refused;
       for await (const line of answer?.ok ? lines(answer) : []) {
+        const event = eventOf(line);
+        // The stream broke in it.
+        if (event === undefined && line.startsWith("data:")) {
+          hasEnded = false;
+          break;
+        }
         // Events, and what the service sends in a silent stream.
-        if (line.startsWith("data:") || line.startsWith(":")) patience.renew();
-        if (!line.startsWith("data:")) continue;
-        const event = JSON.parse(line.slice("data:".length)) as Documents["JobEvent"];
+        if (event !== undefined || line.startsWith(":")) patience.renew();
+        if (event === undefined) continue;
         [last, hasEnded] = [event.number, ENDED.includes(event.status)];
         yield event;
       }
@@ -266,7 +275,7 @@ export class Facies {
   }
 
   private json(...request: Parameters<Facies["ask"]>) {
-    return this.read((answer) => answer.json(), ...request);
+    return this.read((answer) => documentOf(answer, this.secrets), ...request);
   }
 
   private bytes(...request: Parameters<Facies["ask"]>): Promise<ArrayBuffer> {
@@ -278,16 +287,27 @@ function withSkin(outputs: Documents["OutputName"][]): Documents["OutputName"][]
   return [...new Set([...outputs, SKIN as Documents["OutputName"]])];
 }
 
+/** The event of a line of a stream, or `undefined` where it has none or the stream broke in it. */
+function eventOf(line: string): Documents["JobEvent"] | undefined {
+  const event = line.startsWith("data:") ? parsed(line.slice("data:".length)) : undefined;
+  return typeof event?.number === "number" && typeof event.status === "string" ? event : undefined;
+}
+
 /** The lines of an answer as they come, until it ends or breaks. */
 async function* lines(answer: Response): AsyncGenerator<string> {
   const reader = answer.body!.pipeThrough(new TextDecoderStream()).getReader();
   let rest = "";
-  for (;;) {
-    const piece = await reader.read().catch(() => ({ done: true as const, value: undefined }));
-    if (piece.done) return;
-    const parts = (rest + piece.value).split("\n");
-    rest = parts.pop()!;
-    yield* parts;
+  try {
+    for (;;) {
+      const piece = await reader.read().catch(() => ({ done: true as const, value: undefined }));
+      if (piece.done) return;
+      const parts = (rest + piece.value).split("\n");
+      rest = parts.pop()!;
+      yield* parts;
+    }
+  } finally {
+    // The connection of one that is read no further.
+    void reader.cancel().catch(() => undefined);
   }
 }
 
@@ -297,13 +317,37 @@ function retryAfter(answer: Response): number | undefined {
   return /^\d+$/.test(told) ? Number(told) : undefined;
 }
 
-/** The problem of an answer, or its status where something between us and the service answered. */
-async function refusal(answer: Response): Promise<Refused> {
-  const text = await answer.text();
+/** The object of a text, `undefined` where it is none. */
+function parsed(text: string): any {
   try {
-    const problem = JSON.parse(text) as Documents["ProblemDocument"];
-    if (typeof problem.code === "string") return new Refused(problem);
+    const said: unknown = JSON.parse(text);
+    return typeof said === "object" && said !== null && !Array.isArray(said) ? said : undefined;
+  } catch {
+    return undefined;
+  }
+}
+
+/** The document of an answer; throws `Refused` where it is none. */
+async function documentOf(answer: Response, secrets: Secrets) {
+  const text = await answer.text();
+  const document = parsed(text);
+  if (document === undefined) throw ofAnother(answer, text, secrets);
+  return document;
+}
+
+/** The problem of an answer, or its status where something between us and the service answered. */
+async function refusal(answer: Response, secrets: Secrets): Promise<Refused> {
+  const text = await answer.text();
+  const problem = secrets.hidden(parsed(text));
+  try {
+    if (typeof problem?.code === "string") return new Refused(problem);
   } catch { /* not a document of the service */ }
-  const detail = `${answer.url} answered ${text.slice(0, 200)}`;
+  return ofAnother(answer, text, secrets);
+}
+
+/** The status and the beginning of an answer of something between us and the service. */
+function ofAnother(answer: Response, text: string, secrets: Secrets): Refused {
+  // Without secrets before the cut, which would leave a part of them.
+  const detail = `${secrets.hidden(answer.url)} answered ${secrets.hidden(text).slice(0, 200)}`;
   return new Refused({ type: "", title: "", status: answer.status, code: "not-of-the-service", detail });
 }

@@ -148,7 +148,10 @@ impl<'a> Step<'a> {
             (Some(known), _) => known,
             (None, Some(reason)) => Err(reason),
             (None, None) => {
-                nonlinearity::estimate(self.scene, &self.system, &self.solved, progress)?
+                let (found, doubt) =
+                    nonlinearity::estimate(self.scene, &self.system, &self.solved, progress)?;
+                self.solved.equilibrium.warnings.extend(doubt);
+                found
             }
         };
         Ok(self.linearity.insert(found))

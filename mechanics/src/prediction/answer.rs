@@ -8,7 +8,6 @@ use super::following_pressure::{has_pressure, pressed_in_solution};
 use super::method::MethodKind;
 use super::nonlinearity::{self, Estimated, NonlinearityUnknown};
 use super::numerical_error::{self, NotEstimated, NumericalError};
-use super::pressed_tissue::may_buckle;
 use super::scene::Scene;
 use crate::model::fem::linear_system::{LinearSystem, Solved};
 use crate::model::problem::{Equilibrium, ModelError};
@@ -163,13 +162,11 @@ fn answered<'a>(
         let contact = Some(touch);
         return Ok(other(Answer { equilibrium, numerical_error, nonlinearity, contact }));
     }
-    let nonlinearity = match of_linearity {
-        Some(reason) => Err(reason),
+    let (nonlinearity, doubt) = match of_linearity {
+        Some(reason) => (Err(reason), None),
         None => nonlinearity::estimate(scene, &system, &solved, progress)?,
     };
-    if nonlinearity.is_ok() {
-        solved.equilibrium.warnings.extend(may_buckle(scene, &system, &solved, progress)?);
-    }
+    solved.equilibrium.warnings.extend(doubt);
     let answer = LinearAnswer { system, solved, numerical_error, nonlinearity };
     Ok(Linear::Solved(Box::new(answer)))
 }

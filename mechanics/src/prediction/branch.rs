@@ -19,6 +19,10 @@ use crate::solver::SolverError;
 /// accepted.
 const TOLD_MM: f64 = 0.1;
 
+/// The same as a multiple of the second order: ends of struts that turn by 30 degrees are 1.05 times that from it, where there is no
+/// other equilibrium.
+const TOLD_TIMES: f64 = 1.5;
+
 /// Displacements of the nodes in mm: the linear answer, what the second order adds to it, and a state at finite strain.
 pub(super) struct Branches<'a> {
     pub linear: &'a [Vector],
@@ -27,14 +31,19 @@ pub(super) struct Branches<'a> {
 }
 
 impl Branches<'_> {
-    /// A warning where the state is farther from the second order than `accepted_mm`, and than that is from the linear answer;
-    /// `mean` is the mean length of displacements over the skin, in mm.
-    pub fn another(&self, accepted_mm: f64, mean: impl Fn(&[Vector]) -> f64) -> Option<Warning> {
+    /// A warning where the state is farther from the second order than `accepted_mm`, and than so many times what that is from the linear
+    /// answer; `mean` is the mean length of displacements over the skin, in mm.
+    pub fn another(
+        &self,
+        accepted_mm: f64,
+        times: f64,
+        mean: impl Fn(&[Vector]) -> f64,
+    ) -> Option<Warning> {
         let reached = self.linear.iter().zip(self.second_order);
         let ends = self.found.iter().zip(reached);
         let off: Vec<Vector> = ends.map(|(end, (first, second))| end - first - second).collect();
         let [off, second_order] = [mean(&off), mean(self.second_order)];
-        if off <= second_order || off <= accepted_mm {
+        if off <= times * second_order || off <= accepted_mm {
             return None;
         }
         let detail = format!(
@@ -70,5 +79,5 @@ pub(super) fn another_branch(
     let moving = scene.skin.moving_points(&found.displacement);
     let (linear, second_order, found) = (&*linear, &*second_order, &*found.displacement);
     let mean = |values: &[Vector]| scene.skin.mean_length(&moving, values);
-    Ok(Branches { linear, second_order, found }.another(TOLD_MM, mean))
+    Ok(Branches { linear, second_order, found }.another(TOLD_MM, TOLD_TIMES, mean))
 }

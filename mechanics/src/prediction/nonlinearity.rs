@@ -8,10 +8,11 @@
 use std::collections::BTreeMap;
 
 use super::method::Method;
+use super::pressed_tissue::may_buckle;
 use super::scene::Scene;
 use super::skin::landmark_displacement;
 use super::walls::rotation_beyond_second_order;
-use crate::mesh::Vector;
+use crate::mesh::{Vector, Warning};
 use crate::model::fem::force_series::{ForceSeries, Forces, LinearState};
 use crate::model::fem::linear_system::{Correction, LinearSystem, Residual, Solved};
 use crate::model::fem::mass_tensor::{Iterations, MassTensorSettings};
@@ -92,18 +93,22 @@ pub(super) fn reason_for_none(scene: &Scene) -> Option<NonlinearityUnknown> {
     }
 }
 
-/// The estimate for an answer of linear elements.
+/// The estimate for an answer of linear elements, and a warning where its tissue may buckle.
 pub(super) fn estimate(
     scene: &Scene,
     system: &LinearSystem,
     solved: &Solved,
     progress: &dyn Progress,
-) -> Result<Estimated, ModelError> {
-    match second_order(scene, system, solved, progress) {
-        Ok(second_order) => Ok(Ok(Nonlinearity::of(scene, second_order.displacement))),
-        Err(stopped @ ModelError::Solver(SolverError::Stopped)) => Err(stopped),
-        Err(other) => Ok(Err(NonlinearityUnknown::Failed(other))),
-    }
+) -> Result<(Estimated, Option<Warning>), ModelError> {
+    let second = match second_order(scene, system, solved, progress) {
+        Ok(second) => second,
+        Err(stopped @ ModelError::Solver(SolverError::Stopped)) => return Err(stopped),
+        Err(other) => return Ok((Err(NonlinearityUnknown::Failed(other)), None)),
+    };
+    let displacement = sums(&solved.equilibrium.displacement, &second.displacement);
+    let pressures = both_pressures(solved, &second);
+    let doubt = may_buckle(scene, system, (&displacement, &pressures), progress)?;
+    Ok((Ok(Nonlinearity::of(scene, second.displacement)), doubt))
 }
 
 /// The linear answer of a scene whatever its method, and what the second order adds to it, for each node; none of elements that
@@ -130,7 +135,7 @@ pub(super) fn to_second_order(
     let second = solution(system, &forces, OF_ANSWER, progress)?;
     let more = system.reactions(&second, &forces.nodes);
     let displacement = sums(&first.displacement, &second.displacement);
-    let both: Vec<f64> = pressures.iter().zip(&second.pressures).map(|(p, q)| p + q).collect();
+    let both = both_pressures(solved, &second);
     let (states, unknown) = scene.states_at_second_order(system, &displacement, &both);
     let equilibrium = Equilibrium {
         displacement,
@@ -189,6 +194,10 @@ fn solution(
         true => Ok(found),
         false => Err(SolverError::NotFinite.into()),
     }
+}
+
+fn both_pressures(solved: &Solved, second: &Correction) -> Vec<f64> {
+    solved.pressures.iter().zip(&second.pressures).map(|(p, q)| p + q).collect()
 }
 
 fn sums(some: &[Vector], others: &[Vector]) -> Vec<Vector> {

@@ -3,35 +3,41 @@
 use nalgebra::Matrix3;
 
 use super::scene::Scene;
-use crate::mesh::Warning;
+use crate::mesh::{Vector, Warning};
 use crate::model::cell_state::CellState;
 use crate::model::fem::assembly::Tissue;
-use crate::model::fem::finite_strain::{BUCKLES, PRESSED};
-use crate::model::fem::linear_system::{LinearSystem, Solved};
+use crate::model::fem::linear_system::LinearSystem;
 use crate::model::problem::ModelError;
 use crate::progress::Progress;
 
 pub(super) const MAY_BUCKLE: &str = "tissue-may-buckle";
 
+/// The pressure along an axis from which on a cell is pressed, as a share of its shear modulus: under this a strut buckles that is
+/// thirty times as long as thick.
+const PRESSED: f64 = 0.01;
+
+/// The share of the energy of shear in pressed cells from which on it is asked whether tissue buckles.
+const ASKED: f64 = 0.2;
+
 /// Tissue counts as one that may buckle where it does under so many times the stress of the answer: what is not straight bends
 /// before.
 const TIMES: f64 = 1.5;
 
-/// A warning where a linear answer would buckle. Asked where much of the energy of shear is in cells that are pressed as those of
-/// tissue which buckles at finite strain.
+/// A warning where a linear answer would buckle, under the stress that it has with its second order, so that tissue which only turns is
+/// not pressed; `reached` has displacements in mm and pressures in kPa.
 pub(super) fn may_buckle(
     scene: &Scene,
     system: &LinearSystem,
-    solved: &Solved,
+    reached: (&[Vector], &[f64]),
     progress: &dyn Progress,
 ) -> Result<Option<Warning>, ModelError> {
     let tissue = scene.tissue();
-    let states = scene.cell_states(system, solved)?;
+    let states = scene.cell_states_at_second_order(system, reached.0, reached.1);
     let share = pressed_share(&tissue, &states);
-    if share <= BUCKLES {
+    if share <= ASKED {
         return Ok(None);
     }
-    let stress = |cell: usize| states[cell].stress * TIMES;
+    let stress = |cell: usize| states[cell].unwrap_or_default().stress * TIMES;
     if system.is_stable_under(&tissue, &stress, progress)? != Some(false) {
         return Ok(None);
     }
@@ -44,13 +50,14 @@ pub(super) fn may_buckle(
 }
 
 /// The share of the energy of shear that is in pressed cells; zero without any.
-fn pressed_share(tissue: &Tissue, states: &[CellState]) -> f64 {
+fn pressed_share(tissue: &Tissue, states: &[Option<CellState>]) -> f64 {
     let (mut pressed, mut all) = (0.0, 0.0);
     for (cell, state) in states.iter().enumerate() {
+        let Some(CellState { stress, strain }) = state else { continue };
         let mu = tissue.tensor(cell).mu;
-        let shear = state.strain - Matrix3::identity() * (state.strain.trace() / 3.0);
+        let shear = strain - Matrix3::identity() * (strain.trace() / 3.0);
         let energy = mu * shear.norm_squared() * tissue.mesh.cell_volume(cell);
-        let is_pressed = state.stress.symmetric_eigenvalues().min() < -PRESSED * mu;
+        let is_pressed = stress.symmetric_eigenvalues().min() < -PRESSED * mu;
         all += energy;
         pressed += if is_pressed { energy } else { 0.0 };
     }

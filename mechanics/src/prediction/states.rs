@@ -40,22 +40,25 @@ impl Scene {
         system: &LinearSystem,
         solved: &Solved,
     ) -> Result<CellStates, InvertedCell> {
-        match self.settings.states {
-            true => Ok(CellStates { cells: self.cell_states(system, solved)?, is_green: false }),
-            false => Ok(CellStates::default()),
+        if !self.settings.states {
+            return Ok(CellStates::default());
         }
-    }
-
-    /// The state of each cell of the answer of a linear system, asked for or not.
-    pub(super) fn cell_states(
-        &self,
-        system: &LinearSystem,
-        solved: &Solved,
-    ) -> Result<Vec<CellState>, InvertedCell> {
         let pressures = self.mean_pressures(system, &solved.pressures);
         let displacement = &solved.equilibrium.displacement;
         let displaced = Displaced { displacement, edges: None, pressures: &pressures };
-        at_small_strain(&self.tissue(), &self.distributed.inner, &displaced)
+        let cells = at_small_strain(&self.tissue(), &self.distributed.inner, &displaced)?;
+        Ok(CellStates { cells, is_green: false })
+    }
+
+    /// The state of each cell at second order, asked for or not; none of cells that are turned inside out.
+    pub(super) fn cell_states_at_second_order(
+        &self,
+        system: &LinearSystem,
+        displacement: &[Vector],
+        pressures: &[f64],
+    ) -> Vec<Option<CellState>> {
+        let pressures = self.mean_pressures(system, pressures);
+        at_second_order(&self.tissue(), &self.distributed.inner, displacement, &pressures)
     }
 
     /// The answer of elements without pressures, with the states of its cells.
@@ -74,9 +77,7 @@ impl Scene {
         if !self.settings.states {
             return (CellStates::default(), None);
         }
-        let pressures = self.mean_pressures(system, pressures);
-        let inner = &self.distributed.inner;
-        let states = at_second_order(&self.tissue(), inner, displacement, &pressures);
+        let states = self.cell_states_at_second_order(system, displacement, pressures);
         let unknown = states.iter().filter(|state| state.is_none()).count();
         let detail = format!(
             "{unknown} cells are turned inside out, where no law has a stress: stress and strain of these are written as zero"

@@ -117,14 +117,16 @@ pub struct AlignmentDocument {
     pub standard_error: Option<StandardErrorDocument>,
 }
 
-/// The standard error of a registration of surfaces; null if their shape leaves a movement free.
+/// The standard error of a registration of surfaces; without members if their shape leaves a movement free.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct StandardErrorDocument {
     /// Of the rotation.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
     pub rotation_deg: Option<f64>,
     /// The largest of all displacements.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
     pub displacement_mm: Option<f64>,
 }
 

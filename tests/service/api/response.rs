@@ -609,6 +609,7 @@ async fn skin_that_passes_through_itself_is_reported_by_predictions_and_where_a_
         "bone-through-skin",
         "large-rotation",
         "large-strain",
+        "tissue-may-buckle",
         "skin-outruns-plan",
         "sliding-off-wall",
         "landmark-far",

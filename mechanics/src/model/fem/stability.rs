@@ -23,14 +23,25 @@ use crate::solver::mixed_system::{Coupling, MixedSystem};
 use crate::solver::pressed_curvature;
 use crate::solver::{Block, Solver, SolverError, System};
 
-/// Iterations after which the definiteness of a matrix is not known, without pressures and with them.
+/// Iterations after which the definiteness of a matrix without pressures is not known.
 const MOST_PLAIN: usize = 200;
-const MOST_STIFF: usize = 400;
 
-/// A load of no pattern has in the mean one part in the root of the unknowns along any one direction, and no iteration makes that
-/// smaller where the tangent has no positive curvature along it, unless it meets that. A tangent is known to be positive definite
-/// at this part of it; with pressures, whose bulk modulus makes what is left of the tangent stiff, in so many iterations.
-const SURE: f64 = 0.01;
+/// When a matrix is known to be positive definite.
+#[derive(Clone, Copy)]
+pub(super) struct Certainty {
+    /// A load of no pattern has in the mean one part in the root of the unknowns along any one direction, and no iteration makes
+    /// that smaller where the matrix has no positive curvature along it, unless it meets that. It is known at this share of that part.
+    share: f64,
+    /// With pressures, whose bulk modulus makes what is left of the tangent stiff, in so many iterations.
+    most_stiff: usize,
+}
+
+impl Certainty {
+    /// Of an equilibrium that is said to be stable.
+    pub const OF_ANSWER: Certainty = Certainty { share: 0.01, most_stiff: 400 };
+    /// Of a doubt, which is to cost less than the answer.
+    const OF_DOUBT: Certainty = Certainty { share: 0.1, most_stiff: 60 };
+}
 
 /// The largest pressure along an axis that counts, as a share of the shear modulus.
 const MOST: f64 = 0.7;
@@ -42,6 +53,7 @@ pub(super) struct Tangent<'a> {
     pub system: &'a System,
     pub coupling: Option<&'a Coupling>,
     pub solver: &'a Solver,
+    pub certainty: Certainty,
 }
 
 impl Tangent<'_> {
@@ -51,10 +63,10 @@ impl Tangent<'_> {
         &self,
         progress: &dyn Progress,
     ) -> Result<Option<bool>, SolverError> {
-        let Tangent { constrained, system, coupling, solver } = *self;
+        let Tangent { constrained, system, coupling, solver, certainty } = *self;
         let inner = Inner(progress);
         let load = constrained.known(&without_pattern(constrained)).right_hand_side(system);
-        let relative_residual = SURE / (load.as_flattened().len().max(1) as f64).sqrt();
+        let relative_residual = certainty.share / (load.as_flattened().len().max(1) as f64).sqrt();
         let criterion = StoppingCriterion { relative_residual, most_iterations: MOST_PLAIN };
         let multigrid = solver.hierarchy(system, progress)?;
         let alone = conjugate_gradient::direction(system, multigrid, &load, criterion, &inner)?;
@@ -64,7 +76,8 @@ impl Tangent<'_> {
             _ if is_known => Ok(Some(true)),
             None => Ok((!alone.is_convex).then_some(false)),
             Some(coupling) => {
-                let criterion = StoppingCriterion { most_iterations: MOST_STIFF, ..criterion };
+                let criterion =
+                    StoppingCriterion { most_iterations: certainty.most_stiff, ..criterion };
                 let mixed = MixedSystem { stiffness: system, coupling, solver };
                 pressed_curvature::is_positive_definite(&mixed, &load, criterion, &inner)
             }
@@ -112,7 +125,8 @@ impl LinearSystem<'_> {
         let constrained = &self.constrained();
         let system = &constrained.system(matrix, &tissue.mesh.nodes);
         let coupling = self.pressures.as_ref().map(|own| &own.coupling);
-        let tangent = Tangent { constrained, system, coupling, solver: self.solver() };
+        let certainty = Certainty::OF_DOUBT;
+        let tangent = Tangent { constrained, system, coupling, solver: self.solver(), certainty };
         Ok(tangent.is_positive_definite(progress)?)
     }
 }

@@ -22,12 +22,17 @@ pub(super) fn another_branch(
     accepted: &Accepted,
     mean: impl Fn(&[Vector]) -> f64,
 ) -> Option<Objection> {
+    let newton = found.equilibrium.solver.newton.as_ref();
+    if newton.is_some_and(|newton| newton.is_stable == Some(false)) {
+        // That speaks against it already.
+        return None;
+    }
     let branches = Branches {
         linear: &linear.equilibrium().displacement,
         second_order: &linear.nonlinearity.as_ref().ok()?.left_out,
         found: &found.equilibrium.displacement,
     };
-    let warning = branches.another(accepted.skin_mm, mean)?;
+    let warning = branches.another(accepted.skin_mm, 1.0, mean)?;
     Some(Objection { warning, is_of_model: false })
 }
 

@@ -220,8 +220,8 @@ fn an_answer_that_something_speaks_against_is_not_met_on_any_mesh() {
     let loose = Settings { relative_residual: 1e-2, ..usual.clone() };
     for is_of_answer in [false, true] {
         assert!(objections(&case, &lifted_at_both_ends(0.1), &usual, is_of_answer).is_empty());
-        let [told] = &objections(&case, &pressed, &usual, is_of_answer)[..] else { panic!() };
-        assert!(told.contains("inside out"), "{told}");
+        let found = objections(&case, &pressed, &usual, is_of_answer);
+        assert!(found.iter().any(|told| told.contains("inside out")), "{found:?}");
         let found = objections(&case, &lifted_at_both_ends(0.1), &loose, is_of_answer);
         assert!(found.iter().any(|told| told.contains("relative residual")), "{found:?}");
     }

@@ -287,10 +287,10 @@ fn swapped_scans_are_named_with_their_numbers() {
 
     let other = |point: &Vector| Vector::new(point.x * 1.12, point.y * 0.9, point.z * 0.95);
     let others = warned(&holed(&map(&prediction, other)), by_bone(&map(&skull, other)));
-    assert_eq!(codes(&others), ["another-person-suspect"]);
-    assert!(others[0].numbers[0].1 > 0.4, "{others:?}");
+    let doubt = others.iter().find(|own| own.code == "another-person-suspect").unwrap();
+    assert!(doubt.numbers[0].1 > 0.4, "{others:?}");
     let others = warned(&holed(&map(&prediction, other)), Alignment::ClosestPoint { mask: None });
-    assert_eq!(codes(&others), ["another-person-suspect"]);
+    assert!(codes(&others).contains(&"another-person-suspect"), "{others:?}");
 
     let mirror = |point: &Vector| Vector::new(-point.x, point.y, point.z);
     let mirrored = warned(&map(&prediction, mirror), Alignment::ClosestPoint { mask: None });

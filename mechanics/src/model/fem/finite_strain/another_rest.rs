@@ -15,10 +15,10 @@ use crate::solver::NewtonReport;
 pub const ANOTHER_EQUILIBRIUM: &str = "another-equilibrium";
 
 /// The pressure along an axis from which on a cell is pressed, as a share of its shear modulus.
-pub const PRESSED: f64 = 0.1;
+const PRESSED: f64 = 0.1;
 
 /// The share of the energy that pressed cells have where tissue may buckle.
-pub const BUCKLES: f64 = 0.2;
+const BUCKLES: f64 = 0.2;
 
 /// Whether the way to rest, or rest itself, gives reason to ask.
 pub(super) fn is_doubtful(newton: &NewtonReport) -> bool {

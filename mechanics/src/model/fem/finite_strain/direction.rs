@@ -5,7 +5,7 @@ use super::tissue::Deformed;
 use super::touching::{Change, Touching, TrialState};
 use crate::mesh::Vector;
 use crate::model::dofs::{Constrained, PrescribedValues};
-use crate::model::fem::stability::Tangent;
+use crate::model::fem::stability::{Certainty, Tangent};
 use crate::model::problem::LoadCase;
 use crate::progress::{Inner, Progress};
 use crate::solver::conjugate_gradient::{self, StoppingCriterion};
@@ -172,7 +172,8 @@ impl Directions {
         let hierarchy = self.hierarchy.take().unwrap_or_else(|| self.new_hierarchy());
         let coupling = self.pressures.as_mut();
         let coupling = coupling.map(|own| own.coupling_at(&|cell| deformed.gradients(cell)));
-        let tangent = Tangent { constrained, system, coupling, solver: &hierarchy.solver };
+        let (solver, certainty) = (&hierarchy.solver, Certainty::OF_ANSWER);
+        let tangent = Tangent { constrained, system, coupling, solver, certainty };
         let is_stable = tangent.is_positive_definite(progress)?;
         self.hierarchy = Some(hierarchy);
         Ok(is_stable)

@@ -48,7 +48,7 @@ use crate::model::problem::{Equilibrium, LoadCase, ModelError};
 use crate::progress::{Phase, Progress};
 use crate::solver::SolverError;
 use crate::solver::element_connectivity::ElementConnectivity;
-pub use another_rest::{ANOTHER_EQUILIBRIUM, BUCKLES, PRESSED};
+pub use another_rest::ANOTHER_EQUILIBRIUM;
 use another_rest::{another_rest, is_doubtful};
 use direction::Directions;
 use elements::CellBulkModulus;
