@@ -9,6 +9,7 @@ use crate::model::fem::assembly::Tissue;
 use crate::model::fem::linear_system::LinearSystem;
 use crate::model::problem::ModelError;
 use crate::progress::Progress;
+use crate::solver::SolverError;
 
 pub(super) const MAY_BUCKLE: &str = "tissue-may-buckle";
 
@@ -33,13 +34,19 @@ pub(super) fn may_buckle(
 ) -> Result<Option<Warning>, ModelError> {
     let tissue = scene.tissue();
     let states = scene.cell_states_at_second_order(system, reached.0, reached.1);
+    // Exponential laws leave the range of numbers where the second order strains tissue much.
+    let states: Vec<Option<CellState>> =
+        states.into_iter().map(|own| own.filter(is_finite)).collect();
     let share = pressed_share(&tissue, &states);
     if share <= ASKED {
         return Ok(None);
     }
     let stress = |cell: usize| states[cell].unwrap_or_default().stress * TIMES;
-    if system.is_stable_under(&tissue, &stress, progress)? != Some(false) {
-        return Ok(None);
+    match system.is_stable_under(&tissue, &stress, progress) {
+        Ok(Some(false)) => {}
+        Err(stopped @ ModelError::Solver(SolverError::Stopped)) => return Err(stopped),
+        // An answer is not lost for a doubt.
+        Ok(_) | Err(_) => return Ok(None),
     }
     let detail = format!(
         "under {TIMES} times the stress of this answer the tissue is not stable, and {:.0} % of its energy is in cells that are pressed: \
@@ -47,6 +54,10 @@ pub(super) fn may_buckle(
         100.0 * share
     );
     Ok(Some(Warning::new(MAY_BUCKLE, detail).with("pressed_energy_share", share)))
+}
+
+fn is_finite(state: &CellState) -> bool {
+    state.stress.iter().chain(&state.strain).all(|value| value.is_finite())
 }
 
 /// The share of the energy of shear that is in pressed cells; zero without any.
@@ -62,4 +73,17 @@ fn pressed_share(tissue: &Tissue, states: &[Option<CellState>]) -> f64 {
         pressed += if is_pressed { energy } else { 0.0 };
     }
     if all > 0.0 { pressed / all } else { 0.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_stress_that_is_no_number_does_not_count() {
+        let state =
+            |value: f64| CellState { stress: Matrix3::repeat(value), ..CellState::default() };
+        let found = [1.0, f64::INFINITY, f64::NAN].map(|value| is_finite(&state(value)));
+        assert_eq!(found, [true, false, false]);
+    }
 }

@@ -46,6 +46,9 @@ impl Certainty {
 /// The largest pressure along an axis that counts, as a share of the shear modulus.
 const MOST: f64 = 0.7;
 
+/// The largest tension along an axis, and the largest mean stress, as multiples of it: beyond them stress is that of no tissue.
+const MOST_TENSION: f64 = 1e3;
+
 /// A matrix with the pressures that answer to displacements, where there are some, and what approximates its inverse: the solver
 /// may be that of a matrix near by.
 pub(super) struct Tangent<'a> {
@@ -139,10 +142,11 @@ fn stress_stiffness(
 ) -> Result<Vec<Block>, InvertedCell> {
     let slopes = slopes(tissue.mesh, cell, None)?;
     let volume = volume(tissue.mesh, cell)?;
-    let pressure = stress.trace() / 3.0;
-    let mut axes = (stress - Matrix3::from_diagonal_element(pressure)).symmetric_eigen();
-    let most = MOST * tissue.tensor(cell).mu;
-    axes.eigenvalues.apply(|along| *along = along.max(-most));
+    let mu = tissue.tensor(cell).mu;
+    let mean = stress.trace() / 3.0;
+    let mut axes = (stress - Matrix3::from_diagonal_element(mean)).symmetric_eigen();
+    axes.eigenvalues.apply(|along| *along = along.clamp(-MOST * mu, MOST_TENSION * mu));
+    let pressure = mean.clamp(-MOST_TENSION * mu, MOST_TENSION * mu);
     let shear = axes.recompose();
     let mut blocks = Vec::with_capacity(slopes.len() * slopes.len());
     for j in slopes.iter().map(|slope| &slope.integral) {
