@@ -19,7 +19,7 @@ impl Scene {
         }
         let cases = [self.load_case()];
         let mut answer = quadratic::solve_with_edges(&self.problem(), &cases, progress)?.remove(0);
-        answer.states = self.states(&answer.displacement)?;
+        answer.states = self.states(&answer.displacement, &[])?;
         answer.displacement.truncate(self.mesh.nodes.len());
         Ok(answer)
     }
@@ -40,14 +40,11 @@ impl Scene {
         system: &LinearSystem,
         solved: &Solved,
     ) -> Result<CellStates, InvertedCell> {
-        if !self.settings.states {
-            return Ok(CellStates::default());
-        }
-        let pressures = self.mean_pressures(system, &solved.pressures);
-        let displacement = &solved.equilibrium.displacement;
-        let displaced = Displaced { displacement, edges: None, pressures: &pressures };
-        let cells = at_small_strain(&self.tissue(), &self.distributed.inner, &displaced)?;
-        Ok(CellStates { cells, is_green: false })
+        let pressures = match self.settings.states {
+            true => self.mean_pressures(system, &solved.pressures),
+            false => Vec::new(),
+        };
+        self.states(&solved.equilibrium.displacement, &pressures)
     }
 
     /// The state of each cell at second order, asked for or not; none of cells that are turned inside out.
@@ -63,7 +60,7 @@ impl Scene {
 
     /// The answer of elements without pressures, with the states of its cells.
     pub(super) fn with_states(&self, answer: Equilibrium) -> Result<Equilibrium, ModelError> {
-        let states = self.states(&answer.displacement)?;
+        let states = self.states(&answer.displacement, &[])?;
         Ok(Equilibrium { states, ..answer })
     }
 
@@ -87,13 +84,16 @@ impl Scene {
         (CellStates { cells, is_green: true }, (unknown > 0).then_some(warning))
     }
 
-    /// Those of elements without pressures.
-    fn states(&self, displacement: &[Vector]) -> Result<CellStates, InvertedCell> {
+    fn states(
+        &self,
+        displacement: &[Vector],
+        pressures: &[Option<f64>],
+    ) -> Result<CellStates, InvertedCell> {
         if !self.settings.states {
             return Ok(CellStates::default());
         }
         let edges = self.edge_nodes();
-        let displaced = Displaced { displacement, edges: edges.as_ref(), pressures: &[] };
+        let displaced = Displaced { displacement, edges: edges.as_ref(), pressures };
         let cells = at_small_strain(&self.tissue(), &self.distributed.inner, &displaced)?;
         Ok(CellStates { cells, is_green: false })
     }

@@ -105,7 +105,7 @@ fn without_pattern(constrained: &Constrained) -> LoadCase {
 }
 
 impl LinearSystem<'_> {
-    /// Whether tissue of this system is stable under so many times a stress, in kPa for each cell; none where that is not known.
+    /// Whether tissue of this system is stable under a stress, in kPa for each cell; none where that is not known.
     pub fn is_stable_under(
         &self,
         tissue: &Tissue,
