@@ -149,7 +149,7 @@ impl<'a> Step<'a> {
             (None, Some(reason)) => Err(reason),
             (None, None) => {
                 let (found, doubt) =
-                    nonlinearity::estimate(self.scene, &self.system, &self.solved, progress)?;
+                    nonlinearity::estimate(self.scene, &self.system, &self.solved, true, progress)?;
                 self.solved.equilibrium.warnings.extend(doubt);
                 found
             }

@@ -63,9 +63,7 @@ pub(super) fn linear<'a>(
     scene: &'a Scene,
     progress: &dyn Progress,
 ) -> Result<Linear<'a>, ModelError> {
-    let of_mesh = numerical_error::reason_for_none(scene);
-    let of_linearity = nonlinearity::reason_for_none(scene);
-    answered(scene, Unknown { of_mesh, of_linearity }, progress)
+    answered(scene, Unknown::asked(scene), progress)
 }
 
 /// The equilibrium of a scene by its method, and what touches, without estimates.
@@ -87,12 +85,11 @@ pub fn estimates(
     scene: &Scene,
     progress: &dyn Progress,
 ) -> Result<(Result<NumericalError, NotEstimated>, Estimated), ModelError> {
-    let of_mesh = numerical_error::reason_for_none(scene);
-    let of_linearity = nonlinearity::reason_for_none(scene);
-    if let (Some(of_mesh), Some(of_linearity)) = (&of_mesh, &of_linearity) {
+    let unknown = Unknown { with_doubt: false, ..Unknown::asked(scene) };
+    if let (Some(of_mesh), Some(of_linearity)) = (&unknown.of_mesh, &unknown.of_linearity) {
         return Ok((Err(of_mesh.clone()), Err(of_linearity.clone())));
     }
-    Ok(match answered(scene, Unknown { of_mesh, of_linearity }, progress)? {
+    Ok(match answered(scene, unknown, progress)? {
         Linear::Solved(answer) => (answer.numerical_error, answer.nonlinearity),
         Linear::Other(answer) => (answer.numerical_error, answer.nonlinearity),
     })
@@ -102,12 +99,20 @@ pub fn estimates(
 struct Unknown {
     of_mesh: Option<NotEstimated>,
     of_linearity: Option<NonlinearityUnknown>,
+    /// Whether a linear answer with an estimate is also asked whether its tissue may buckle.
+    with_doubt: bool,
 }
 
 impl Unknown {
+    fn asked(scene: &Scene) -> Self {
+        let of_mesh = numerical_error::reason_for_none(scene);
+        let of_linearity = nonlinearity::reason_for_none(scene);
+        Unknown { of_mesh, of_linearity, with_doubt: true }
+    }
+
     fn not_asked() -> Self {
         let (of_mesh, of_linearity) = (NotEstimated::NotAsked, NonlinearityUnknown::NotAsked);
-        Unknown { of_mesh: Some(of_mesh), of_linearity: Some(of_linearity) }
+        Unknown { of_mesh: Some(of_mesh), of_linearity: Some(of_linearity), with_doubt: false }
     }
 }
 
@@ -134,7 +139,7 @@ fn answered<'a>(
     if scene.settings.method.kind() == MethodKind::MassTensorNonlinear {
         return Ok(other(by_nonlinear_mass_tensors(scene, unknown, progress)?));
     }
-    let Unknown { of_mesh, of_linearity } = unknown;
+    let Unknown { of_mesh, of_linearity, with_doubt } = unknown;
     let is_without = of_mesh.is_some() && of_linearity.is_some();
     // With contact quadratic elements and methods of other kinds are refused before.
     let system = match is_without && !scene.settings.contact.is_unilateral() {
@@ -164,7 +169,7 @@ fn answered<'a>(
     }
     let (nonlinearity, doubt) = match of_linearity {
         Some(reason) => (Err(reason), None),
-        None => nonlinearity::estimate(scene, &system, &solved, progress)?,
+        None => nonlinearity::estimate(scene, &system, &solved, with_doubt, progress)?,
     };
     solved.equilibrium.warnings.extend(doubt);
     let answer = LinearAnswer { system, solved, numerical_error, nonlinearity };

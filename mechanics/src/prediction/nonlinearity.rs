@@ -93,11 +93,12 @@ pub(super) fn reason_for_none(scene: &Scene) -> Option<NonlinearityUnknown> {
     }
 }
 
-/// The estimate for an answer of linear elements, and a warning where its tissue may buckle.
+/// The estimate for an answer of linear elements, and with doubt a warning where its tissue may buckle.
 pub(super) fn estimate(
     scene: &Scene,
     system: &LinearSystem,
     solved: &Solved,
+    with_doubt: bool,
     progress: &dyn Progress,
 ) -> Result<(Estimated, Option<Warning>), ModelError> {
     let second = match second_order(scene, system, solved, progress) {
@@ -105,9 +106,14 @@ pub(super) fn estimate(
         Err(stopped @ ModelError::Solver(SolverError::Stopped)) => return Err(stopped),
         Err(other) => return Ok((Err(NonlinearityUnknown::Failed(other)), None)),
     };
-    let displacement = sums(&solved.equilibrium.displacement, &second.displacement);
-    let pressures = both_pressures(solved, &second);
-    let doubt = may_buckle(scene, system, (&displacement, &pressures), progress)?;
+    let doubt = match with_doubt {
+        true => {
+            let displacement = sums(&solved.equilibrium.displacement, &second.displacement);
+            let pressures = both_pressures(solved, &second);
+            may_buckle(scene, system, (&displacement, &pressures), progress)?
+        }
+        false => None,
+    };
     Ok((Ok(Nonlinearity::of(scene, second.displacement)), doubt))
 }
 

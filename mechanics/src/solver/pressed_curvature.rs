@@ -11,8 +11,11 @@ use super::vector::{axpby, dot, norm, ratio, update};
 use super::{SolverError, Unknowns, tell};
 use crate::progress::Progress;
 
-/// Relative residual of C^-1, and the iterations after which it is not met: C is a mass, whose condition is that of a cell.
-const SHARP: f64 = 1e-10;
+/// Residual of C^-1 as a part of the one that is wanted of S. From nothing, conjugate gradients approach v C^-1 v from below with the
+/// square of what is left, so that a curvature is off by less than 1e-8 of itself.
+const SHARP: f64 = 0.01;
+
+/// Iterations after which C^-1 is not met.
 const MOST_OF_MASS: usize = 300;
 
 type Vectors = Vec<Lanes<f64, 3, 1>>;
@@ -44,7 +47,7 @@ pub fn is_positive_definite(
         });
         axpby(p.as_flattened_mut(), &[factor], z, &correction.scale);
         rho = dot(r.as_flattened(), p.as_flattened())[0];
-        let Some(product) = product(system, &p) else { return Ok(None) };
+        let Some(product) = product(system, &p, SHARP * wanted) else { return Ok(None) };
         let curvature = dot(p.as_flattened(), product.as_flattened())[0];
         if !curvature.is_finite() || !rho.is_finite() {
             return Err(SolverError::NotFinite);
@@ -64,21 +67,25 @@ pub fn is_positive_definite(
     Ok(None)
 }
 
-/// S u; none where C is not inverted.
-fn product(system: &MixedSystem, u: &Vectors) -> Option<Vectors> {
+/// S u, with C^-1 to a relative residual; none where that is not met.
+fn product(system: &MixedSystem, u: &Vectors, relative_residual: f64) -> Option<Vectors> {
     let coupling = system.coupling;
     let mut product = vec![[[0.0]; 3]; u.len()];
     system.stiffness.multiply(u, &mut product);
     let mut volumes = vec![[0.0]; coupling.mass.len()];
     coupling.divergence.contract(u, &mut volumes);
-    let p = by_compliance(system, &volumes)?;
+    let p = by_compliance(system, &volumes, relative_residual)?;
     coupling.gradient.add_expanded(&p, &mut product);
     system.stiffness.zero_constrained(&mut product);
     Some(product)
 }
 
 /// C^-1 v, by conjugate gradients under the diagonal.
-fn by_compliance(system: &MixedSystem, v: &[[f64; 1]]) -> Option<Vec<[f64; 1]>> {
+fn by_compliance(
+    system: &MixedSystem,
+    v: &[[f64; 1]],
+    relative_residual: f64,
+) -> Option<Vec<[f64; 1]>> {
     let compliance = &system.coupling.compliance;
     let diagonal = |row: usize| -> f64 {
         compliance.row(row).find(|(column, _)| *column == row).map_or(1.0, |(_, value)| *value)
@@ -99,7 +106,7 @@ fn by_compliance(system: &MixedSystem, v: &[[f64; 1]]) -> Option<Vec<[f64; 1]>> 
     for _ in 0..MOST_OF_MASS {
         compliance.multiply(&p, &mut product);
         let step = rho / dot(&p, &product)[0];
-        if update(&mut x, &mut r, &[step], &p, &product)[0] <= SHARP * scale {
+        if update(&mut x, &mut r, &[step], &p, &product)[0] <= relative_residual * scale {
             return Some(x);
         }
         let z = conditioned(&r);
