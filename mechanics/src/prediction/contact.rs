@@ -132,7 +132,8 @@ pub(super) fn expected_touch_at_finite_strain(
 ) -> Result<Option<InTouch>, ModelError> {
     let from_linear = || {
         let Some(system) = scene.assemble(progress)? else { return Ok(None) };
-        let expected = system.solve(&[scene.load_case()], progress)?.remove(0).equilibrium;
+        let load_case = scene.linear_load_case()?;
+        let expected = system.solve(&[load_case], progress)?.remove(0).equilibrium;
         drop(system);
         let displacement = &expected.displacement;
         pressed_at_finite_strain(scene, displacement, surfaces, with_error, progress)

@@ -13,7 +13,7 @@ use super::scene::{Scene, Tetrahedron};
 use crate::mesh::Vector;
 use crate::mesh::ignored::{listed, missing_region};
 use crate::model::fem::inner_stress::{InnerStress, StressedTissue};
-use crate::model::problem::InvertedCell;
+use crate::model::problem::{InvertedCell, LoadCase};
 
 /// Shares of its volume that tissue may gain or lose: from half of it to twice of it.
 pub const VOLUME_CHANGE: RangeInclusive<f64> = -0.5..=1.0;
@@ -43,9 +43,26 @@ impl Scene {
         inner: &InnerStress,
         forces: &mut [Vector],
     ) -> Result<(), InvertedCell> {
-        if self.settings.method.kind() == MethodKind::FemNonlinear {
-            return Ok(());
+        match self.settings.method.kind() {
+            MethodKind::FemNonlinear => Ok(()),
+            _ => self.add_linear_inner_forces(inner, forces),
         }
+    }
+
+    /// The load case of linear elements, whatever the method.
+    pub(super) fn linear_load_case(&self) -> Result<LoadCase, InvertedCell> {
+        let mut load_case = self.load_case();
+        if self.settings.method.kind() == MethodKind::FemNonlinear {
+            self.add_linear_inner_forces(&self.distributed.inner, &mut load_case.forces)?;
+        }
+        Ok(load_case)
+    }
+
+    fn add_linear_inner_forces(
+        &self,
+        inner: &InnerStress,
+        forces: &mut [Vector],
+    ) -> Result<(), InvertedCell> {
         let (edges, tissue) = (self.edge_nodes(), self.tissue());
         let has_pressures = self.tetrahedron() == Tetrahedron::Stabilised;
         let acted = StressedTissue { tissue: &tissue, has_pressures, edges: edges.as_ref() };

@@ -124,7 +124,7 @@ pub(super) fn second_order_of(
     progress: &dyn Progress,
 ) -> Result<Option<[Vec<Vector>; 2]>, ModelError> {
     let Some(system) = scene.assemble(progress)? else { return Ok(None) };
-    let solved = system.solve(&[scene.load_case()], progress)?.remove(0);
+    let solved = system.solve(&[scene.linear_load_case()?], progress)?.remove(0);
     let second = second_order(scene, &system, &solved, progress)?;
     Ok(Some([solved.equilibrium.displacement, second.displacement]))
 }

@@ -4,7 +4,7 @@
 //! from the plane of the closest wall triangle, so that sliding past the rim of a flat wall counts as nothing.
 
 use super::Scene;
-use crate::boundary::NodeClass;
+use crate::boundary::{NodeClass, Wall};
 use crate::mesh::{SurfaceSearch, Vector, Warning};
 
 /// How far off the wall a node is told to be, in mm: as for small strain.
@@ -27,7 +27,8 @@ pub(super) fn left_wall(scene: &Scene, displacement: &[Vector]) -> Option<Warnin
         let area = face.area_vector(&scene.mesh.nodes);
         let lies_on_wall = |node: &u32| {
             let mut walls = scene.conditions.walls.get(node).into_iter().flatten();
-            walls.any(|wall| wall.normal.dot(&area).abs() > ALONG_WALL * area.norm())
+            walls
+                .any(|wall| normal_at_rest(scene, wall).dot(&area).abs() > ALONG_WALL * area.norm())
         };
         let mut of_face = face.nodes().iter();
         of_face.clone().any(lies_on_wall) && of_face.all(|node| class(node) != NodeClass::Free)
@@ -54,8 +55,20 @@ pub(super) fn left_wall(scene: &Scene, displacement: &[Vector]) -> Option<Warnin
     let off = distances.iter().filter(|distance| **distance > OFF_WALL_MM).count();
     let largest = distances.iter().copied().fold(0.0, f64::max);
     let detail = format!(
-        "{off} sliding nodes leave their wall, by {largest:.1} mm at most: it is curved, and they slide straight on"
+        "{off} sliding nodes leave their wall, by {largest:.1} mm at most: it is curved, or not across the direction stated for it, and \
+         they slide straight on"
     );
     let warning = Warning::new("sliding-off-wall", detail).with("nodes", off as f64);
     (off > 0).then(|| warning.with("largest_mm", largest))
+}
+
+/// The normal of a wall before its segment moves.
+fn normal_at_rest(scene: &Scene, wall: &Wall) -> Vector {
+    let turns = !scene.settings.method.properties().is_small_strain;
+    match wall.carrier.filter(|_| turns) {
+        Some(segment) => {
+            scene.segments[segment as usize].movement.rotation().transpose() * wall.normal
+        }
+        None => wall.normal,
+    }
 }

@@ -55,11 +55,12 @@ pub(super) fn by_class(
     sums
 }
 
-/// What is left of a node's reaction for weaker conditions, and of the directions in which it is held.
+/// What is left of a node's reaction for weaker conditions.
 #[derive(Clone, Default)]
 struct Rest {
     force: Vector,
-    is_held: [bool; 3],
+    /// For each component the condition that has it, by its place; none for nodes that nothing holds.
+    holders: Option<[Option<usize>; 3]>,
 }
 
 /// Sums the reactions of each condition by itself, in the order in which they are stated, and after them what the surface of each
@@ -71,7 +72,7 @@ pub(super) fn by_condition(
 ) -> Vec<ConditionReaction> {
     let mut rest = vec![Rest::default(); scene.mesh.nodes.len()];
     for (constraint, reaction) in scene.conditions.constraints.iter().zip(&equilibrium.reactions) {
-        rest[constraint.node as usize] = Rest { force: *reaction, is_held: [true; 3] };
+        rest[constraint.node as usize] = Rest { force: *reaction, holders: Some([None; 3]) };
     }
     let name = |segment: u32| scene.segments[segment as usize].name.clone();
     let mut sums: Vec<ConditionReaction> = { scene.stated.iter() }
@@ -105,13 +106,11 @@ pub(super) fn by_condition(
             }
         };
         for &node in &stated.nodes {
-            sums[place].take(&mut rest[node as usize], components);
+            rest[node as usize].give(place, components, &mut sums);
         }
     }
     for (node, walls) in walls {
-        if rest[node as usize].is_held.contains(&true) {
-            split_by_normals(&rest[node as usize].force, &walls, &mut sums);
-        }
+        rest[node as usize].split_by_normals(&walls, &mut sums);
     }
     sums.extend(by_bone(scene, contact));
     sums
@@ -138,35 +137,50 @@ fn by_bone(scene: &Scene, contact: Option<&Touch>) -> Vec<ConditionReaction> {
     scene.bones.iter().enumerate().filter_map(of_bone).collect()
 }
 
-impl ConditionReaction {
-    /// Takes the components that nothing stronger has.
-    fn take(&mut self, rest: &mut Rest, components: [bool; 3]) {
-        let own: [bool; 3] = std::array::from_fn(|k| components[k] && rest.is_held[k]);
-        for component in (0..3).filter(|&component| own[component]) {
-            self.force[component] += rest.force[component];
-            rest.force[component] = 0.0;
-            rest.is_held[component] = false;
+impl Rest {
+    /// Gives a condition the components that nothing stronger has.
+    fn give(&mut self, place: usize, components: [bool; 3], sums: &mut [ConditionReaction]) {
+        let Some(holders) = &mut self.holders else { return };
+        let own = (0..3).filter(|&k| components[k] && holders[k].is_none());
+        let own: Vec<usize> = own.collect();
+        for &component in &own {
+            sums[place].force[component] += self.force[component];
+            self.force[component] = 0.0;
+            holders[component] = Some(place);
         }
-        self.nodes += usize::from(own.contains(&true));
+        sums[place].nodes += usize::from(!own.is_empty());
     }
-}
 
-/// Splits the force on a node between walls into components along their normals.
-fn split_by_normals(force: &Vector, walls: &[(usize, Vector)], sums: &mut [ConditionReaction]) {
-    let mut own: Vec<(usize, Vector)> = Vec::new();
-    for (place, normal) in walls {
-        if own.iter().all(|(_, other)| other.cross(normal).norm() > ONE_WALL) {
-            own.push((*place, *normal));
+    /// Splits what is left between walls into forces along their normals. What those have along components that stronger conditions
+    /// hold, these withstand.
+    fn split_by_normals(&self, walls: &[(usize, Vector)], sums: &mut [ConditionReaction]) {
+        let Some(holders) = self.holders else { return };
+        let left = |normal: &Vector| {
+            Vector::from_fn(|k, _| if holders[k].is_none() { normal[k] } else { 0.0 })
+        };
+        let mut own: Vec<(usize, Vector)> = Vec::new();
+        for (place, normal) in walls {
+            let is_new = own.iter().all(|(_, other)| other.cross(normal).norm() > ONE_WALL);
+            if is_new && left(normal).norm() > ONE_WALL {
+                own.push((*place, *normal));
+            }
         }
-    }
-    let normals: Vec<Vector> = own.iter().map(|(_, normal)| *normal).collect();
-    let inverse = Matrix3xX::from_columns(&normals).pseudo_inverse(ONE_WALL);
-    let parts = inverse.map(|inverse| inverse * force);
-    let parts = parts.unwrap_or_else(|_| DVector::zeros(own.len()));
-    let mut last = None;
-    for ((place, normal), part) in own.iter().zip(parts.iter()) {
-        sums[*place].force += normal * *part;
-        sums[*place].nodes += usize::from(last != Some(*place));
-        last = Some(*place);
+        if own.is_empty() {
+            return;
+        }
+        let normals: Vec<Vector> = own.iter().map(|(_, normal)| left(normal)).collect();
+        let inverse = Matrix3xX::from_columns(&normals).pseudo_inverse(ONE_WALL);
+        let parts = inverse.map(|inverse| inverse * self.force);
+        let parts = parts.unwrap_or_else(|_| DVector::zeros(own.len()));
+        let mut last = None;
+        for ((place, normal), part) in own.iter().zip(parts.iter()) {
+            let force = normal * *part;
+            sums[*place].force += force;
+            for (component, holder) in holders.iter().enumerate() {
+                holder.iter().for_each(|&holder| sums[holder].force[component] -= force[component]);
+            }
+            sums[*place].nodes += usize::from(last != Some(*place));
+            last = Some(*place);
+        }
     }
 }

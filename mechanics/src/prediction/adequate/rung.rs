@@ -3,7 +3,7 @@
 use super::accepted::MeanErrors;
 use crate::mesh::{CellShape, Vector};
 use crate::model::fem::finite_strain::COLLAPSED;
-use crate::model::problem::{Equilibrium, LoadCase};
+use crate::model::problem::Equilibrium;
 use crate::prediction::following_pressure::has_pressure;
 use crate::prediction::scene::Scene;
 use crate::prediction::stiff_layer::has_stiff_layers;
@@ -11,7 +11,7 @@ use crate::prediction::stiff_layer::has_stiff_layers;
 /// What is left of the error of a mesh where its estimate is added, as a share of the estimate.
 const LEFT_BY_CORRECTION: f64 = 0.8;
 
-/// Where forces act or tissue grows, what coarse meshes leave out was up to three times its estimate: so much of it is expected.
+/// Where forces act, tissue grows or muscles pull, what coarse meshes leave out was up to three times its estimate: so much of it is expected.
 const LOADED: f64 = 2.0;
 
 /// The same again where pressure follows its faces: the last tangent, with which errors are estimated, leaves out how it turns.
@@ -33,10 +33,9 @@ const ROUNDING: f64 = 1e-9;
 
 /// How many times its estimate the error of the mesh of a scene is expected to be.
 pub fn error_over_estimate(scene: &Scene) -> f64 {
-    let LoadCase { forces, grown, .. } = scene.load_case();
-    let acts = forces.iter().any(|force| *force != Vector::zeros());
-    let grows = grown.iter().any(|by| *by != 0.0);
-    let loaded = if acts || grows { LOADED } else { 1.0 };
+    let acts = scene.forces.iter().any(|force| *force != Vector::zeros());
+    // At finite strain what grows and pulls is no force on nodes.
+    let loaded = if acts || !scene.distributed.inner.is_zero() { LOADED } else { 1.0 };
     loaded * if has_stiff_layers(scene) { WITH_STIFF_LAYERS } else { 1.0 }
 }
 

@@ -207,3 +207,22 @@ fn each_condition_tells_the_force_that_it_exerts_on_a_block_that_is_pulled() {
     }
     assert_eq!(found.iter().map(|of| of.nodes).collect::<Vec<_>>(), [9, 15, 15, 15, 9]);
 }
+
+#[test]
+fn a_wall_pushes_along_its_normal_where_a_component_that_is_not_across_it_is_held_too() {
+    let mesh = block(Vector::new(40.0, 20.0, 10.0), [4, 2, 2], CellShape::Hex8);
+    let mut case = case_of(mesh, material(15.0, 0.3));
+    case.fixed = vec![set("x_min")];
+    let normal = SlidingNormal::Direction(Vector::new(1.0, 1.0, 0.0));
+    case.sliding = vec![Sliding { nodes: set("x_max"), normal, segment: None }];
+    let pulled = Prescribed::Uniform { nodes: set("x_max"), displacement: [Some(1.0), None, None] };
+    let plan = Plan { prescribed: vec![pulled], ..Plan::default() };
+    let found = solve(&case, &plan, &exact()).condition_reactions;
+    let force = |pointer: &str| found.iter().find(|of| of.pointer == pointer).unwrap().force;
+    let (wall, pulled) = (force("/case/sliding/0"), force("/plan/prescribed/0"));
+    let most = pulled.norm();
+    assert!((wall.x - wall.y).abs() < 1e-8 * most && wall.z.abs() < 1e-8 * most, "{wall}");
+    assert!(pulled.yz().norm() < 1e-8 * most, "{pulled}");
+    let sum: Vector = found.iter().map(|of| of.force).sum();
+    assert!(wall.norm() > 0.1 * most && sum.norm() < 1e-8 * most, "{wall} {pulled} {sum}");
+}

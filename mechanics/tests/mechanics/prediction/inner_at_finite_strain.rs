@@ -42,6 +42,8 @@ fn free_tissue_grows_in_shape_without_stress_in_every_element() {
             let error = largest_error(&case.volume, &answer.displacement, |x| x * strain);
             assert!(error < 1e-6, "{shape:?} {element:?} {change}: {error:e}");
             assert!(largest_reaction(&answer) < 1e-5, "{shape:?} {element:?} {change}");
+            // The linear solution has the same growth: no other equilibrium is suspected.
+            assert!(answer.warnings.iter().all(|w| w.code != "another-equilibrium"));
             let missing = answer.numerical_error.unwrap().missing;
             let largest = missing.iter().map(|u| u.norm()).fold(0.0, f64::max);
             assert!(largest < 1e-6, "{shape:?} {element:?} {change}: {largest:e}");

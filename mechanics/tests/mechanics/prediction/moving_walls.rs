@@ -281,6 +281,32 @@ fn teeth_that_move_along_their_flat_wall_pull_at_nothing() {
     assert!((wall.force - teeth).norm() < 1e-9 * jaw.norm(), "{wall:?} {teeth}");
 }
 
+/// The same state, seen from a bone that has turned.
+#[test]
+fn nodes_that_leave_a_curved_wall_are_counted_however_far_its_segment_turns() {
+    let mut mesh = block(Vector::new(40.0, 10.0, 10.0), [8, 2, 2], CellShape::Hex8);
+    mesh.nodes.iter_mut().for_each(|x| x.y -= (x.x - 20.0).powi(2) / 100.0);
+    let mut case = case_of(mesh, material(15.0, 0.3));
+    case.allow_unfixed = true;
+    case.segments = vec![segment("jaw", "x_min"), segment("chin", "x_max")];
+    case.sliding = vec![wall("y_min", Some("jaw"))];
+    let settings = Settings { method: Method::FemNonlinear, ..Settings::default() };
+    let told = [0.0_f64, 60.0].map(|degrees| {
+        let angles = Vector::new(0.0, 0.0, degrees.to_radians());
+        let about = |shift| RigidMovement::about_pivot(angles, Vector::zeros(), shift);
+        let turned = about(Vector::zeros());
+        let movement = about(turned.rotation() * Vector::new(8.0, 0.0, 0.0));
+        let chin = PlannedSegment { name: "chin".to_owned(), movement };
+        let plan =
+            Plan { segments: [moved(turned).segments, vec![chin]].concat(), ..Plan::default() };
+        let found = solve(&case, &plan, &settings).warnings;
+        found.into_iter().find(|w| w.code == "sliding-off-wall").unwrap().numbers
+    });
+    for ((name, one), (_, other)) in told[0].iter().zip(&told[1]) {
+        assert!((one - other).abs() < 1e-3, "{name}: {one} {other}");
+    }
+}
+
 fn some_movement() -> RigidMovement {
     let angles = Vector::new(2.0, -1.5, 1.0).map(f64::to_radians);
     RigidMovement::about_pivot(angles, Vector::new(30.0, 30.0, 0.0), Vector::new(0.4, -0.3, 1.0))
