@@ -1,7 +1,7 @@
 // The service that this page came from: every call is noted, so that a person can repeat it.
 import { Facies, type Documents } from "../../clients/typescript/src/facies.js";
 
-export { FaciesError, JobFailed, NoKey, Refused, readGlb, type Documents, type Surface, type Triple } from "../../clients/typescript/src/facies.js";
+export { FaciesError, JobFailed, NoKey, Refused, Unreachable, readGlb, type Documents, type Surface, type Triple } from "../../clients/typescript/src/facies.js";
 
 export type Case = Documents["CaseView"];
 export type Job = Documents["StatusInfo"];
@@ -12,6 +12,8 @@ export type CaseDocument = Documents["CaseDocument"];
 /** The key lives as long as the tab. */
 const KEY = "facies-key";
 const MOST_CALLS = 50;
+/** How long a service that is out of reach is waited for before a person is told. */
+const AWAY_S = 3;
 
 export interface Call {
   method: string;
@@ -28,7 +30,7 @@ export class Service extends Facies {
   noted: (call: Call) => void = () => {};
 
   constructor() {
-    super(location.origin, sessionStorage.getItem(KEY) ?? undefined);
+    super(location.origin, sessionStorage.getItem(KEY) ?? undefined, undefined, AWAY_S);
   }
 
   static keep(key: string): void {
@@ -43,22 +45,23 @@ export class Service extends Facies {
     return sessionStorage.getItem(KEY) !== null;
   }
 
-  override async ask(method: string, path: string, body?: BodyInit, headers: Record<string, string> = {}): Promise<Response> {
+  protected override async read<T>(...request: Parameters<Facies["read"]>): Promise<T> {
+    const [, method, path, body, headers = {}] = request;
     this.note({ method, path, body, headers, ...(body instanceof FormData ? { documents: await documentsOf(body) } : {}) });
-    return super.ask(method, path, body, headers);
+    return super.read(...request) as Promise<T>;
   }
 
   override upload(...[mesh, units = "mm", frame = "unspecified", uploading]: Parameters<Facies["upload"]>): Promise<string> {
-    // Without anybody to tell how far it is it goes by `ask`, which notes it.
+    // Without anybody to tell how far it is it goes by `read`, which notes it.
     if (uploading !== undefined) {
       this.note({ method: "POST", path: `/v1/meshes?units=${units}&frame=${frame}`, body: mesh, headers: { "Content-Type": "application/octet-stream" } });
     }
     return super.upload(mesh, units, frame, uploading);
   }
 
-  override events(job: string): ReturnType<Facies["events"]> {
+  protected override follow(job: string): ReturnType<Facies["follow"]> {
     this.note({ method: "GET", path: `/v1/jobs/${job}/events`, headers: { Accept: "text/event-stream" }, body: undefined });
-    return super.events(job);
+    return super.follow(job);
   }
 
   async get<Document>(path: string): Promise<Document> {

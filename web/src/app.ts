@@ -1,5 +1,5 @@
 // What every view is handed: the service, the words, and where it may draw.
-import { FaciesError, JobFailed, Refused, type Service, type Warning } from "./api.js";
+import { FaciesError, JobFailed, Refused, Unreachable, type Service, type Warning } from "./api.js";
 import { button, find, make } from "./dom.js";
 import type { Route } from "./route.js";
 import { called, isShort, shown } from "./views/anything.js";
@@ -25,20 +25,20 @@ export function announce(text: string): void {
 export function detailOf(error: unknown, words: Words): string {
   if (error instanceof Refused) return error.problem.detail;
   if (error instanceof JobFailed) return error.job.error?.detail ?? error.job.message;
-  return error instanceof TypeError ? words.unreachable : String(error instanceof Error ? error.message : error);
+  return error instanceof Unreachable ? words.unreachable : String(error instanceof Error ? error.message : error);
 }
 
 /** The same with its code, and a way to try again. */
 export function refusal(error: unknown, words: Words, again?: () => void): HTMLElement {
   const known = error instanceof FaciesError;
-  const lost = error instanceof TypeError;
+  const lost = error instanceof Unreachable;
   const detail = detailOf(error, words);
   const places = error instanceof Refused ? error.problem.errors ?? [] : [];
   announce(detail);
   return make("div", { className: "refusal", role: "alert" },
     make("strong", {}, error instanceof JobFailed ? words.jobFailed : lost ? words.lost : error instanceof Refused && error.problem.status === 404 ? words.notThere : words.refused), " ", detail,
     places.length > 1 && make("ul", {}, ...places.map((place) => make("li", {}, make("code", {}, place.pointer), ` ${place.detail}`))),
-    known && make("a", { href: `/errors#${error.code}`, className: "code" }, error.code),
+    known && !lost && make("a", { href: `/errors#${error.code}`, className: "code" }, error.code),
     again !== undefined && button(words.tryAgain, again));
 }
 

@@ -1,9 +1,9 @@
-// Refusals of the service as exceptions with their code.
+// Refusals of the service, and its absence, as exceptions with their code.
 import type { components } from "./rest.js";
 
 type Documents = components["schemas"];
 
-/** Something that the service says went wrong; `code` is a word of docs/errors.md. */
+/** Something went wrong; `code` is a word of docs/errors.md, or `unreachable`. */
 export class FaciesError extends Error {
   constructor(readonly code: string, detail: string) {
     super(`${code}: ${detail}`);
@@ -20,6 +20,19 @@ export class Refused extends FaciesError {
     const places = several.map((error) => `\n  ${error.pointer}: ${error.detail}`);
     super(problem.code, problem.detail + places.join(""));
     this.pointer = problem.errors?.[0]?.pointer;
+  }
+}
+
+/** A request got no answer. `job` is the id of the job that it was about, which the service goes on with; `undefined` where it was about
+ * none, or the answer would have told its id. What `fetch` said is the `cause`. */
+export class Unreachable extends FaciesError {
+  readonly job: string | undefined;
+
+  constructor(method: string, path: string, cause?: unknown) {
+    const why = cause === undefined ? "the stream ended" : cause instanceof Error ? cause.message : String(cause);
+    super("unreachable", `no answer to ${method} ${path}: ${why}`);
+    this.cause = cause;
+    this.job = /^\/v1\/jobs\/([^/?]+)/.exec(path)?.[1];
   }
 }
 

@@ -1,12 +1,13 @@
 // The service at an address: documents go in, typed arrays come out, refusals are exceptions. Needs nothing but `fetch`,
 // so that a page may import it as it is.
-import { JobFailed, Refused } from "./errors.js";
+import { JobFailed, Refused, Unreachable } from "./errors.js";
+import { Patience } from "./patience.js";
 import { Response as PlanResponse } from "./response.js";
-import { authorization, post, type Uploading } from "./sending.js";
+import { authorization, post, Secrets, type Uploading } from "./sending.js";
 import { readGlb, type Surface } from "./surface.js";
 import type { components } from "./rest.js";
 
-export { FaciesError, JobFailed, NoKey, Refused } from "./errors.js";
+export { FaciesError, JobFailed, NoKey, Refused, Unreachable } from "./errors.js";
 export { Response, type Movement, type Triple } from "./response.js";
 export { type Upload, type Uploading } from "./sending.js";
 export { readGlb, type Surface } from "./surface.js";
@@ -54,34 +55,59 @@ export type Applied = Omit<Documents["AppliedDocument"], "displacement_mm"> & {
 const WAIT = { Prefer: "wait=30" };
 const JSON_TYPE = { "Content-Type": "application/json" };
 const BUSY = [429, 503];
-/** Between two requests to a busy service, also where something between us and it says less, or what is no number. */
-const LEAST_PAUSE_S = 1;
+/** What a proxy says of a service that it does not reach. The request may have reached it. */
+const OF_PROXY = [502, 504];
+const ENDED = ["successful", "failed", "dismissed"];
 const SKIN = "skin.glb";
 const GLB = { Accept: "model/gltf-binary" };
 const OCTETS = { Accept: "application/octet-stream" };
 
 export class Facies {
   private readonly address: string;
+  private readonly secrets: Secrets;
 
-  /** The service at an address, with a key where it asks for one; a busy one is waited for, so many seconds in all. */
-  constructor(address: string, private readonly key?: string, private readonly patience_s = 60) {
+  /** The service at an address, with a key where it asks for one; a busy one is waited for, so many seconds in all. One that is
+   * out of reach, as while it is started again, is by requests that only read, for as long or `away_s`. Whatever asks throws
+   * `Unreachable` where it gets no answer. */
+  constructor(address: string, private readonly key?: string, private readonly patience_s = 60, private readonly away_s = patience_s) {
     this.address = address.replace(/\/+$/, "");
+    this.secrets = new Secrets(address, key);
   }
 
-  /** The answer to any request; throws `Refused` where it is a refusal. */
+  /** The answer to any request; throws `Refused` where it is a refusal, and `Unreachable` where there is none. One that may change
+   * something is sent again to a busy service alone, unless it has an `Idempotency-Key`. */
   async ask(method: string, path: string, body?: BodyInit, headers: Record<string, string> = {}): Promise<Response> {
-    return this.asked(() => this.send(method, path, body, headers));
+    return this.read((answer) => answer, method, path, body, headers);
   }
 
-  private async asked(send: () => Promise<Response>): Promise<Response> {
-    const until = Date.now() + this.patience_s * 1000;
+  /** What is read of an answer; one that breaks off is none. */
+  protected read<T>(
+    take: (answer: Response) => T | Promise<T>, method: string, path: string, body?: BodyInit, headers: Record<string, string> = {},
+  ): Promise<T> {
+    const isKnown = Object.keys(headers).some((name) => name.toLowerCase() === "idempotency-key");
+    const mayRepeat = method === "GET" || method === "HEAD" || isKnown;
+    return this.asked(take, () => this.send(method, path, body, headers), method, path, mayRepeat);
+  }
+
+  private async asked<T>(
+    take: (answer: Response) => T | Promise<T>, send: () => Promise<Response>, method: string, path: string, mayRepeat: boolean,
+  ): Promise<T> {
+    const patience = new Patience();
     for (;;) {
-      const answer = await send();
-      if (answer.ok) return answer;
-      // In seconds, as the service sends it.
-      const pause = Math.max(Number(answer.headers.get("Retry-After")) || 0, LEAST_PAUSE_S) * 1000;
-      if (!BUSY.includes(answer.status) || Date.now() + pause > until) throw await refusal(answer);
-      await new Promise((resolve) => setTimeout(resolve, pause));
+      let answer: Response, refused: Refused;
+      try {
+        answer = await send();
+        if (answer.ok) return await take(answer);
+        refused = await refusal(answer, this.secrets);
+      } catch (error) {
+        // Of `fetch`, and of a body that breaks off.
+        if (!(error instanceof TypeError)) throw error;
+        if (mayRepeat && await patience.pause(this.away_s)) continue;
+        throw new Unreachable(method, path, this.secrets.hiddenIn(error));
+      }
+      const most_s = this.waits(answer.status);
+      const passes = most_s !== undefined && (mayRepeat || BUSY.includes(answer.status));
+      if (!passes || !await patience.pause(most_s, retryAfter(answer))) throw refused;
     }
   }
 
@@ -93,8 +119,8 @@ export class Facies {
     const headers = { "Content-Type": "application/octet-stream" };
     if (uploading === undefined) return (await this.json("POST", path, mesh, headers)).id;
     const posted = { address: this.address + path, headers: { ...headers, ...this.authorization() }, file: mesh };
-    const answer = await this.asked(() => post(posted, uploading));
-    return (await answer.json()).id;
+    const answer = await this.asked((answer) => documentOf(answer, this.secrets), () => post(posted, uploading), "POST", path, false);
+    return answer.id;
   }
 
   /** The id of a case that is stored. The document names meshes by their ids, or by the names of `meshes`. One with a
@@ -165,11 +191,13 @@ export class Facies {
     return this.bytes("GET", `/v1/jobs/${job}/results/${name}`);
   }
 
-  /** The last state of a job of any kind; throws `JobFailed` where it ended without results. */
+  /** The last state of a job of any kind; throws `JobFailed` where it ended without results. Where `Unreachable` names no `job`, the
+   * same call finds it again: equal inputs are one job. */
   async run(spec: Documents["JobDocument"], progress?: Progress): Promise<Job> {
     const waits = progress === undefined ? WAIT : {};
     let job: Job = await this.json("POST", "/v1/jobs", JSON.stringify(spec), { ...JSON_TYPE, ...waits });
-    if (progress !== undefined) for await (const event of this.events(job.id)) progress(event);
+    // Where there is no place for a stream, the job is asked for.
+    if (progress !== undefined) for await (const event of this.follow(job.id)) progress(event);
     while (job.status === "accepted" || job.status === "running") {
       job = await this.json("GET", `/v1/jobs/${job.id}`, undefined, WAIT);
     }
@@ -177,20 +205,48 @@ export class Facies {
     return job;
   }
 
-  /** What happens to a job until it has ended. A stream that breaks is taken up where it broke. */
+  /** What happens to a job until it has ended. A stream that breaks is taken up where it broke; throws `Unreachable`, or `Refused`
+   * where the service is busy, when nothing has come of it for `patience_s`. */
   async *events(job: string): AsyncGenerator<Documents["JobEvent"]> {
-    let last = 0;
-    for (;;) {
+    const refused = yield* this.follow(job);
+    if (refused !== undefined) throw refused;
+  }
+
+  /** The events, then the refusal of a busy service where they are not all. */
+  protected async *follow(job: string): AsyncGenerator<Documents["JobEvent"], Refused | undefined> {
+    const path = `/v1/jobs/${job}/events`;
+    const patience = new Patience();
+    for (let last = 0; ;) {
+      let [hasEnded, told, refused, broken]: [boolean, number?, Refused?, unknown?] = [false];
       const headers = { Accept: "text/event-stream", "Last-Event-ID": String(last) };
-      const answer = await this.send("GET", `/v1/jobs/${job}/events`, undefined, headers);
-      if (answer.status === 204 || BUSY.includes(answer.status)) return;
-      if (!answer.ok) throw await refusal(answer);
-      for await (const line of lines(answer)) {
-        if (!line.startsWith("data:")) continue;
-        const event = JSON.parse(line.slice("data:".length)) as Documents["JobEvent"];
-        last = event.number;
+      let answer: Response | undefined;
+      try {
+        answer = await this.send("GET", path, undefined, headers);
+        if (!answer.ok) [told, refused] = [retryAfter(answer), await refusal(answer, this.secrets)];
+      } catch (error) {
+        if (!(error instanceof TypeError)) throw error;
+        broken = this.secrets.hiddenIn(error);
+      }
+      if (answer?.status === 204) return undefined;
+      const most_s = refused === undefined ? this.away_s : this.waits(answer!.status);
+      if (most_s === undefined) throw refused;
+      for await (const line of answer?.ok ? lines(answer) : []) {
+        const event = eventOf(line);
+        // The stream broke in it.
+        if (event === undefined && line.startsWith("data:")) {
+          hasEnded = false;
+          break;
+        }
+        // Events, and what the service sends in a silent stream.
+        if (event !== undefined || line.startsWith(":")) patience.renew();
+        if (event === undefined) continue;
+        [last, hasEnded] = [event.number, ENDED.includes(event.status)];
         yield event;
       }
+      // After the end there is one more answer, that it was the last.
+      if (hasEnded || await patience.pause(most_s, told)) continue;
+      if (refused !== undefined) return refused;
+      throw new Unreachable("GET", path, broken);
     }
   }
 
@@ -213,20 +269,25 @@ export class Facies {
 
   private send(method: string, path: string, body?: BodyInit, headers: Record<string, string> = {}): Promise<Response> {
     const all = { ...headers, ...this.authorization() };
-    // The service sends no redirect, and the key is for no other one.
-    return fetch(this.address + path, { method, headers: all, redirect: "error", ...(body === undefined ? {} : { body }) });
+    // The service sends no redirect, and the key is for no other one: it is an answer as a refusal is.
+    return fetch(this.address + path, { method, headers: all, redirect: "manual", ...(body === undefined ? {} : { body }) });
+  }
+
+  /** How long a refusal is waited out, in seconds; `undefined` where it is for good. */
+  private waits(status: number): number | undefined {
+    return BUSY.includes(status) ? this.patience_s : OF_PROXY.includes(status) ? this.away_s : undefined;
   }
 
   private authorization(): Record<string, string> {
     return authorization(this.key);
   }
 
-  private async json(...request: Parameters<Facies["ask"]>) {
-    return (await this.ask(...request)).json();
+  private json(...request: Parameters<Facies["ask"]>) {
+    return this.read((answer) => documentOf(answer, this.secrets), ...request);
   }
 
-  private async bytes(...request: Parameters<Facies["ask"]>): Promise<ArrayBuffer> {
-    return (await this.ask(...request)).arrayBuffer();
+  private bytes(...request: Parameters<Facies["ask"]>): Promise<ArrayBuffer> {
+    return this.read((answer) => answer.arrayBuffer(), ...request);
   }
 }
 
@@ -234,26 +295,67 @@ function withSkin(outputs: Documents["OutputName"][]): Documents["OutputName"][]
   return [...new Set([...outputs, SKIN as Documents["OutputName"]])];
 }
 
+/** The event of a line of a stream, or `undefined` where it has none or the stream broke in it. */
+function eventOf(line: string): Documents["JobEvent"] | undefined {
+  const event = line.startsWith("data:") ? parsed(line.slice("data:".length)) : undefined;
+  return typeof event?.number === "number" && typeof event.status === "string" ? event : undefined;
+}
+
 /** The lines of an answer as they come, until it ends or breaks. */
 async function* lines(answer: Response): AsyncGenerator<string> {
   const reader = answer.body!.pipeThrough(new TextDecoderStream()).getReader();
   let rest = "";
-  for (;;) {
-    const piece = await reader.read().catch(() => ({ done: true as const, value: undefined }));
-    if (piece.done) return;
-    const parts = (rest + piece.value).split("\n");
-    rest = parts.pop()!;
-    yield* parts;
+  try {
+    for (;;) {
+      const piece = await reader.read().catch(() => ({ done: true as const, value: undefined }));
+      if (piece.done) return;
+      const parts = (rest + piece.value).split("\n");
+      rest = parts.pop()!;
+      yield* parts;
+    }
+  } finally {
+    // The connection of one that is read no further.
+    void reader.cancel().catch(() => undefined);
   }
 }
 
-/** The problem of an answer, or its status where something between us and the service answered. */
-async function refusal(answer: Response): Promise<Refused> {
-  const text = await answer.text();
+/** The pause that an answer asks for, in seconds as the service sends it; `undefined` where it has no such number. */
+function retryAfter(answer: Response): number | undefined {
+  const told = answer.headers.get("Retry-After") ?? "";
+  return /^\d+$/.test(told) ? Number(told) : undefined;
+}
+
+/** The object of a text, `undefined` where it is none. */
+function parsed(text: string): any {
   try {
-    const problem = JSON.parse(text) as Documents["ProblemDocument"];
-    if (typeof problem.code === "string") return new Refused(problem);
+    const said: unknown = JSON.parse(text);
+    return typeof said === "object" && said !== null && !Array.isArray(said) ? said : undefined;
+  } catch {
+    return undefined;
+  }
+}
+
+/** The document of an answer; throws `Refused` where it is none. */
+async function documentOf(answer: Response, secrets: Secrets) {
+  const text = await answer.text();
+  const document = parsed(text);
+  if (document === undefined) throw ofAnother(answer, text, secrets);
+  return document;
+}
+
+/** The problem of an answer, or its status where something between us and the service answered. */
+async function refusal(answer: Response, secrets: Secrets): Promise<Refused> {
+  const text = await answer.text();
+  const problem = secrets.hidden(parsed(text));
+  try {
+    if (typeof problem?.code === "string") return new Refused(problem);
   } catch { /* not a document of the service */ }
-  const detail = `${answer.url} answered ${text.slice(0, 200)}`;
+  return ofAnother(answer, text, secrets);
+}
+
+/** The status and the beginning of an answer of something between us and the service. */
+function ofAnother(answer: Response, text: string, secrets: Secrets): Refused {
+  // Without secrets before the cut, which would leave a part of them.
+  const detail = `${secrets.hidden(answer.url)} answered ${secrets.hidden(text).slice(0, 200)}`;
   return new Refused({ type: "", title: "", status: answer.status, code: "not-of-the-service", detail });
 }

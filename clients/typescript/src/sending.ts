@@ -1,5 +1,6 @@
-// Requests on their way to the service: the header with its key, and a file with its progress. `fetch` tells none in a browser,
-// so that a page sends the file by XMLHttpRequest; elsewhere it goes as a stream, whose pieces are counted as they are taken.
+// Requests on their way to the service: the header with its key, which no exception shows, and a file with its progress. `fetch`
+// tells none in a browser, so that a page sends the file by XMLHttpRequest; elsewhere it goes as a stream, whose pieces are counted
+// as they are taken.
 import { NoKey } from "./errors.js";
 
 /** How far a file is sent; `progress` goes from 0 to 100. */
@@ -18,6 +19,58 @@ export function authorization(key?: string): Record<string, string> {
   const given = (key ?? "").trim();
   if (!/^[!-~]*$/.test(given)) throw new NoKey();
   return given === "" ? {} : { Authorization: `Bearer ${given}` };
+}
+
+/** The user and the password in an address, wherever it is in a text. */
+const USER = /:\/\/[^/?#\s]*@/g;
+const OF_HTML: Record<string, string> = { "&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;", "'": "&#x27;" };
+
+/** What no exception shows: a key, and the user and password of an address. */
+export class Secrets {
+  private readonly forms: string[];
+
+  constructor(address: string, key?: string) {
+    const written = /:\/\/[^/?#:]*:([^/?#]*)@/.exec(address)?.[1] ?? "";
+    const secrets = [(key ?? "").trim(), written, changed(decodeURIComponent, written)].filter((secret) => secret !== "");
+    // Also as HTML, JSON and addresses have them.
+    const forms = secrets.flatMap((secret) => [
+      secret, secret.replace(/[&<>"']/g, (letter) => OF_HTML[letter]!), JSON.stringify(secret).slice(1, -1),
+      changed(encodeURIComponent, secret),
+    ]);
+    this.forms = forms.sort((one, other) => other.length - one.length);
+  }
+
+  /** A text, or a document with all its texts, with *** in place of secrets, and addresses without user and password. */
+  hidden<T>(said: T): T {
+    const of = (value: unknown): unknown => {
+      if (typeof value === "string") return this.forms.reduce((text, form) => text.replaceAll(form, "***"), value.replace(USER, "://"));
+      if (Array.isArray(value)) return value.map(of);
+      if (typeof value !== "object" || value === null) return value;
+      return Object.fromEntries(Object.entries(value).map(([name, member]) => [name, of(member)]));
+    };
+    return of(said) as T;
+  }
+
+  /** An exception and its causes, which show no secrets from then on. */
+  hiddenIn(error: unknown): unknown {
+    for (let one = error; one instanceof Error; one = one.cause) {
+      // Its message and its stack, and whatever else `fetch` has put there.
+      for (const name of Object.getOwnPropertyNames(one)) {
+        const told: unknown = Reflect.get(one, name);
+        if (typeof told === "string") Reflect.set(one, name, this.hidden(told));
+      }
+    }
+    return error;
+  }
+}
+
+/** A text after a change, or itself where it cannot be so changed. */
+function changed(change: (text: string) => string, text: string): string {
+  try {
+    return change(text);
+  } catch {
+    return text;
+  }
 }
 
 /** A request by the method POST whose body is a file. */
@@ -49,8 +102,8 @@ function byStream({ address, headers, file }: Posted, tell: (sent: number) => vo
     },
   });
   // A body that is a stream has to say that its answer comes afterwards, a member that types of `fetch` may not have.
-  // The service sends no redirect, and the key is for no other one.
-  const request = { method: "POST", headers, body, duplex: "half", redirect: "error" } as RequestInit;
+  // The service sends no redirect, and the key is for no other one: it is an answer as a refusal is.
+  const request = { method: "POST", headers, body, duplex: "half", redirect: "manual" } as RequestInit;
   return fetch(address, request);
 }
 
