@@ -43,10 +43,10 @@ impl Scene {
         inner: &InnerStress,
         forces: &mut [Vector],
     ) -> Result<(), InvertedCell> {
-        match self.settings.method.kind() {
-            MethodKind::FemNonlinear => Ok(()),
-            _ => self.add_linear_inner_forces(inner, forces),
+        if self.settings.method.kind() == MethodKind::FemNonlinear {
+            return Ok(());
         }
+        self.add_linear_inner_forces(inner, forces)
     }
 
     /// The load case of linear elements, whatever the method.
