@@ -124,6 +124,16 @@ for said in (half, NO_GZIP):
         except Unreachable as away:
             assert away.job == JOB and clock.pauses == [1.0, 2.0, 4.0, 8.0, 16.0, 20.0], clock.pauses
 
+# Where something keeps what was said, it is told once.
+with saying(begun + line(2, "successful")) as (service, clock):
+    once = []
+    try:
+        for event in service.events(JOB):
+            once.append(event["number"])
+        sys.exit("a stream of which nothing comes has ended")
+    except Unreachable as away:
+        assert (once, away.job) == ([1, 2], JOB) and clock.pauses == [1.0, 2.0, 4.0, 8.0, 16.0, 20.0], (once, clock.pauses)
+
 # Pauses grow to a bound, and the last exception names the job; the silence of a stream is counted from its last sign of life.
 with saying(begun, ": alive\n\n", None) as (service, clock):
     events: list[Document] = []

@@ -45,14 +45,13 @@ export class Service extends Facies {
     return sessionStorage.getItem(KEY) !== null;
   }
 
-  protected override async read<T>(...request: Parameters<Facies["read"]>): Promise<T> {
-    const [, method, path, body, headers = {}] = request;
+  override async ask(method: string, path: string, body?: BodyInit, headers: Record<string, string> = {}): Promise<Response> {
     this.note({ method, path, body, headers, ...(body instanceof FormData ? { documents: await documentsOf(body) } : {}) });
-    return super.read(...request) as Promise<T>;
+    return super.ask(method, path, body, headers);
   }
 
   override upload(...[mesh, units = "mm", frame = "unspecified", uploading]: Parameters<Facies["upload"]>): Promise<string> {
-    // Without anybody to tell how far it is it goes by `read`, which notes it.
+    // Without anybody to tell how far it is it goes by `ask`, which notes it.
     if (uploading !== undefined) {
       this.note({ method: "POST", path: `/v1/meshes?units=${units}&frame=${frame}`, body: mesh, headers: { "Content-Type": "application/octet-stream" } });
     }

@@ -223,10 +223,12 @@ class Facies:
                         told, refused = retry_after(answer), refusal(answer, self._secrets)
                     for line in answer.iter_lines():
                         event = event_of(line)
+                        # Not what a proxy has kept.
+                        is_new = event is not None and event["number"] > last
                         # Events, and what the service sends in a silent stream.
-                        if event is not None or line.startswith(":"):
+                        if is_new or line.startswith(":"):
                             patience.renew()
-                        if event is not None:
+                        if event is not None and is_new:
                             last, has_ended = event["number"], event["status"] in ENDED
                             yield event
             except BROKEN as error:

@@ -1,7 +1,7 @@
 // The service at an address: documents go in, typed arrays come out, refusals are exceptions. Needs nothing but `fetch`,
 // so that a page may import it as it is.
 import { JobFailed, Refused, Unreachable } from "./errors.js";
-import { Patience } from "./patience.js";
+import { heard, Patience } from "./patience.js";
 import { Response as PlanResponse } from "./response.js";
 import { authorization, post, Secrets, type Uploading } from "./sending.js";
 import { readGlb, type Surface } from "./surface.js";
@@ -77,37 +77,27 @@ export class Facies {
   /** The answer to any request; throws `Refused` where it is a refusal, and `Unreachable` where there is none. One that may change
    * something is sent again to a busy service alone, unless it has an `Idempotency-Key`. */
   async ask(method: string, path: string, body?: BodyInit, headers: Record<string, string> = {}): Promise<Response> {
-    return this.read((answer) => answer, method, path, body, headers);
-  }
-
-  /** What is read of an answer; one that breaks off is none. */
-  protected read<T>(
-    take: (answer: Response) => T | Promise<T>, method: string, path: string, body?: BodyInit, headers: Record<string, string> = {},
-  ): Promise<T> {
     const isKnown = Object.keys(headers).some((name) => name.toLowerCase() === "idempotency-key");
     const mayRepeat = method === "GET" || method === "HEAD" || isKnown;
-    return this.asked(take, () => this.send(method, path, body, headers), method, path, mayRepeat);
+    return this.asked(() => this.send(method, path, body, headers), method, path, mayRepeat);
   }
 
-  private async asked<T>(
-    take: (answer: Response) => T | Promise<T>, send: () => Promise<Response>, method: string, path: string, mayRepeat: boolean,
-  ): Promise<T> {
+  private async asked(send: () => Promise<Response>, method: string, path: string, mayRepeat: boolean): Promise<Response> {
     const patience = new Patience();
     for (;;) {
-      let answer: Response, refused: Refused;
+      let answer: Response;
       try {
-        answer = await send();
-        if (answer.ok) return await take(answer);
-        refused = await refusal(answer, this.secrets);
+        answer = await whole(await send());
       } catch (error) {
         // Of `fetch`, and of a body that breaks off.
         if (!(error instanceof TypeError)) throw error;
         if (mayRepeat && await patience.pause(this.away_s)) continue;
         throw new Unreachable(method, path, this.secrets.hiddenIn(error));
       }
+      if (answer.ok) return answer;
       const most_s = this.waits(answer.status);
       const passes = most_s !== undefined && (mayRepeat || BUSY.includes(answer.status));
-      if (!passes || !await patience.pause(most_s, retryAfter(answer))) throw refused;
+      if (!passes || !await patience.pause(most_s, retryAfter(answer))) throw await this.refusal(answer, path);
     }
   }
 
@@ -119,8 +109,7 @@ export class Facies {
     const headers = { "Content-Type": "application/octet-stream" };
     if (uploading === undefined) return (await this.json("POST", path, mesh, headers)).id;
     const posted = { address: this.address + path, headers: { ...headers, ...this.authorization() }, file: mesh };
-    const answer = await this.asked((answer) => documentOf(answer, this.secrets), () => post(posted, uploading), "POST", path, false);
-    return answer.id;
+    return (await this.document(await this.asked(() => post(posted, uploading), "POST", path, false), path)).id;
   }
 
   /** The id of a case that is stored. The document names meshes by their ids, or by the names of `meshes`. One with a
@@ -222,7 +211,7 @@ export class Facies {
       let answer: Response | undefined;
       try {
         answer = await this.send("GET", path, undefined, headers);
-        if (!answer.ok) [told, refused] = [retryAfter(answer), await refusal(answer, this.secrets)];
+        if (!answer.ok) [told, refused] = [retryAfter(answer), await this.refusal(await whole(answer), path)];
       } catch (error) {
         if (!(error instanceof TypeError)) throw error;
         broken = this.secrets.hiddenIn(error);
@@ -237,9 +226,11 @@ export class Facies {
           hasEnded = false;
           break;
         }
+        // Not what a proxy has kept.
+        const isNew = event !== undefined && event.number > last;
         // Events, and what the service sends in a silent stream.
-        if (event !== undefined || line.startsWith(":")) patience.renew();
-        if (event === undefined) continue;
+        if (isNew || line.startsWith(":")) patience.renew();
+        if (!isNew) continue;
         [last, hasEnded] = [event.number, ENDED.includes(event.status)];
         yield event;
       }
@@ -270,7 +261,10 @@ export class Facies {
   private send(method: string, path: string, body?: BodyInit, headers: Record<string, string> = {}): Promise<Response> {
     const all = { ...headers, ...this.authorization() };
     // The service sends no redirect, and the key is for no other one: it is an answer as a refusal is.
-    return fetch(this.address + path, { method, headers: all, redirect: "manual", ...(body === undefined ? {} : { body }) });
+    const request = { method, headers: all, redirect: "manual", ...(body === undefined ? {} : { body }) } as const;
+    const isFile = body !== undefined && typeof body !== "string";
+    // Nobody can tell how far a file is.
+    return isFile ? fetch(this.address + path, request) : heard((signal) => fetch(this.address + path, { ...request, signal }));
   }
 
   /** How long a refusal is waited out, in seconds; `undefined` where it is for good. */
@@ -282,12 +276,37 @@ export class Facies {
     return authorization(this.key);
   }
 
-  private json(...request: Parameters<Facies["ask"]>) {
-    return this.read((answer) => documentOf(answer, this.secrets), ...request);
+  private async json(...request: Parameters<Facies["ask"]>) {
+    return this.document(await this.ask(...request), request[1]);
   }
 
-  private bytes(...request: Parameters<Facies["ask"]>): Promise<ArrayBuffer> {
-    return this.read((answer) => answer.arrayBuffer(), ...request);
+  private async bytes(...request: Parameters<Facies["ask"]>): Promise<ArrayBuffer> {
+    return (await this.ask(...request)).arrayBuffer();
+  }
+
+  /** The document of an answer; throws `Refused` where it is none. */
+  private async document(answer: Response, path: string) {
+    const text = await answer.text();
+    const document = parsed(text);
+    if (document === undefined) throw this.ofAnother(answer, text, path);
+    return document;
+  }
+
+  /** The problem of an answer, or its status where something between us and the service answered. */
+  private async refusal(answer: Response, path: string): Promise<Refused> {
+    const text = await answer.text();
+    const problem = this.secrets.hidden(parsed(text));
+    try {
+      if (typeof problem?.code === "string") return new Refused(problem);
+    } catch { /* not a document of the service */ }
+    return this.ofAnother(answer, text, path);
+  }
+
+  /** The status and the beginning of an answer of something between us and the service. */
+  private ofAnother(answer: Response, text: string, path: string): Refused {
+    // Without secrets before the cut, which would leave a part of them.
+    const detail = `${this.secrets.hidden(this.address + path)} answered ${this.secrets.hidden(text).slice(0, 200)}`;
+    return new Refused({ type: "", title: "", status: answer.status, code: "not-of-the-service", detail });
   }
 }
 
@@ -301,17 +320,35 @@ function eventOf(line: string): Documents["JobEvent"] | undefined {
   return typeof event?.number === "number" && typeof event.status === "string" ? event : undefined;
 }
 
+/** An answer with all its bytes; one that breaks off is none. */
+async function whole(answer: Response): Promise<Response> {
+  if (answer.body === null) return answer;
+  const all: BlobPart[] = [];
+  for await (const piece of pieces(answer.body)) all.push(piece as Uint8Array<ArrayBuffer>);
+  const { status, statusText, headers } = answer;
+  return new Response(all.length === 0 ? null : new Blob(all), { status, statusText, headers });
+}
+
 /** The lines of an answer as they come, until it ends or breaks. */
 async function* lines(answer: Response): AsyncGenerator<string> {
-  const reader = answer.body!.pipeThrough(new TextDecoderStream()).getReader();
   let rest = "";
   try {
-    for (;;) {
-      const piece = await reader.read().catch(() => ({ done: true as const, value: undefined }));
-      if (piece.done) return;
-      const parts = (rest + piece.value).split("\n");
+    for await (const piece of pieces(answer.body!.pipeThrough(new TextDecoderStream()))) {
+      const parts = (rest + piece).split("\n");
       rest = parts.pop()!;
       yield* parts;
+    }
+  } catch { /* as if it had ended there */ }
+}
+
+/** The pieces of a body as they come. */
+async function* pieces<T>(body: ReadableStream<T>): AsyncGenerator<T> {
+  const reader = body.getReader();
+  try {
+    for (;;) {
+      const { done, value } = await heard(() => reader.read());
+      if (done) return;
+      yield value;
     }
   } finally {
     // The connection of one that is read no further.
@@ -333,29 +370,4 @@ function parsed(text: string): any {
   } catch {
     return undefined;
   }
-}
-
-/** The document of an answer; throws `Refused` where it is none. */
-async function documentOf(answer: Response, secrets: Secrets) {
-  const text = await answer.text();
-  const document = parsed(text);
-  if (document === undefined) throw ofAnother(answer, text, secrets);
-  return document;
-}
-
-/** The problem of an answer, or its status where something between us and the service answered. */
-async function refusal(answer: Response, secrets: Secrets): Promise<Refused> {
-  const text = await answer.text();
-  const problem = secrets.hidden(parsed(text));
-  try {
-    if (typeof problem?.code === "string") return new Refused(problem);
-  } catch { /* not a document of the service */ }
-  return ofAnother(answer, text, secrets);
-}
-
-/** The status and the beginning of an answer of something between us and the service. */
-function ofAnother(answer: Response, text: string, secrets: Secrets): Refused {
-  // Without secrets before the cut, which would leave a part of them.
-  const detail = `${secrets.hidden(answer.url)} answered ${secrets.hidden(text).slice(0, 200)}`;
-  return new Refused({ type: "", title: "", status: answer.status, code: "not-of-the-service", detail });
 }

@@ -3,7 +3,7 @@
 import createClient, { type Client } from "openapi-fetch";
 import type { components, paths } from "./rest.js";
 import { Unreachable } from "./errors.js";
-import { Patience } from "./patience.js";
+import { heard, Patience } from "./patience.js";
 import { authorization, Secrets } from "./sending.js";
 
 export { Unreachable } from "./errors.js";
@@ -49,10 +49,15 @@ export function connect(address: string, key?: string): Facies {
 
 /** What the service answered; throws `Refused` where it is a refusal. */
 export async function answered<T>(
-  answer: Promise<{ data?: T; error?: Documents["ProblemDocument"] }>,
+  answer: Promise<{ data?: T; error?: Documents["ProblemDocument"]; response?: Response }>,
 ): Promise<T> {
-  const { data, error } = await answer;
-  if (error !== undefined) throw new Refused(error);
+  const { data, error, response } = await answer;
+  if (error?.code !== undefined) throw new Refused(error);
+  if (response?.ok === false) {
+    const said = typeof error === "string" ? error : JSON.stringify(error) ?? "";
+    const detail = `${response.url} answered ${said.slice(0, 200)}`;
+    throw new Refused({ type: "", title: "", status: response.status, code: "not-of-the-service", detail });
+  }
   return data as T;
 }
 
@@ -67,7 +72,7 @@ export async function ended(
   while (job.status === "accepted" || job.status === "running") {
     const params = { path: { id: job.id }, header: { Prefer: WAIT } };
     try {
-      job = await answered(facies.GET("/v1/jobs/{id}", { params }));
+      job = await heard((signal) => answered(facies.GET("/v1/jobs/{id}", { params, signal })));
       patience.renew();
     } catch (error) {
       // Of `fetch`.

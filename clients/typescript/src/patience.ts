@@ -3,10 +3,13 @@
 /** Between two attempts: also where something between us and the service says less, and however often it fails. */
 const LEAST_PAUSE_S = 1;
 const LONGEST_PAUSE_S = 20;
+/** Longer than the service waits for a job, or is silent in a stream. */
+const MOST_SILENCE_S = 60;
 
 /** Time as it is measured and waited for, in seconds. */
 export const clock = {
   now: (): number => Date.now() / 1000,
+  most_silence_s: MOST_SILENCE_S,
   sleep: (seconds: number): Promise<void> => new Promise((resolve) => setTimeout(resolve, seconds * 1000)),
 };
 
@@ -31,5 +34,18 @@ export class Patience {
     if (now + pause_s > this.since + most_s) return false;
     await clock.sleep(pause_s);
     return true;
+  }
+}
+
+/** What comes of the service; throws a `TypeError`, as `fetch` does, where nothing comes for a minute. */
+export async function heard<T>(coming: (silent: AbortSignal) => Promise<T>): Promise<T> {
+  const silence = new AbortController();
+  const { signal } = silence;
+  const silent = new Promise<never>((_, reject) => { signal.onabort = () => reject(signal.reason); });
+  const timer = setTimeout(() => silence.abort(new TypeError(`nothing came for ${clock.most_silence_s} s`)), clock.most_silence_s * 1000);
+  try {
+    return await Promise.race([coming(signal), silent]);
+  } finally {
+    clearTimeout(timer);
   }
 }

@@ -4,7 +4,7 @@ import { createServer } from "node:http";
 import type { AddressInfo } from "node:net";
 import { inspect } from "node:util";
 import { Facies, FaciesError, Refused, Unreachable, type Documents } from "./facies.js";
-import { connect, ended } from "./index.js";
+import { answered, connect, ended, Refused as RefusedOfTyped } from "./index.js";
 import { clock } from "./patience.js";
 
 const job = "01890000-0000-7000-8000-000000000000";
@@ -23,8 +23,9 @@ clock.sleep = async (seconds) => {
   now += seconds;
 };
 
-/** Lines of a stream or another text, a status, both, what is no answer, or `undefined` for a closed connection. */
-type Said = string | number | [number, string] | { raw: string } | undefined;
+/** Lines of a stream or another text, a status, both, what is no answer, or `undefined` for a closed connection;
+ * `silent` after a part of an answer, or before any. */
+type Said = string | number | [number, string] | { raw: string } | { silent: string } | undefined;
 let said: Said[] = [];
 const asked: (string | undefined)[] = [];
 const server = createServer((request, answer) => {
@@ -34,6 +35,10 @@ const server = createServer((request, answer) => {
   if (next === undefined) return void request.socket.destroy();
   const echoed = (text: string) => text.replaceAll(ECHO, request.headers.authorization ?? "");
   if (typeof next === "object" && "raw" in next) return void request.socket.end(echoed(next.raw));
+  if (typeof next === "object" && "silent" in next) {
+    if (next.silent !== "") answer.writeHead(200, { "Content-Length": 9 + next.silent.length }).write(next.silent);
+    return;
+  }
   const [status, text] = Array.isArray(next) ? next : typeof next === "number" ? [next, ""] : [200, next];
   const lines = echoed(text);
   // A stream that has not all that it promises breaks.
@@ -79,6 +84,26 @@ for (const one of [half, `${half}\n`, NO_GZIP]) {
   assert.deepEqual(pauses, [1, 2, 4, 8, 16, 20]);
 }
 
+// Where something keeps what was said, it is told once.
+say(line(1, "running") + line(2, "successful"));
+const once: number[] = [];
+await assert.rejects(async () => {
+  for await (const { number } of service.events(job)) once.push(number);
+}, (thrown) => thrown instanceof Unreachable && thrown.job === job);
+assert.deepEqual([once, pauses], [[1, 2], [1, 2, 4, 8, 16, 20]]);
+
+// Silence is no answer, before one or within it.
+clock.most_silence_s = 0.05;
+say({ silent: "" }, { silent: begun }, { silent: ": alive\n\n" }, line(1, "running") + line(2, "successful"), 204);
+assert.deepEqual((await followed()).map(({ number }) => number), [1, 2]);
+assert.deepEqual([asked, pauses], [["0", "0", "1", "1", "2"], [1, 1, 1]]);
+say({ silent: "" }, { silent: "half of" }, "all of it");
+assert.equal(new TextDecoder().decode(await service.file(job, "report.html")), "all of it");
+say({ silent: "" });
+await assert.rejects(service.run({} as Documents["JobDocument"]), isAway(undefined));
+await assert.rejects(ended(connect(address), { id: job, status: "running" } as Documents["StatusInfo"], 5), isAway(job));
+clock.most_silence_s = 60;
+
 // Pauses grow to a bound, and the last exception names the job; the silence of a stream is counted from its last sign of life.
 say(begun, ": alive\n\n", undefined);
 await assert.rejects(followed(), isAway(job));
@@ -106,6 +131,10 @@ assert.equal(asked.length, 9);
 // A file that breaks off is asked for again, too.
 say(BREAKS, "all of it");
 assert.equal(new TextDecoder().decode(await service.file(job, "report.html")), "all of it");
+
+// So is what breaks off while `ask` reads it.
+say(BREAKS, "all of it");
+assert.equal(await (await service.ask("GET", path)).text(), "all of it");
 
 // An answer that cannot be read is none, and one that is no document is not of the service.
 say(NO_GZIP, "all of it");
@@ -154,6 +183,11 @@ await assert.rejects(ended(connect(address, KEY), running, 5), isWithout(KEY, KE
 say(undefined);
 await assert.rejects(ended(connect(address), running, 5), isAway(job));
 assert.deepEqual(pauses, [1, 2]);
+for (const text of ["", "<html>bad gateway</html>", "[]"]) {
+  say([502, text]);
+  await assert.rejects(answered(connect(address).GET("/v1/cases")), (thrown) => thrown instanceof RefusedOfTyped
+    && thrown.problem.status === 502 && thrown.problem.code === "not-of-the-service" && thrown.message.endsWith(`answered ${text}`));
+}
 server.closeAllConnections();
 server.close();
 console.log("a service that is away is waited for");
