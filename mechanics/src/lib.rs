@@ -68,3 +68,4 @@ pub mod simplification;
 pub mod solver;
 pub mod study;
 pub mod validation;
+mod vectorised;

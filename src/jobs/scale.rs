@@ -4,10 +4,9 @@ use super::source::StoredShape;
 use crate::schema::ErrorCode;
 use crate::schema::Problem;
 use crate::schema::case::document::LengthUnit;
+use crate::schema::case::size::{USUAL_DIAGONAL_MM, units_suspect};
 use mechanics::mesh::Warning;
 
-/// Diagonals of the bounding boxes of heads and their parts, in mm.
-const USUAL_DIAGONAL_MM: std::ops::RangeInclusive<f64> = 50.0..=600.0;
 /// Beyond these the unit is wrong, unless any scale is permitted.
 const POSSIBLE_DIAGONAL_MM: std::ops::RangeInclusive<f64> = 5.0..=5000.0;
 
@@ -55,12 +54,12 @@ impl MeshSize {
             Some(unit) => format!("; in {} it would fit", unit.name()),
             None => self.image_hint(diagonal_mm),
         };
+        let (shortest, longest) = USUAL_DIAGONAL_MM.into_inner();
         let detail = format!(
-            "the diagonal of the bounding box is {diagonal_mm:.4} mm, that of a head or its parts 50 to 600 mm{hint}"
+            "the diagonal of the bounding box is {diagonal_mm:.4} mm, that of a head or its parts {shortest} to {longest} mm{hint}"
         );
         if POSSIBLE_DIAGONAL_MM.contains(&diagonal_mm) || allow_any_scale {
-            let warning = Warning::new("units-suspect", detail);
-            return Ok(Some(warning.with("diagonal_mm", diagonal_mm)));
+            return Ok(Some(units_suspect(diagonal_mm, detail)));
         }
         let problem =
             Problem::new(ErrorCode::UnitsSuspect, detail).with("diagonal_mm", diagonal_mm);

@@ -16,3 +16,5 @@ mod scenes;
 mod schema;
 #[path = "../support/sources.rs"]
 mod sources;
+#[path = "../../mechanics/tests/support/transforms.rs"]
+mod transforms;

@@ -138,6 +138,33 @@ async fn answer(mut stream: TcpStream, text: &str) {
     let _ = stream.write_all(text.as_bytes()).await;
 }
 
+/// A job is done in its time beside a collector of no use, its spans are counted as lost, and the service ends.
+async fn collects_nothing(name: &str, collector: String) {
+    let arguments = ["--traces", &collector, "--admin-bind", "127.0.0.1:0"];
+    let mut server = Server::start_with(&arguments);
+    let metrics = server.second_line().strip_prefix("metrics on ").unwrap().to_owned();
+    let case = server.case(&SMALL).await;
+    // A job of milliseconds; one that waited for its spans would take 5 s for each batch.
+    let quick = is_quick(Duration::from_secs(4), async || {
+        let id = job_in_a_trace(&server, &case).await;
+        assert_eq!(server.ended(&id).await["status"], "successful", "{name}");
+    });
+    assert!(quick.await, "{name}: it waits for its spans");
+    let is_counted = async || {
+        let counted = ask(server.client.get(&metrics)).await.bytes;
+        let counted = String::from_utf8(counted).unwrap();
+        counted.contains("facies_spans_lost_total{cause=\"collector\"} ")
+    };
+    let until = Instant::now() + Duration::from_secs(30);
+    while !is_counted().await {
+        assert!(Instant::now() < until, "{name}: no span was counted as lost");
+    }
+    ask(server.get("/v1/limits")).await.expect(StatusCode::OK);
+    // Two seconds for the last spans, and some for a machine with other things to do.
+    let ended = move || server.terminate_within(Duration::from_secs(9));
+    assert!(tokio::task::spawn_blocking(ended).await.unwrap(), "{name}");
+}
+
 #[tokio::test]
 async fn a_collector_that_is_dead_slow_or_talks_nonsense_changes_nothing() {
     let dead = TcpListener::bind("127.0.0.1:0").await.unwrap();
@@ -150,33 +177,10 @@ async fn a_collector_that_is_dead_slow_or_talks_nonsense_changes_nothing() {
     let refusing = collector_with(async |stream| {
         answer(stream, "HTTP/1.1 503 Busy\r\nRetry-After: 600\r\nContent-Length: 0\r\n\r\n").await;
     });
-    for (name, collector) in [
-        ("dead", dead),
-        ("silent", silent.await),
-        ("nonsense", nonsense.await),
-        ("refusing", refusing.await),
-    ] {
-        let arguments = ["--traces", &collector, "--admin-bind", "127.0.0.1:0"];
-        let mut server = Server::start_with(&arguments);
-        let metrics = server.second_line().strip_prefix("metrics on ").unwrap().to_owned();
-        let case = server.case(&SMALL).await;
-        // A job of milliseconds; one that waited for its spans would take 5 s for each batch.
-        let quick = is_quick(Duration::from_secs(4), async || {
-            let id = job_in_a_trace(&server, &case).await;
-            assert_eq!(server.ended(&id).await["status"], "successful", "{name}");
-        });
-        assert!(quick.await, "{name}: it waits for its spans");
-        let is_counted = async || {
-            let counted = ask(server.client.get(&metrics)).await.bytes;
-            let counted = String::from_utf8(counted).unwrap();
-            counted.contains("facies_spans_lost_total{cause=\"collector\"} ")
-        };
-        let until = Instant::now() + Duration::from_secs(30);
-        while !is_counted().await {
-            assert!(Instant::now() < until, "{name}: no span was counted as lost");
-        }
-        ask(server.get("/v1/limits")).await.expect(StatusCode::OK);
-        // Two seconds for the last spans, and some for a machine with other things to do.
-        assert!(server.terminate_within(Duration::from_secs(9)), "{name}");
-    }
+    tokio::join!(
+        collects_nothing("dead", dead),
+        collects_nothing("silent", silent.await),
+        collects_nothing("nonsense", nonsense.await),
+        collects_nothing("refusing", refusing.await),
+    );
 }

@@ -13,7 +13,6 @@ use facies::schema::{
     ResponseDocument, StudyDocument,
 };
 use mechanics::format::{FormatError, ReadLimits, read};
-use mechanics::plan::RigidMovement;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
@@ -42,7 +41,7 @@ pub fn file(bytes: &[u8]) -> bool {
 type Reader = fn(&[u8]) -> bool;
 
 /// Every document that clients send, by the name of its folder in `fuzz/corpus/documents`: those of jobs by their kinds, `job`
-/// what tells these apart; and the texts of rigid movements.
+/// what tells these apart.
 pub const DOCUMENTS: &[(&str, Reader)] = &[
     ("apply", |text| parsed::<ApplyDocument>(text, |_, _, _| {})),
     ("batch", |text| parsed(text, StudyDocument::check)),
@@ -67,8 +66,6 @@ pub const DOCUMENTS: &[(&str, Reader)] = &[
     }),
     ("stored-cohort", |text| parsed(text, StoredCohortDocument::check)),
     ("study", |text| parsed(text, StudyDocument::check)),
-    ("transform-itk", itk),
-    ("transform-matrix", matrix),
 ];
 
 /// True where the text was read as a document of that name.
@@ -113,29 +110,4 @@ fn read_again<T: Serialize>(
             false
         }
     }
-}
-
-/// A matrix that is read is finite, and the same to the bit when it is written and read again.
-fn matrix(input: &[u8]) -> bool {
-    let Ok(movement) = RigidMovement::from_matrix_text(&String::from_utf8_lossy(input)) else {
-        return false;
-    };
-    assert!(movement.matrix4().iter().all(|entry| entry.is_finite()));
-    let again = RigidMovement::from_matrix_text(&movement.to_matrix_text("again")).unwrap();
-    assert_eq!(again, movement);
-    true
-}
-
-/// A transform that is read is finite, and so is what is written of it.
-fn itk(input: &[u8]) -> bool {
-    let Ok(movement) = RigidMovement::from_itk_text(&String::from_utf8_lossy(input)) else {
-        return false;
-    };
-    assert!(movement.matrix4().iter().all(|entry| entry.is_finite()));
-    // Turned back, a movement to the border of what is read may end beyond it.
-    if movement.translation().norm() < 1e8 {
-        let again = RigidMovement::from_itk_text(&movement.to_itk_text("again")).unwrap();
-        assert_eq!(again.rotation(), movement.rotation());
-    }
-    true
 }

@@ -102,17 +102,7 @@ impl Edges {
         for edge in self.of_one_edge() {
             edge.windows(2).for_each(|pair| sets.join(pair[0].triangle, pair[1].triangle));
         }
-        let mut number_of = vec![u32::MAX; self.triangles];
-        let mut count = 0;
-        let piece_of = (0..self.triangles as u32).map(|triangle| {
-            let number = &mut number_of[sets.root(triangle) as usize];
-            if *number == u32::MAX {
-                *number = count;
-                count += 1;
-            }
-            *number
-        });
-        let piece_of = piece_of.collect();
+        let (piece_of, count) = sets.numbers();
         Pieces { piece_of, count: count as usize }
     }
 

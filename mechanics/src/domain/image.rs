@@ -316,11 +316,12 @@ impl Domain for ImageDomain {
             Boundary::Cut => 2,
         };
         let reach = Reach { step: self.step, far: 3.0 * self.step };
-        let found = nearest(point, reach, |point| {
+        let slopes = |point: &Vector| {
             let slopes = self.slopes(point);
             let [a, b] = [slopes[(wanted + 1) % 3], slopes[(wanted + 2) % 3]];
             Slopes { wanted: slopes[wanted], bound: if a.value < b.value { a } else { b } }
-        });
+        };
+        let found = nearest(point, reach, slopes, |point| self.members(point)[wanted]);
         found.unwrap_or(*point)
     }
 

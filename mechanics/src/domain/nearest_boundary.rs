@@ -30,9 +30,9 @@ pub(super) struct Reach {
 }
 
 const MOST_STEPS: usize = 20;
-/// A step shorter than this, in mm, is the last.
-const STILL: f64 = 1e-4;
-/// How far from the root a result may be, in mm.
+/// A step shorter than this, in mm, is the last: what it leaves is a part of it by the curvature of the function.
+const STILL: f64 = 1e-3;
+/// How far from the root a result may be before its last step, in mm.
 const NEAR: f64 = 1e-3;
 /// A place nearer than this part of a step is not doubted.
 const SURELY_NEAREST: f64 = 0.5;
@@ -43,13 +43,14 @@ const HALVINGS: u32 = 8;
 const PARALLEL: f64 = 1e-6;
 
 /// The nearest point to `start` at which the wanted function is zero and the bound is not negative; `None` where none is
-/// found.
+/// found. `value` is the wanted function alone.
 ///
 /// Where the function is flat its slope leads nowhere: then a change of sign is looked for in fourteen directions.
 pub(super) fn nearest(
     start: &Vector,
     reach: Reach,
     slopes: impl Fn(&Vector) -> Slopes,
+    value: impl Fn(&Vector) -> f64,
 ) -> Option<Vector> {
     let along_slope = nearest_from(*start, start, reach, &slopes);
     let distance = |point: &Vector| (point - start).norm();
@@ -58,7 +59,7 @@ pub(super) fn nearest(
         return along_slope;
     }
     let wider = Reach { far, ..reach };
-    let beyond = change_of_sign(start, wider, |point| slopes(point).wanted.value);
+    let beyond = change_of_sign(start, wider, value);
     let other = beyond.and_then(|beyond| nearest_from(beyond, start, wider, &slopes));
     other.or(along_slope)
 }
@@ -110,8 +111,8 @@ fn nearest_from(
     slopes: &impl Fn(&Vector) -> Slopes,
 ) -> Option<Vector> {
     let mut is_bound = false;
+    let mut here = slopes(&point);
     for _ in 0..MOST_STEPS {
-        let here = slopes(&point);
         is_bound |= here.bound.value < 0.0;
         let step = if is_bound { both(&here, start - point) } else { None };
         let step = step.or_else(|| one(&here.wanted, start - point))?;
@@ -120,10 +121,10 @@ fn nearest_from(
         if length < STILL {
             break;
         }
+        here = slopes(&point);
     }
-    let there = slopes(&point);
-    let is_on = there.wanted.value.abs() <= NEAR * there.wanted.gradient.norm();
-    let is_kept = there.bound.value >= -NEAR * there.bound.gradient.norm();
+    let is_on = here.wanted.value.abs() <= NEAR * here.wanted.gradient.norm();
+    let is_kept = here.bound.value >= -NEAR * here.bound.gradient.norm();
     (is_on && is_kept && (point - start).norm() <= reach.far).then_some(point)
 }
 
@@ -164,11 +165,12 @@ mod tests {
             wanted: sphere(point, 10.0),
             bound: Slope { value: point.z, gradient: Vector::z() },
         };
+        let value = |point: &Vector| slopes(point).wanted.value;
         let free = Vector::new(4.0, 5.0, 6.0);
-        let found = nearest(&free, REACH, slopes).unwrap();
+        let found = nearest(&free, REACH, slopes, value).unwrap();
         assert!((found - free.normalize() * 10.0).norm() < 1e-4, "{found}");
         let below = Vector::new(6.0, 7.0, -1.0);
-        let found = nearest(&below, REACH, slopes).unwrap();
+        let found = nearest(&below, REACH, slopes, value).unwrap();
         let crease = Vector::new(6.0, 7.0, 0.0).normalize() * 10.0;
         assert!((found - crease).norm() < 1e-3, "{found}");
     }
@@ -177,7 +179,8 @@ mod tests {
     fn what_is_too_far_or_has_no_gradient_has_no_nearest_point() {
         let bound = Slope { value: 1.0, gradient: Vector::z() };
         let slopes = |point: &Vector| Slopes { wanted: sphere(point, 10.0), bound };
-        assert_eq!(nearest(&(Vector::x() * 4.0), REACH, slopes), None);
-        assert_eq!(nearest(&Vector::zeros(), REACH, slopes), None);
+        let value = |point: &Vector| slopes(point).wanted.value;
+        assert_eq!(nearest(&(Vector::x() * 4.0), REACH, slopes, value), None);
+        assert_eq!(nearest(&Vector::zeros(), REACH, slopes, value), None);
     }
 }

@@ -12,6 +12,7 @@
 use rayon::prelude::*;
 
 use super::lines::{Size, for_each_line};
+use crate::vectorised::vectorised;
 
 /// √3 - 2.
 const POLE: f64 = -0.267_949_192_431_122_7;
@@ -69,13 +70,7 @@ impl<const N: usize> CubicSpline<N> {
     pub fn at(&self, place: [f64; 3]) -> [f64; N] {
         let support = self.support(place);
         let [x, y, z] = support.map(|axis| axis.weights());
-        let mut rows = [[0.0; N]; 4];
-        self.for_each_row(&support, |j, k, row| {
-            let weight = y[j] * z[k];
-            for (sum, coefficient) in rows.iter_mut().zip(row) {
-                add(sum, weight, coefficient);
-            }
-        });
+        let [rows] = self.sums(&support, |j, k| [y[j] * z[k]]);
         along(&x, &rows)
     }
 
@@ -84,16 +79,7 @@ impl<const N: usize> CubicSpline<N> {
         let support = self.support(place);
         let [x, y, z] = support.map(|axis| axis.weights());
         let [dx, dy, dz] = support.map(|axis| axis.slopes());
-        // For each of the three products of weights along the second and third axis, as in `at`.
-        let mut rows = [[[0.0; N]; 4]; 3];
-        self.for_each_row(&support, |j, k, row| {
-            let weights = [y[j] * z[k], dy[j] * z[k], y[j] * dz[k]];
-            for (rows, weight) in rows.iter_mut().zip(weights) {
-                for (sum, coefficient) in rows.iter_mut().zip(row) {
-                    add(sum, weight, coefficient);
-                }
-            }
-        });
+        let rows = self.sums(&support, |j, k| [y[j] * z[k], dy[j] * z[k], y[j] * dz[k]]);
         let [value, by_y, by_z] = rows.map(|rows| along(&x, &rows));
         let by_x = along(&dx, &rows[0]);
         std::array::from_fn(|n| SplineValue {
@@ -106,22 +92,36 @@ impl<const N: usize> CubicSpline<N> {
         std::array::from_fn(|axis| Support::new(place[axis], self.size[axis]))
     }
 
-    /// The sixteen rows of four coefficients around a place, with their numbers along the second and third axis.
-    fn for_each_row(
+    /// The four coefficients along the first axis, summed over the sixteen rows around a place with each of `M` weights by their
+    /// numbers along the second and third axis.
+    fn sums<const M: usize>(
         &self,
         support: &[Support; 3],
-        mut each: impl FnMut(usize, usize, &[[f32; N]; 4]),
-    ) {
+        weights: impl Fn(usize, usize) -> [f64; M],
+    ) -> [[[f64; N]; 4]; M] {
         let [nx, ny, _] = self.padded_size();
         let [x, y, z] = support.map(|axis| axis.first);
-        for k in 0..4 {
-            for j in 0..4 {
-                let start = ((z + k) * ny + y + j) * nx + x;
-                if let Some(row) = self.coefficients[start..].first_chunk() {
-                    each(j, k, row);
+        let weights: [[f64; M]; 16] = std::array::from_fn(|row| weights(row % 4, row / 4));
+        let mut found = [[[0.0; N]; 4]; M];
+        vectorised(
+            #[inline(always)]
+            || {
+                let mut sums = [[[0.0; N]; 4]; M];
+                for (row, weights) in weights.iter().enumerate() {
+                    let start = ((z + row / 4) * ny + y + row % 4) * nx + x;
+                    let Some(row) = self.coefficients[start..].first_chunk::<4>() else { continue };
+                    for (sums, weight) in sums.iter_mut().zip(weights) {
+                        for (sum, values) in
+                            sums.as_flattened_mut().iter_mut().zip(row.as_flattened())
+                        {
+                            *sum += weight * f64::from(*values);
+                        }
+                    }
                 }
-            }
-        }
+                found = sums;
+            },
+        );
+        found
     }
 }
 
@@ -159,12 +159,6 @@ fn unpadded(place: usize, size: usize) -> usize {
         0 => 1,
         _ if place == size + 1 => size - 2,
         _ => place - 1,
-    }
-}
-
-fn add<const N: usize>(sum: &mut [f64; N], weight: f64, coefficient: &[f32; N]) {
-    for (sum, &coefficient) in sum.iter_mut().zip(coefficient) {
-        *sum += weight * f64::from(coefficient);
     }
 }
 

@@ -10,10 +10,11 @@ const BIN: f64 = 10.0;
 pub(super) const LOWEST: f64 = -1100.0;
 const BINS: usize = 420;
 
-/// Where the modes of air, fat and soft tissue are looked for.
+/// Where the modes of air and soft tissue are looked for.
 const AIR: [f64; 2] = [-1100.0, -800.0];
-const FAT: [f64; 2] = [-150.0, -50.0];
 const SOFT: [f64; 2] = [0.0, 120.0];
+/// Tissue begins here, with fat.
+const FAT: f64 = -150.0;
 /// Thin and spongy bone, which the threshold has to take, ends here; whatever is denser is bone in any case.
 const BONE_END: f64 = 700.0;
 /// Noise and vessels reach so far above the mode of soft tissue.
@@ -30,8 +31,6 @@ pub struct Histogram {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Thresholds {
     pub air_mode: f64,
-    /// Of lean or masked heads there is none.
-    pub fat_mode: Option<f64>,
     pub soft_mode: f64,
     /// Between air and skin.
     pub skin: f64,
@@ -109,15 +108,14 @@ impl Thresholds {
     pub fn of(histogram: &Histogram) -> Option<Thresholds> {
         let air_mode = histogram.mode(AIR)?;
         let soft_mode = histogram.mode(SOFT)?;
-        let fat_mode = histogram.mode(FAT);
         // Values of two kinds alone have nothing between their modes.
         let between = f64::midpoint(air_mode, soft_mode);
         let skin = histogram.otsu([air_mode, soft_mode]).unwrap_or(between);
         let bone = histogram.otsu([soft_mode, BONE_END]).unwrap_or(soft_mode);
         let bone = bone.max(soft_mode + ABOVE_SOFT);
-        if skin >= FAT[0] {
+        if skin >= FAT {
             return None;
         }
-        Some(Thresholds { air_mode, fat_mode, soft_mode, skin, bone })
+        Some(Thresholds { air_mode, soft_mode, skin, bone })
     }
 }

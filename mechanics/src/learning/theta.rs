@@ -1,4 +1,4 @@
-//! Theta of Rubin and Bodner's law for a class of surgery: fitted in an interval, beside the update that was printed.
+//! Theta of Rubin and Bodner's law for a class of surgery: fitted in an interval.
 //!
 //! Zhang et al. 2016 print theta <- theta - RMSE / d, with d the mean movement: it changes theta until RMSE is 0, whatever
 //! theta does to it, so that no theta is a fixed point. Here theta minimises the error of the mechanical prediction over a
@@ -43,11 +43,6 @@ impl Theta {
     }
 }
 
-/// The update as printed.
-pub fn printed_update(theta: f64, rmse: f64, mean_movement: f64) -> f64 {
-    theta - rmse / mean_movement
-}
-
 /// A parabola through values at the ends of the interval and at 1, so that few predictions stand for all thetas.
 pub fn between(theta: f64, at: [f64; 3]) -> f64 {
     let [low, middle, high] = at;
@@ -58,18 +53,6 @@ pub fn between(theta: f64, at: [f64; 3]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn the_printed_update_passes_every_theta_and_is_negative_after_nine_steps() {
-        // RMSE 0.7 mm and a mean movement of 6 mm, as in the paper's tables.
-        let mut theta = 1.0;
-        for _ in 0..9 {
-            let next = printed_update(theta, 0.7, 6.0);
-            assert!(next < theta - 0.1, "it never stays");
-            theta = next;
-        }
-        assert!(theta < 0.0, "{theta}");
-    }
 
     #[test]
     fn a_fit_has_a_fixed_point_and_says_when_data_do_not_determine_it() {

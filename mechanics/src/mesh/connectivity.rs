@@ -83,23 +83,11 @@ impl Faces {
     /// For each cell the number of its part: cells that share a face belong together. Parts are numbered
     /// in the order of their lowest cells. Parts that touch in a node or an edge only stay apart.
     pub fn parts(&self) -> Vec<u32> {
-        let mut parent: Vec<u32> = (0..self.cells as u32).collect();
+        let mut sets = DisjointSets::new(self.cells);
         for pair in self.shared().flat_map(|same| same.windows(2)) {
-            let (a, b) = (root(&mut parent, pair[0].cell()), root(&mut parent, pair[1].cell()));
-            parent[a.max(b) as usize] = a.min(b);
+            sets.join(pair[0].cell(), pair[1].cell());
         }
-        let mut part_of_root = vec![u32::MAX; parent.len()];
-        let mut parts = 0;
-        (0..parent.len() as u32)
-            .map(|cell| {
-                let root = root(&mut parent, cell) as usize;
-                if part_of_root[root] == u32::MAX {
-                    part_of_root[root] = parts;
-                    parts += 1;
-                }
-                part_of_root[root]
-            })
-            .collect()
+        sets.numbers().0
     }
 }
 
@@ -120,14 +108,7 @@ pub fn parts_by_nodes(mesh: &VolumeMesh, by_faces: &[u32]) -> Vec<u32> {
             }
         }
     }
-    // The smallest of a set stands for it, so that roots come in the order of the lowest cells.
-    let mut number = vec![0; count];
-    let mut parts = 0;
-    for part in 0..count as u32 {
-        let root = joined.root(part);
-        number[part as usize] = if root == part { parts } else { number[root as usize] };
-        parts += u32::from(root == part);
-    }
+    let (number, _) = joined.numbers();
     by_faces.iter().map(|&part| number[part as usize]).collect()
 }
 
@@ -145,13 +126,4 @@ impl VolumeMesh {
         alone.par_sort_unstable();
         alone.into_iter().map(|(cell, local)| self.face(cell, local)).collect()
     }
-}
-
-/// The lowest cell of the part so far, halving paths on the way.
-fn root(parent: &mut [u32], mut cell: u32) -> u32 {
-    while parent[cell as usize] != cell {
-        parent[cell as usize] = parent[parent[cell as usize] as usize];
-        cell = parent[cell as usize];
-    }
-    cell
 }

@@ -151,6 +151,12 @@ fn sides(points: &[Vector], plane: &[u32; 3], corners: &[u32; 3]) -> [Ordering; 
 
 /// The sign of the volume of a tetrahedron: greater where the last corner lies behind the others.
 fn side(corners: [&Vector; 4]) -> Ordering {
+    // What lies on one corner, or with all of them in a plane across an axis, would take exact arithmetic to be seen.
+    let [first, .., last] = corners;
+    let is_flat = |axis: usize| corners.iter().all(|corner| corner[axis] == first[axis]);
+    if corners[..3].contains(&last) || (0..3).any(is_flat) {
+        return Ordering::Equal;
+    }
     let [a, b, c, d] = corners.map(|x| Coord3D { x: x.x, y: x.y, z: x.z });
     // Adding zero makes one of the two zeros.
     (orient3d(a, b, c, d) + 0.0).total_cmp(&0.0)

@@ -2,7 +2,6 @@
 
 use super::climb::Climb;
 use super::error::MeshingError;
-use super::rims::boundary_faces;
 use super::watch::Watch;
 use crate::mesh::TriangleSurface;
 use crate::mesh::crossing::self_crossings;
@@ -14,7 +13,7 @@ const LOOKS: usize = 40;
 /// many pairs of triangles still cross.
 pub(super) fn part(climb: &mut Climb, watch: &Watch) -> Result<u64, MeshingError> {
     climb.part_copies();
-    let triangles = boundary_faces(climb.draft).iter().map(|face| face.nodes).collect();
+    let triangles = climb.faces.iter().map(|face| face.nodes).collect();
     let mut boundary = TriangleSurface { points: Vec::new(), triangles, node_ids: None };
     let mut looks = LOOKS;
     loop {

@@ -10,6 +10,7 @@ use rayon::prelude::*;
 
 use super::draft::Draft;
 use super::error::MeshingError;
+use super::rims::{RimFace, boundary_faces};
 use super::star::{Move, Star};
 use super::watch::Watch;
 use crate::domain::Domain;
@@ -26,22 +27,32 @@ const COLOURS: u32 = 64;
 pub(super) struct Climb<'a> {
     pub draft: &'a mut Draft,
     pub domain: &'a dyn Domain,
+    /// Of the boundary: no move changes which they are.
+    pub faces: Vec<RimFace>,
     of_nodes: Rows<u32>,
     sines: Vec<f64>,
+    /// Nodes for which no better place was found while their cells were as they are.
+    tried: Vec<bool>,
 }
 
 impl<'a> Climb<'a> {
     pub fn new(draft: &'a mut Draft, domain: &'a dyn Domain) -> Self {
         let sines = draft.tetrahedra.par_iter().map(|tet| draft.worst_sine(tet)).collect();
         let of_nodes = draft.tetrahedra_of_nodes();
-        Climb { draft, domain, of_nodes, sines }
+        let tried = vec![false; draft.nodes.len()];
+        let faces = boundary_faces(draft);
+        Climb { draft, domain, faces, of_nodes, sines, tried }
     }
 
     /// Moves nodes, sweep by sweep, until none moves or the sweeps are over.
     pub fn climb(&mut self, sweeps: usize, watch: &Watch) -> Result<(), MeshingError> {
+        self.tried.fill(false);
         for _ in 0..sweeps {
             let nodes = self.nodes_of_bad_cells();
-            let moved = self.sweep(&nodes, watch, |climb, node| climb.star(node).better())?;
+            let moved = self.sweep(&nodes, watch, |climb, node| {
+                let is_tried = climb.tried[node as usize];
+                if is_tried { None } else { climb.star(node).better() }
+            })?;
             if moved == 0 {
                 break;
             }
@@ -88,6 +99,7 @@ impl<'a> Climb<'a> {
         let mut moved = 0;
         for group in self.coloured(nodes) {
             let places = watch.map(&group, |&node| better(self, node))?;
+            group.iter().for_each(|&node| self.tried[node as usize] = true);
             let to = group.into_iter().zip(places).filter_map(|(node, place)| Some((node, place?)));
             let to: Vec<(u32, Move)> = to.collect();
             for &(node, Move { place, boundaries }) in &to {
@@ -102,6 +114,8 @@ impl<'a> Climb<'a> {
             })?;
             for (tet, sine) in changed.into_iter().zip(sines) {
                 self.sines[tet as usize] = sine;
+                let nodes = self.draft.tetrahedra[tet as usize];
+                nodes.iter().for_each(|&node| self.tried[node as usize] = false);
             }
         }
         Ok(moved)

@@ -4,7 +4,6 @@ use super::boundary_set::BoundarySet;
 use super::climb::Climb;
 use super::draft::Draft;
 use super::error::MeshingError;
-use super::rims::boundary_faces;
 use super::watch::Watch;
 
 /// How far nodes may be moved, in parts of their longest edge: first those that lie near.
@@ -19,7 +18,7 @@ type CreaseEdge = [u32; 2];
 pub(super) fn snap_creases(climb: &mut Climb, watch: &Watch) -> Result<usize, MeshingError> {
     let mut moved = 0;
     for limit in LIMITS {
-        let beside = beside_creases(climb.draft);
+        let beside = beside_creases(climb);
         let mut nodes: Vec<u32> = beside.iter().map(|&[node, _]| node).collect();
         nodes.dedup();
         moved += climb.sweep(&nodes, watch, |climb, node| {
@@ -32,12 +31,11 @@ pub(super) fn snap_creases(climb: &mut Climb, watch: &Watch) -> Result<usize, Me
 }
 
 /// Both ways, ascending.
-fn beside_creases(draft: &Draft) -> Vec<CreaseEdge> {
+fn beside_creases(Climb { draft, faces, .. }: &Climb) -> Vec<CreaseEdge> {
     let several = draft.boundaries.iter().fold(BoundarySet::NONE, |all, &set| all.and(set));
     if several.iter().count() < 2 {
         return Vec::new();
     }
-    let faces = boundary_faces(draft);
     let edges = faces.iter().flat_map(|face| {
         let [a, b, c] = face.nodes;
         [[a, b], [b, a], [b, c], [c, b], [c, a], [a, c]]

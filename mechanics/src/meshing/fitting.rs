@@ -10,7 +10,7 @@ use super::boundary_set::BoundarySet;
 use super::climb::Climb;
 use super::draft::Draft;
 use super::error::MeshingError;
-use super::rims::{RimFace, boundary_faces};
+use super::rims::RimFace;
 use super::watch::Watch;
 use crate::domain::{Boundary, Domain};
 use crate::mesh::Vector;
@@ -38,10 +38,8 @@ struct NodeTarget {
 
 /// Moves the nodes of the surface; returns how many.
 pub(super) fn fit(climb: &mut Climb, watch: &Watch) -> Result<usize, MeshingError> {
-    let faces = boundary_faces(climb.draft);
-    let domain = climb.domain;
-    let draft = &*climb.draft;
-    let lacks = watch.map(&faces, |face| lack(draft, domain, face))?;
+    let Climb { draft, domain, faces, .. } = &*climb;
+    let lacks = watch.map(faces, |face| lack(draft, *domain, face))?;
     let mut asked = vec![NodeTarget::default(); draft.nodes.len()];
     let mut free: Vec<bool> = draft.boundaries.iter().map(|&set| only(set).is_some()).collect();
     draft.copies.iter().flatten().for_each(|&node| free[node as usize] = false);

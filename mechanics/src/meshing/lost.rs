@@ -15,7 +15,8 @@ use super::rims::RimFace;
 use super::watch::Watch;
 use crate::domain::{Coverage, Domain};
 use crate::mesh::disjoint_sets::DisjointSets;
-use crate::mesh::{SurfaceSearch, TriangleSurface, Vector};
+use crate::mesh::{TriangleSearch, TriangleSurface, Vector};
+use crate::vectorised::vectorised;
 
 /// Points of a leaf, no two of them at one height along an axis; a bit each in a `u16`.
 const POINTS: usize = 16;
@@ -79,7 +80,7 @@ impl Lost {
         watch: &Watch,
     ) -> Result<Lost, MeshingError> {
         let held = cells.held(leaves, watch)?;
-        let Ok(search) = SurfaceSearch::new(&cells.surface()) else { return Ok(Lost::default()) };
+        let Ok(search) = TriangleSearch::new(&cells.surface()) else { return Ok(Lost::default()) };
         let numbers = 0..leaves.list.len() as u32;
         let mixed = |&leaf: &u32| leaves.list[leaf as usize].held == Coverage::Mixed;
         let mixed: Vec<u32> = numbers.filter(mixed).collect();
@@ -126,8 +127,14 @@ impl Cells<'_> {
     fn held(&self, leaves: &Leaves, watch: &Watch) -> Result<Vec<u16>, MeshingError> {
         let mut inside = watch.gather(&self.draft.tetrahedra, |tets, list| {
             let mut near = Vec::new();
-            let cells = tets.iter().map(|tet| self.draft.corners(tet));
-            cells.for_each(|corners| add_inside(&corners, leaves, &mut near, list));
+            vectorised(
+                #[inline(always)]
+                || {
+                    for tet in tets {
+                        add_inside(&self.draft.corners(tet), leaves, &mut near, list);
+                    }
+                },
+            );
         })?;
         inside.extend(watch.gather(self.dropped, |cells, list| {
             let mut near = Vec::new();
@@ -175,6 +182,7 @@ fn around(leaves: &Leaves, leaf: u32) -> impl Iterator<Item = u32> {
 }
 
 /// Adds the points of leaves in a tetrahedron, a bit each. `near` is room for leaves.
+#[inline(always)]
 fn add_inside(
     corners: &[Vector; 4],
     leaves: &Leaves,
@@ -198,15 +206,29 @@ fn add_inside(
         let from = shares * (grid.position(corner) - first);
         let along = shares * (f64::from(size) * grid.unit);
         let share = |n: usize| (from[n] as f32, along.row(n).transpose().map(|by| by as f32));
-        let bits = points_inside([0, 1, 2].map(share));
+        let shares = [0, 1, 2].map(share);
+        if are_apart(&shares) {
+            continue;
+        }
+        let bits = points_inside(shares);
         if bits != 0 {
             list.push((leaf, bits));
         }
     }
 }
 
+/// Whether one of the barycentric coordinates is negative all over a leaf: that of a face with the leaf in front of it.
+#[inline(always)]
+fn are_apart(shares: &[(f32, Vector3<f32>); 3]) -> bool {
+    let rise = |along: &Vector3<f32>| along.x.max(0.0) + along.y.max(0.0) + along.z.max(0.0);
+    let [a, b, c] = shares;
+    let last = (1.0 - a.0 - b.0 - c.0, -(a.1 + b.1 + c.1));
+    [a, b, c, &last].into_iter().any(|(from, along)| from + rise(along) < -BETWEEN)
+}
+
 /// The points of a leaf in a tetrahedron, a bit each, by three of its barycentric coordinates: at the lowest corner of the leaf, and how they
 /// change along its edges.
+#[inline(always)]
 fn points_inside(shares: [(f32, Vector3<f32>); 3]) -> u16 {
     let [xs, ys, zs] = &*OFFSETS;
     let (mut least, mut last) = ([1.0_f32; POINTS], [1.0_f32; POINTS]);

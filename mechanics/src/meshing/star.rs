@@ -38,6 +38,8 @@ struct StarCell {
     sides: [f64; 3],
     /// One over the square of twice its area.
     inverse: f64,
+    /// With the node where it is.
+    sine: f64,
 }
 
 /// Where a node goes, and the boundaries on which it lies there.
@@ -77,7 +79,7 @@ impl<'a> Star<'a> {
         let edges = cells.iter().flat_map(|cell| cell.face.map(|at| (at - here).norm()));
         let reach = edges.fold(0.0, f64::max);
         let boundaries = draft.boundaries[node as usize];
-        let sines = cells.iter().map(|cell| cell.sine_at(&here)).enumerate();
+        let sines = cells.iter().map(|cell| cell.sine).enumerate();
         let worst = sines.min_by(|(_, one), (_, other)| one.total_cmp(other));
         let (first, worst) = worst.unwrap_or((0, f64::INFINITY));
         // Most places are worse for the worst cell already.
@@ -220,14 +222,13 @@ impl<'a> Star<'a> {
 
     /// Up the gradients of the worst cells, so far that the worst would reach 30 degrees if its sine were linear.
     fn ascent(&self) -> Vector {
-        let sines = self.cells.iter().map(|cell| (cell, cell.sine_at(&self.here)));
-        let near = sines.filter(|(_, sine)| *sine < self.worst + SPREAD);
+        let near = self.cells.iter().filter(|cell| cell.sine < self.worst + SPREAD);
         let step = 1e-4 * self.reach;
         let gradient: Vector = near
-            .map(|(cell, sine)| {
-                let weight = 1.0 - (sine - self.worst) / SPREAD;
+            .map(|cell| {
+                let weight = 1.0 - (cell.sine - self.worst) / SPREAD;
                 let slopes = [Vector::x(), Vector::y(), Vector::z()]
-                    .map(|axis| (cell.sine_at(&(self.here + axis * step)) - sine) / step);
+                    .map(|axis| (cell.sine_at(&(self.here + axis * step)) - cell.sine) / step);
                 Vector::from(slopes) * (weight * weight)
             })
             .sum();
@@ -245,7 +246,10 @@ impl StarCell {
         let face = FACES[OPPOSITE[own]].map(|corner| corners[corner]);
         let [a, b, c] = face;
         let sides = [b - a, c - b, a - c].map(|side| side.norm_squared());
-        StarCell { face, sides, inverse: 1.0 / (b - a).cross(&(c - a)).norm_squared() }
+        let inverse = 1.0 / (b - a).cross(&(c - a)).norm_squared();
+        let mut cell = StarCell { face, sides, inverse, sine: 0.0 };
+        cell.sine = cell.sine_at(&corners[own]);
+        cell
     }
 
     /// `worst_sine` with the node at a place.

@@ -5,7 +5,6 @@ pub mod movement;
 pub mod transform_text;
 
 pub use movement::{MovementError, NUMBERS, Restriction, RigidMovement};
-pub use transform_text::TransformTextError;
 
 /// A segment by the name it has in the case, and its movement in the frame of the case.
 #[derive(Clone, Debug, PartialEq)]

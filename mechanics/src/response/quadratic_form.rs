@@ -18,7 +18,7 @@ use super::superposition::{ResponseSegment, coefficients};
 use crate::mesh::Vector;
 use crate::plan::RigidMovement;
 use crate::prediction::least_moving;
-use crate::solver::vectorised;
+use crate::vectorised::vectorised;
 
 /// Numbers that are summed side by side, whole vectors of them.
 const STRETCH: usize = 1536;

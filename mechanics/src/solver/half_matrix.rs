@@ -11,8 +11,8 @@ use rayon::prelude::*;
 use super::element_connectivity::{ElementConnectivity, ElementsOfRow};
 use super::lanes::{Lanes, Real, add_product, add_transposed};
 use super::row_ordering::RowOrdering;
-use super::vectorised::vectorised;
 use crate::rows::Rows;
+use crate::vectorised::vectorised;
 
 /// Rows of a pattern that one thread makes at a time.
 const ROW_CHUNK: usize = 2048;

@@ -6,8 +6,8 @@ use rayon::prelude::*;
 
 use super::element_connectivity::ElementConnectivity;
 use super::lanes::Lanes;
-use super::vectorised::vectorised;
 use crate::rows::Rows;
+use crate::vectorised::vectorised;
 
 /// Rows handled by one thread at a time.
 const ROW_CHUNK: usize = 1024;

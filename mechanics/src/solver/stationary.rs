@@ -19,9 +19,9 @@ use rayon::prelude::*;
 use super::lanes::{Lanes, add_product, add_transposed, negated};
 use super::scaling::{factor, times};
 use super::vector::{column, dot, norm, pack_lanes, ratio};
-use super::vectorised::vectorised;
 use super::{Block, Solution, SolveReport, SolverError, System, Tolerance, Unknowns, tell};
 use crate::progress::{Progress, Unobserved};
+use crate::vectorised::vectorised;
 
 /// The share of its limit that omega is set to: the power iteration sees lambda_max from below.
 const DAMPING: f64 = 0.95;

@@ -5,7 +5,7 @@
 use rayon::prelude::*;
 
 use super::lanes::MOST_LANES;
-use super::vectorised::vectorised;
+use crate::vectorised::vectorised;
 
 /// Unknowns summed by one thread before partial sums are added in order.
 const CHUNK: usize = 12_288;

@@ -18,6 +18,7 @@ use serde_json::{Value, json};
 
 use crate::samples::{mixed_mesh, read_default};
 use crate::support::external::{Missing, trials};
+use crate::support::transforms;
 
 trials! {
     samples_of_every_written_format_lie_ready_for_other_programs
@@ -198,8 +199,7 @@ fn transforms_of_other_programs_move_bone_back_along_their_own_way() -> Result<(
     for expected in list {
         let file = expected["file"].as_str().unwrap();
         let text = fs::read_to_string(folder.join(file)).unwrap();
-        let read = RigidMovement::from_itk_text(&text);
-        let movement = read.unwrap_or_else(|error| panic!("{file}: {error}"));
+        let movement = transforms::of_itk_text(&text);
         let places = |name: &str| -> Vec<[f64; 3]> {
             serde_json::from_value(expected[name].clone()).unwrap()
         };

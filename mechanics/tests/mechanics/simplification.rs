@@ -20,7 +20,7 @@ fn within(surface: &TriangleSurface, deviation: f64) -> TriangleSurface {
 /// The largest distance from points all over one surface to the other.
 fn farthest(from: &TriangleSurface, to: &TriangleSurface) -> f64 {
     let search = SurfaceSearch::new(to).unwrap();
-    let samples = area_sampling::every_triangle(from, 30.0);
+    let samples = area_sampling::every_triangle(from, 3.0);
     let points = samples.iter().map(|sample| &sample.point).chain(&from.points);
     points.map(|point| search.closest(point).distance).fold(0.0, f64::max)
 }

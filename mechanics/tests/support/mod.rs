@@ -11,3 +11,4 @@ pub mod responses;
 pub mod samples;
 pub mod scenes;
 pub mod surfaces;
+pub mod transforms;

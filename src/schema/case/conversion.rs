@@ -10,6 +10,7 @@ use super::merged::{Merged, PlacedMaterials, merge_materials};
 use super::meshes::CaseMeshes;
 use super::muscle::{MuscleContext, doubts, to_muscles};
 use super::region::{check_regions, check_tissues, region_names};
+use super::size::{USUAL_DIAGONAL_MM, units_suspect};
 use crate::schema::code::ErrorCode;
 use crate::schema::repair::{RepairedMesh, check_cells};
 use crate::schema::wire::fault::{Faults, Pointer};
@@ -24,8 +25,6 @@ use mechanics::repair::RepairReport;
 
 /// Farthest coordinate of a landmark in mm.
 const FARTHEST_LANDMARK_MM: f64 = 1e8;
-/// Diagonals of the bounding boxes of heads and their parts, in mm.
-const USUAL_DIAGONAL_MM: (f64, f64) = (50.0, 600.0);
 
 /// A case as the numerics take it.
 pub struct ConvertedCase {
@@ -331,15 +330,15 @@ pub fn centre(volume: &VolumeMesh) -> Vector {
 fn unusual_size(volume: &VolumeMesh, units: LengthUnit) -> Option<Warning> {
     let [low, high] = volume.bounds();
     let diagonal = (high - low).norm();
-    let (shortest, longest) = USUAL_DIAGONAL_MM;
-    if (shortest..=longest).contains(&diagonal) {
+    if USUAL_DIAGONAL_MM.contains(&diagonal) {
         return None;
     }
+    let (shortest, longest) = USUAL_DIAGONAL_MM.into_inner();
     let detail = format!(
         "the mesh is {diagonal:.4} mm across if its unit is {}; heads are {shortest} to {longest} mm",
         units.name()
     );
-    Some(Warning::new("units-suspect", detail).with("diagonal_mm", diagonal))
+    Some(units_suspect(diagonal, detail))
 }
 
 fn in_mm(volume: &Arc<VolumeMesh>, units: LengthUnit) -> Arc<VolumeMesh> {

@@ -23,3 +23,4 @@ pub mod preset_name;
 mod preset_source;
 pub mod region;
 pub mod selection;
+pub mod size;

@@ -41,7 +41,7 @@ pub enum MethodName {
 pub struct ElementName(ElementChoice);
 
 impl MethodName {
-    /// The method in use: the choice of `auto`, or the one named.
+    /// The method named; of `auto` the linear one, with which it begins.
     pub fn chosen(self) -> MethodKind {
         match self {
             MethodName::Auto => MethodKind::FemLinear,

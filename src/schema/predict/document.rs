@@ -203,7 +203,7 @@ impl PredictDocument {
         }
     }
 
-    /// The accepted errors of `auto`; none for other methods, and if no estimate can choose.
+    /// The accepted errors of `auto`; none for other methods, without an estimate, and if the answer is corrected.
     pub fn accepted(&self) -> Option<Accepted> {
         let chooses = self.method == MethodName::Auto
             && self.estimate == EstimateName::Auto

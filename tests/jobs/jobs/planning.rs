@@ -20,6 +20,7 @@ use mechanics::progress::{StopQuery, Unobserved};
 use serde_json::{Value, json};
 
 use crate::sources::{Meshes, stored};
+use crate::transforms;
 
 fn brick(size: [f64; 3], cells: [usize; 3], corner: [f64; 3]) -> TriangleSurface {
     let mesh = block(Vector::from(size), cells, CellShape::Hex8);
@@ -317,17 +318,16 @@ fn a_check_tells_movements_for_navigation_that_read_again_are_equal_to_the_bit()
     let found = checked(json!({}), plan.clone());
     let [movement] = &found.movements[..] else { panic!("{:?}", found.movements) };
     let Matrix4x4(matrix) = movement.matrix4x4;
-    let text = RigidMovement::from_matrix_text(&movement.matrix_text).unwrap();
+    let text = transforms::of_matrix_text(&movement.matrix_text);
     assert_eq!(text.matrix4().map(f64::to_bits), matrix.map(f64::to_bits));
     // The plane leaves nothing along y, and the turn about it.
     assert!((matrix[7]).abs() < 1e-12 && (movement.rotation_deg - 3.0).abs() < 1e-9);
-    let itk = RigidMovement::from_itk_text(movement.itk_transform.as_ref().unwrap()).unwrap();
+    let itk = transforms::of_itk_text(movement.itk_transform.as_ref().unwrap());
     let at = Vector::new(70.0, 30.0, 20.0);
     assert!((itk.apply(&at) - at - Vector::new(1.0, 0.0, -0.2)).norm() < 1e-12);
     // The file is in LPS whatever the case is in.
     let ras = checked(json!({"frame": "RAS"}), plan);
-    let in_lps =
-        RigidMovement::from_itk_text(ras.movements[0].itk_transform.as_ref().unwrap()).unwrap();
+    let in_lps = transforms::of_itk_text(ras.movements[0].itk_transform.as_ref().unwrap());
     let Matrix4x4(in_ras) = ras.movements[0].matrix4x4;
     assert!((in_lps.matrix4()[3] + in_ras[3]).abs() < 1e-12);
     let unstated = checked(

@@ -10,7 +10,7 @@ use crate::model::problem::InvertedCell;
 use crate::progress::Progress;
 use crate::solver::Block;
 use crate::solver::half_matrix::{HalfMatrix, RowChunk};
-use crate::solver::vectorised::vectorised;
+use crate::vectorised::vectorised;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
 

@@ -15,7 +15,7 @@ use super::prolongator::{Weight, Weights};
 use crate::solver::element_connectivity::{ElementConnectivity, renumbered};
 use crate::solver::half_matrix::{HalfMatrix, Pattern};
 use crate::solver::row_ordering::RowOrdering;
-use crate::solver::vectorised::vectorised;
+use crate::vectorised::vectorised;
 
 /// Aggregates that most aggregates meet below themselves.
 const ROOM: usize = 16;

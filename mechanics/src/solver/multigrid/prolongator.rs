@@ -15,7 +15,7 @@ use super::strength_of_connection::StrengthOfConnection;
 use crate::rows::Rows;
 use crate::solver::lanes::Lanes;
 use crate::solver::row_ordering::RowOrdering;
-use crate::solver::vectorised::vectorised;
+use crate::vectorised::vectorised;
 
 /// Damping of the Jacobi step that smooths the weights.
 const DAMPING: f32 = 0.85;

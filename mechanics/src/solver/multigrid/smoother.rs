@@ -10,7 +10,7 @@ use super::inverse::inverse_block;
 use crate::solver::half_matrix::{HalfMatrix, Pattern};
 use crate::solver::lanes::{Lanes, add_product, add_transposed, negated};
 use crate::solver::row_ordering::RowOrdering;
-use crate::solver::vectorised::vectorised;
+use crate::vectorised::vectorised;
 
 /// Rows that one thread prepares at a time.
 const CHUNK: usize = 4096;

@@ -1,6 +1,6 @@
 //! The numbers of every method, held against those that belong to `NUMERICS_REVISION`: a change of numbers raises it.
 //!
-//! `golden.txt` has a line for each of `golden_scenes`: its name, the solver, and its numbers.
+//! `golden.txt` has a line for each of [`scenes::all`]: its name, the solver, and its numbers.
 //! `bits HASH`: SHA-256 of the bits. They are the same on any number of threads and for any vector units.
 //! `near SIZE MIX LARGEST`: sum of |v|, sum of v with fixed signs, largest |v|, which may differ by [`NEAR`] of the
 //! first, for what faer factorises or what a function of the system's libm enters: their last bits are the processor's

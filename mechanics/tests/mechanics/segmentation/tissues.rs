@@ -40,7 +40,6 @@ fn layers() -> ImageVolume {
 fn a_scan_of_air_fat_soft_tissue_and_bone_gives_its_modes_and_thresholds() {
     let found = Thresholds::of(&Histogram::of(&layers())).unwrap();
     assert!((found.air_mode + 1000.0).abs() <= 15.0, "{found:?}");
-    assert!((found.fat_mode.unwrap() + 100.0).abs() <= 20.0, "{found:?}");
     assert!((found.soft_mode - 40.0).abs() <= 15.0, "{found:?}");
     assert!((-600.0..-400.0).contains(&found.skin), "{found:?}");
     assert!((180.0..450.0).contains(&found.bone), "{found:?}");
