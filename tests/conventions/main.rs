@@ -15,18 +15,19 @@ use sha2::{Digest, Sha256};
 use source::{Crate, Module, rust_files};
 
 /// Modules of the numerics, and those that each may use.
-const MECHANICS: [(&str, &[&str]); 30] = [
+const MECHANICS: [(&str, &[&str]); 31] = [
     ("rows", &[]),
+    ("vectorised", &[]),
     ("progress", &[]),
     ("draws", &[]),
     ("mesh", &["progress", "rows"]),
     ("material", &[]),
     ("element", &[]),
-    ("solver", &["progress", "rows"]),
+    ("solver", &["progress", "rows", "vectorised"]),
     ("chart", &[]),
-    ("image", &["mesh", "progress"]),
+    ("image", &["mesh", "progress", "vectorised"]),
     ("domain", &["mesh", "image"]),
-    ("meshing", &["mesh", "domain", "progress", "rows"]),
+    ("meshing", &["mesh", "domain", "progress", "rows", "vectorised"]),
     ("landmarks", &["mesh"]),
     ("cephalometry", &["mesh"]),
     ("osteotomy", &["mesh", "image", "domain"]),
@@ -52,12 +53,18 @@ const MECHANICS: [(&str, &[&str]); 30] = [
     ("format", &["mesh", "image"]),
     ("validation", &["mesh", "registration", "progress"]),
     ("boundary", &["mesh", "plan", "progress", "rows"]),
-    ("model", &["mesh", "boundary", "material", "element", "solver", "progress", "rows"]),
+    (
+        "model",
+        &["mesh", "boundary", "material", "element", "solver", "progress", "rows", "vectorised"],
+    ),
     (
         "prediction",
         &["mesh", "image", "plan", "boundary", "material", "muscle", "solver", "model", "progress"],
     ),
-    ("response", &["mesh", "plan", "boundary", "solver", "model", "prediction", "progress"]),
+    (
+        "response",
+        &["mesh", "plan", "boundary", "solver", "model", "prediction", "progress", "vectorised"],
+    ),
     ("optimisation", &["mesh", "plan", "material", "prediction", "response", "progress"]),
     (
         "study",

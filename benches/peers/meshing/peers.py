@@ -49,7 +49,7 @@ def rows(options, output):
     known = distances.Reference(options.scan)
     yield row("facies", "scan", seconds, wall, nodes, cells, Against(known, sets["cut"], nodes, cells))
     write_surface(output / "ours.npz", nodes, cells)
-    for name in ("gmsh-hxt", "gmsh-delaunay", "tetgen"):
+    for name in ("gmsh-hxt", "gmsh-hxt-two-threads", "gmsh-delaunay", "tetgen"):
         yield peer(name, "our surface", output / "ours.npz", output, 600, None)
     skin, bone = (read_stl(Path(options.stl) / f"headsq_quarter_{part}.stl") for part in ("skin", "bone"))
     write_stl_pair(output / "stl.npz", skin, bone)

@@ -11,11 +11,14 @@ pub(super) fn place(voxel: usize, [nx, ny, _]: Size) -> [usize; 3] {
 pub(super) fn neighbours(voxel: usize, size: Size) -> impl Iterator<Item = usize> {
     let index = place(voxel, size);
     let step = [1, size[0], size[0] * size[1]];
-    (0..3).flat_map(move |axis| {
-        let below = (index[axis] > 0).then(|| voxel - step[axis]);
-        let above = (index[axis] + 1 < size[axis]).then(|| voxel + step[axis]);
-        below.into_iter().chain(above)
-    })
+    let beside: [Option<usize>; 6] = std::array::from_fn(|side| {
+        let axis = side / 2;
+        match side % 2 {
+            0 => (index[axis] > 0).then(|| voxel - step[axis]),
+            _ => (index[axis] + 1 < size[axis]).then(|| voxel + step[axis]),
+        }
+    });
+    beside.into_iter().flatten()
 }
 
 /// How many axes see a voxel at their first or last place: 1 on a face of the image, 2 or 3 on its edges.

@@ -164,13 +164,15 @@ fn piece_range<const N: usize>(columns: &[[[[f32; N]; 4]; 4]]) -> Range<N> {
 
 /// B-spline coefficients around an interval to Bernstein coefficients on it.
 fn bernstein<const N: usize>([a, b, c, d]: [[f32; N]; 4]) -> [[f32; N]; 4] {
-    let each = |mix: &dyn Fn(usize) -> f32| std::array::from_fn(mix);
-    [
-        each(&|n| (a[n] + 4.0 * b[n] + c[n]) * (1.0 / 6.0)),
-        each(&|n| (2.0 * b[n] + c[n]) * (1.0 / 3.0)),
-        each(&|n| (b[n] + 2.0 * c[n]) * (1.0 / 3.0)),
-        each(&|n| (b[n] + 4.0 * c[n] + d[n]) * (1.0 / 6.0)),
-    ]
+    let mut found = [[0.0; N]; 4];
+    for n in 0..N {
+        let [a, b, c, d] = [a[n], b[n], c[n], d[n]];
+        found[0][n] = (a + 4.0 * b + c) * (1.0 / 6.0);
+        found[1][n] = (2.0 * b + c) * (1.0 / 3.0);
+        found[2][n] = (b + 2.0 * c) * (1.0 / 3.0);
+        found[3][n] = (b + 4.0 * c + d) * (1.0 / 6.0);
+    }
+    found
 }
 
 /// Blocks twice as long along each axis.
