@@ -1,6 +1,7 @@
 //! Newton's method at finite strain on a hard block, as the table of docs/finite-strain.md:
-//! `cargo bench --bench finite_strain [-- CELLS … --vtu FOLDER]`. `--vtu` writes the mesh and the displacement of plain tetrahedra
-//! on block B at a Poisson ratio of 0.46, for peers to be held against (`benches/peers/finite_strain/run`).
+//! `cargo bench --bench finite_strain [-- CELLS … --vtu FOLDER --finest CELLS]`. `--vtu` writes the mesh and the displacement of plain
+//! tetrahedra on block B at a Poisson ratio of 0.46, for peers to be held against (`benches/peers/finite_strain/run`). `--finest` prints how
+//! far each element is from stabilised tetrahedra on that mesh at half the movement and a Poisson ratio of 0.49.
 //!
 //! 100 x 100 x 20 mm of neo-Hookean tissue of 15 kPa, cut into CELLS x CELLS x CELLS/5 cubes of six tetrahedra. Its bottom is
 //! held; a patch of 30 x 30 mm is moved by s (25, 0, 10) mm and turned by 15 s degrees. Block B leaves a ring of 25 mm
@@ -9,6 +10,7 @@
 
 mod measure;
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -37,7 +39,10 @@ struct Plan {
 }
 
 fn main() {
-    let (sizes, compared) = arguments();
+    let Arguments { sizes, compared, finest } = arguments();
+    if let Some(finest) = finest {
+        return errors(&sizes, finest);
+    }
     println!(
         "| elements | block | tetrahedra | nu | s | wall s | processor s | steps | inner iterations | hierarchies | \
          indefinite steps | least det F | energy mN mm | mean movement of the top mm |"
@@ -51,20 +56,37 @@ fn main() {
     }
 }
 
-fn arguments() -> (Vec<usize>, Option<PathBuf>) {
-    let (mut sizes, mut compared) = (Vec::new(), None);
+#[derive(Default)]
+struct Arguments {
+    sizes: Vec<usize>,
+    compared: Option<PathBuf>,
+    finest: Option<usize>,
+}
+
+fn arguments() -> Arguments {
+    let mut found = Arguments::default();
+    let number = |text: &str| text.parse().expect("a number of cells along a side");
     let mut given = std::env::args().skip(1);
     while let Some(argument) = given.next() {
         match argument.as_str() {
             "--bench" => {} // cargo says so to every bench
-            "--vtu" => compared = Some(PathBuf::from(given.next().expect("--vtu needs a folder"))),
-            number => sizes.push(number.parse().expect("a number of cells along a side")),
+            "--vtu" => {
+                found.compared = Some(given.next().expect("--vtu needs a folder").into());
+            }
+            "--finest" => {
+                found.finest = Some(number(&given.next().expect("--finest needs a number")));
+            }
+            size => found.sizes.push(number(size)),
         }
     }
-    if sizes.is_empty() {
-        sizes = if compared.is_some() { vec![20, 30] } else { vec![20, 30, 45] };
+    if found.sizes.is_empty() {
+        found.sizes = match (&found.compared, found.finest) {
+            (None, None) => vec![20, 30, 45],
+            (None, Some(_)) => vec![20, 40],
+            (Some(_), _) => vec![20, 30],
+        };
     }
-    (sizes, compared)
+    found
 }
 
 fn plans() -> impl Iterator<Item = Plan> {
@@ -95,6 +117,29 @@ fn compare(cells: usize, folder: &Path) {
     let output = VolumeOutput { point_arrays: arrays, ..VolumeOutput::plain(&mesh, Frame::Lps) };
     let bytes = vtu::write(&output).expect("a mesh of ours");
     std::fs::write(folder.join(format!("{cells}.vtu")), bytes).expect("a folder to write to");
+}
+
+/// How far the top of meshes is from that of the finest one, of which all their nodes are nodes.
+fn errors(sizes: &[usize], finest: usize) {
+    let plan = |elements| Plan { elements, block: 'C', poisson_ratio: 0.49, share: 0.5 };
+    let rest = |cells: usize, elements: Elements| {
+        let mesh = cut(cells);
+        let found = solve(&mesh, &plan(elements)).0.expect("half the movement comes to rest");
+        let top = mesh.nodes.iter().zip(found.displacement).filter(|(x, _)| x.z > 19.999);
+        let place = |x: &Vector| [x.x, x.y].map(|v| (v * 1e6).round() as i64);
+        top.map(|(x, u)| (place(x), u)).collect::<BTreeMap<_, _>>()
+    };
+    let known = rest(finest, Elements::STABLE);
+    println!("| tetrahedra | plain, mm | stabilised, mm | ratio |\n| --- | --- | --- | --- |");
+    for &cells in sizes {
+        let [plain, stabilised] = [Elements::PLAIN, Elements::STABLE].map(|elements| {
+            let top = rest(cells, elements);
+            let off = top.iter().map(|(place, u)| (u - known[place]).norm());
+            off.sum::<f64>() / top.len() as f64
+        });
+        let count = 6 * cells * cells * (cells / 5);
+        println!("| {count} | {plain:.4} | {stabilised:.4} | {:.1} |", plain / stabilised);
+    }
 }
 
 fn cut(cells: usize) -> VolumeMesh {
@@ -165,6 +210,12 @@ fn row(cells: usize, plan: &Plan) {
 fn holds(mesh: &VolumeMesh, plan: &Plan) -> Vec<Constraint> {
     let turn = Rotation3::from_axis_angle(&Vector::y_axis(), (15.0 * plan.share).to_radians());
     let pivot = Vector::new(50.0, 50.0, 0.0);
+    // Of C the same nodes are held on meshes of 5 mm and finer.
+    let ring = match plan.block {
+        'A' => 0.0,
+        'B' => 25.0,
+        _ => 29.0,
+    };
     let bottom = (0..).zip(&mesh.nodes).filter(|(_, x)| x.z.abs() < 1e-9);
     let hold = |(node, x): (u32, &Vector)| {
         let outside = [x.x, x.y].map(|v| (35.0 - v).max(v - 65.0).max(0.0));
@@ -172,8 +223,7 @@ fn holds(mesh: &VolumeMesh, plan: &Plan) -> Vec<Constraint> {
         let moved = turn * (x - pivot) + pivot - x + Vector::new(25.0, 0.0, 10.0) * plan.share;
         match distance == 0.0 {
             true => Some(Constraint::at(node, moved)),
-            false => (plan.block == 'A' || distance > 25.0)
-                .then(|| Constraint::at(node, Vector::zeros())),
+            false => (distance > ring).then(|| Constraint::at(node, Vector::zeros())),
         }
     };
     bottom.filter_map(hold).collect()
