@@ -16,6 +16,7 @@ use crate::schema::mesh::MeshDocument;
 use crate::store::{MeshRow, Store, StoreError};
 use mechanics::format::{self, FormatError, ReadLimits, ReadMesh};
 use mechanics::mesh::Frame;
+use mechanics::mesh::duplicate_cells::DUPLICATE_CELLS;
 
 /// The result file that holds the predicted skin with its node numbers.
 const PREDICTED_SKIN: &str = "skin.vtp";
@@ -30,7 +31,7 @@ pub struct MeshCard {
     pub identity: String,
     pub frame: Option<FrameName>,
     pub units: Option<LengthUnit>,
-    /// What the meshing that made it had to say.
+    /// What the meshing that made it had to say, and that cells stand twice, which no prediction looks for.
     #[serde(default)]
     pub told: Vec<WarningDocument>,
 }
@@ -38,13 +39,15 @@ pub struct MeshCard {
 impl MeshCard {
     fn of(row: MeshRow) -> Result<MeshCard, StoreError> {
         let document = document_of(&row)?;
+        let doubled = document.report.warnings.iter().filter(|own| own.code == DUPLICATE_CELLS);
+        let told = document.report.meshing.iter().chain(doubled).cloned().collect();
         Ok(MeshCard {
             identity: document.identity(),
             blob: row.blob,
             sha256: row.sha256,
             frame: document.report.space.or(document.frame),
             units: document.units,
-            told: document.report.meshing,
+            told,
         })
     }
 

@@ -2,6 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
+use mechanics::format::VolumeOutput;
+use mechanics::format::vtk::vtu;
+use mechanics::mesh::{CellShape, Frame, Vector, sample};
 use reqwest::StatusCode;
 use reqwest::multipart::Part;
 use serde_json::json;
@@ -56,6 +59,22 @@ async fn a_check_counts_what_holds_the_nodes_and_solves_nothing() {
     let residual = json!({"tolerance": {"relative_residual": 0}});
     let problem = ask(server.post(&path).json(&residual)).await.problem(422, "validation-failed");
     assert_eq!(problem["errors"][0]["pointer"], "/tolerance/relative_residual");
+}
+
+#[tokio::test]
+async fn a_prediction_tells_that_cells_of_its_mesh_stand_twice() {
+    let server = Server::start();
+    let mut mesh = sample::block(Vector::new(60.0, 60.0, 30.0), [4, 4, 4], CellShape::Hex8);
+    let inner = mesh.cells.nodes(21).to_vec();
+    mesh.cells.push(CellShape::Hex8, &inner);
+    let bytes = vtu::write(&VolumeOutput::plain(&mesh, Frame::Lps)).unwrap();
+    let mut document = SMALL.case();
+    document["volume"] = server.upload(bytes).await.expect(StatusCode::CREATED)["id"].clone();
+    let case = ask(server.post("/v1/cases").json(&document)).await.expect(StatusCode::CREATED);
+    let job = server.job(&spec(case["id"].as_str().unwrap(), 1.0)).await.json();
+    let warnings = job["results"]["warnings"].as_array().unwrap().iter();
+    let told = warnings.filter(|own| own["code"] == "duplicate-cells");
+    assert_eq!(told.map(|own| own["first_cell"].as_f64()).collect::<Vec<_>>(), [Some(64.0)]);
 }
 
 #[tokio::test]
