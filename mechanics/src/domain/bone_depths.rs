@@ -200,11 +200,8 @@ impl Grid {
 /// How deep a point lies in a bone, in mm, from `-near` to `near`.
 fn depth(bone: &Shell, point: &Vector, near: f64) -> f64 {
     let side = if bone.value(point) > 0.0 { 1.0 } else { -1.0 };
-    if !bone.tree.has_within(point, near) {
-        return side * near;
-    }
-    let nearest = bone.tree.nearest(point, |_| true);
-    side * nearest.map_or(near, |nearest| nearest.distance.min(near))
+    let nearest = bone.tree.nearest_within(point, near, |_| true);
+    side * nearest.map_or(near, |nearest| nearest.distance)
 }
 
 /// Depths of `near` and more: to the nearest voxel outside, less its own way to the surface.

@@ -111,6 +111,11 @@ pub trait Domain: Sync {
     /// How thick the tissue is about a place; infinite where that is not known.
     fn thickness(&self, point: &Vector) -> f64;
 
+    /// The same where it is below a limit in mm, and anything not below it elsewhere, which takes less.
+    fn thickness_below(&self, point: &Vector, _limit: f64) -> f64 {
+        self.thickness(point)
+    }
+
     /// How many regions tissue is in, at most 255.
     fn regions(&self) -> usize {
         1

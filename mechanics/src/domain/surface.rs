@@ -288,21 +288,26 @@ impl Domain for SurfaceDomain {
     }
 
     fn thickness(&self, point: &Vector) -> f64 {
-        let distance = |shell: &Shell| shell.tree.nearest(point, |_| true);
-        let Some(skin) = distance(&self.skin) else { return f64::INFINITY };
-        let bones = self.solids().filter_map(distance);
-        let bone = bones.min_by(|a, b| a.distance.total_cmp(&b.distance));
-        let sum = bone.map_or(f64::INFINITY, |bone| skin.distance + bone.distance);
-        let nearest = bone.filter(|bone| bone.distance < skin.distance).unwrap_or(skin);
-        sum.min(self.across(point, &nearest))
+        self.thickness_below(point, f64::INFINITY)
+    }
+
+    fn thickness_below(&self, point: &Vector, limit: f64) -> f64 {
+        let nearest = |shell: &Shell| shell.tree.nearest_within(point, limit, |_| true);
+        let skin = nearest(&self.skin);
+        let bone = self.solids().filter_map(nearest);
+        let bone = bone.min_by(|a, b| a.distance.total_cmp(&b.distance));
+        let distance = |found: Option<Nearest>| found.map_or(f64::INFINITY, |found| found.distance);
+        let nearest = if distance(bone) < distance(skin) { bone } else { skin };
+        let across = nearest.map_or(f64::INFINITY, |nearest| self.across(point, &nearest, limit));
+        across.min(distance(skin) + distance(bone))
     }
 }
 
 impl SurfaceDomain {
-    /// From the nearest place through the point to the next surface.
-    fn across(&self, point: &Vector, nearest: &Nearest) -> f64 {
+    /// From the nearest place through the point to the next surface, if that is less than a limit.
+    fn across(&self, point: &Vector, nearest: &Nearest, limit: f64) -> f64 {
         let (low, high) = self.skin.tree.bounds();
-        let reach = (high - low).norm();
+        let reach = (high - low).norm().min(limit - nearest.distance);
         let Some(way) = (point - nearest.point).try_normalize(1e-9) else { return f64::INFINITY };
         let end = point + way * reach;
         let shells = self.solids().chain([&self.skin]);

@@ -168,7 +168,17 @@ impl TriangleTree {
 
     /// The nearest place on a triangle that `counts`.
     pub(super) fn nearest(&self, point: &Vector, counts: impl Fn(u32) -> bool) -> Option<Nearest> {
-        let mut best = f64::INFINITY;
+        self.nearest_within(point, f64::INFINITY, counts)
+    }
+
+    /// The same if it is less than `limit` mm away; the smaller the limit, the less is searched.
+    pub(super) fn nearest_within(
+        &self,
+        point: &Vector,
+        limit: f64,
+        counts: impl Fn(u32) -> bool,
+    ) -> Option<Nearest> {
+        let mut best = limit * limit;
         let mut found = None;
         let mut stack = Stack::new(self.nodes.len());
         while let Some(number) = stack.pop() {

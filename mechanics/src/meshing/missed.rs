@@ -34,7 +34,8 @@ impl Edge {
 /// Whether an edge of the lattice of a cell misses tissue. Edges that several cells share are looked at from one.
 pub(super) fn misses_tissue(domain: &dyn Domain, grid: &Grid, cell: &OctreeCell) -> bool {
     let nodes = Nodes::new(domain, grid, cell);
-    if nodes.centre.inside && domain.thickness(&nodes.centre.at) > BROAD * nodes.edge {
+    let broad = BROAD * nodes.edge;
+    if nodes.centre.inside && domain.thickness_below(&nodes.centre.at, broad) >= broad {
         return false;
     }
     let missed = |edge: Edge| !edge.inside && edge.missed(domain, HALVED).is_some();

@@ -123,17 +123,20 @@ impl Refinement<'_> {
         if let Some(rule) = self.size.thickness
             && wanted.min(size) > rule.floor
         {
-            wanted = wanted.min(rule.size(self.thickness(centre, size, held)));
+            // What is thicker asks for nothing.
+            let limit = wanted.max(size) / rule.factor;
+            wanted = wanted.min(rule.size(self.thickness(centre, size, held, limit)));
         }
         wanted.max(self.size.finest)
     }
 
-    /// The thickness of the tissue in a cell. Away from tissue at its centre the two surfaces are farther from there than
+    /// The thickness of the tissue in a cell where it is below a limit. Away from tissue at its centre the two surfaces are farther from there than
     /// from one another, by about half a diagonal each.
-    fn thickness(&self, centre: &Vector, size: f64, held: Coverage) -> f64 {
-        let thickness = self.domain.thickness(centre);
+    fn thickness(&self, centre: &Vector, size: f64, held: Coverage, limit: f64) -> f64 {
+        let beyond = size * HALF_DIAGONAL;
+        let thickness = self.domain.thickness_below(centre, limit + beyond);
         let off = held == Coverage::Mixed && self.domain.value(centre) <= 0.0;
-        if off { thickness - size * HALF_DIAGONAL } else { thickness }
+        if off { thickness - beyond } else { thickness }
     }
 }
 

@@ -175,8 +175,12 @@ fn the_thickness_is_the_distance_from_skin_to_bone_or_across_what_has_none() {
     let wanted = SKIN_RADIUS - BONE_RADIUS;
     for direction in directions(200) {
         for radius in [28.0, 33.0, 39.0] {
-            let found = domain.thickness(&(centre() + direction * radius));
+            let point = centre() + direction * radius;
+            let found = domain.thickness(&point);
             assert!((found - wanted).abs() < sagitta(SKIN_RADIUS), "{radius}: {found}");
+            let [above, below] = [1.01, 0.99].map(|part| part * found);
+            assert!((domain.thickness_below(&point, above) - found).abs() < 1e-12);
+            assert!(domain.thickness_below(&point, below) >= below);
         }
     }
     let plate = SurfaceDomain::new(&cuboid(Vector::new(50.0, 40.0, 6.0)), &[], &[]).unwrap();
