@@ -99,11 +99,12 @@ impl Undamaged {
         match catch_unwind(AssertUnwindSafe(|| made(&surfaces, self.edge))) {
             Err(_) => none(Ending::Silent("panic")),
             Ok(Err(refusal)) => none(Ending::Refused(refusal)),
-            Ok(Ok(made)) => self.judged(damage, made),
+            // So little damage may leave all as it was.
+            Ok(Ok(made)) => self.judged(damage.is_told() && surfaces != self.surfaces, made),
         }
     }
 
-    fn judged(&self, damage: Damage, made: Made) -> Outcome {
+    fn judged(&self, is_to_be_told: bool, made: Made) -> Outcome {
         let report = &made.tissue.report;
         let quality = quality(&made.tissue.volume);
         let surface = boundary(&made.tissue);
@@ -127,7 +128,7 @@ impl Undamaged {
         } else if angle < LEAST_ANGLE {
             Some("angle")
         } else {
-            (damage.is_told() && !is_told).then_some("not named")
+            (is_to_be_told && !is_told).then_some("not named")
         };
         let ending = match wrong {
             None => Ending::Right,
