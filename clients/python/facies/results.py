@@ -107,6 +107,8 @@ class Comparison:
 
     job: str
     document: dict[str, Any]
+    warnings: list[dict[str, Any]]
+    """What a reader of these numbers must know, each with its `code`: a scan that is mirrored, apart, or of another person."""
 
     @property
     def both(self) -> dict[str, Any]:

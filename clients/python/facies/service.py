@@ -177,7 +177,7 @@ class Facies:
             mesh = self._surface(Path(actual).read_bytes(), "mm" if units is None else units, frame)
         job = self.run({"kind": "compare", "prediction": {"job": prediction.job},
                         "actual": {"mesh": mesh}, **spec}, progress)
-        return Comparison(job["id"], job["results"]["comparison"])
+        return Comparison(job["id"], job["results"]["comparison"], job["results"]["warnings"])
 
     def file(self, job: str, name: str) -> bytes:
         """A file of a result."""

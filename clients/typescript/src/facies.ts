@@ -45,6 +45,9 @@ export interface Optimisation extends Prediction {
   plan: Documents["PlanDocument"];
 }
 
+/** Distances between two surfaces, with what a reader of them must know: a scan that is mirrored, apart, or of another person. */
+export type Comparison = Documents["ComparisonDocument"] & { job: string; warnings: Results["warnings"] };
+
 /** A plan on a response as the service computes it, with what it says of that: `warnings`, `within_linear_range`, and
  * `nonlinearity_estimate_mm`, what the displacement leaves out, mean over the skin that moves. */
 export type Applied = Omit<Documents["AppliedDocument"], "displacement_mm"> & {
@@ -170,9 +173,10 @@ export class Facies {
   }
 
   /** A predicted skin against the surface of a mesh by its id. */
-  async compare(prediction: Prediction, actual: string): Promise<Documents["ComparisonDocument"]> {
+  async compare(prediction: Prediction, actual: string): Promise<Comparison> {
     const spec = { kind: "compare" as const, prediction: { job: prediction.job }, actual: { mesh: actual } };
-    return (await this.run(spec as Documents["CompareDocument"])).results!.comparison!;
+    const job = await this.run(spec as Documents["CompareDocument"]);
+    return { ...job.results!.comparison!, job: job.id, warnings: job.results!.warnings };
   }
 
   /** A file of a result. */

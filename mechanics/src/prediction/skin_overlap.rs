@@ -8,7 +8,8 @@
 //! that body faces the point is taken if it is shorter. Of an edge that passes through other skin, in through one triangle and out through
 //! another or to an end that lies inside, the middle of what lies inside is as deep as the way to the closest triangle of another body, or
 //! of its own one that does not continue it.
-//! The depth is not above the true one, because a point may be closer to the rim of its own part, and an edge deeper beside that middle.
+//! The depth is not above the true one, because a point may be closer to the rim of its own part, an edge deeper beside that middle, and
+//! nothing goes deeper than it moved.
 //! Where a closed surface does not wind around a point in front of it the point lies outside after all.
 
 use std::collections::BTreeSet;
@@ -16,7 +17,7 @@ use std::collections::BTreeSet;
 use super::skin::Skin;
 use crate::mesh::crossing::{Piercing, TrianglePair, cross, pass, piercings, self_crossings};
 use crate::mesh::disjoint_sets::DisjointSets;
-use crate::mesh::{SurfaceSearch, TriangleSurface, Vector, Warning};
+use crate::mesh::{ClosestPoint, SurfaceSearch, TriangleSurface, Vector, Warning};
 
 /// The code of the warning.
 pub const SKIN_OVERLAPS: &str = "skin-overlaps";
@@ -32,7 +33,7 @@ const BEHIND: f64 = 0.3;
 /// Skin of the same body whose normals differ by less than what has this cosine continues an edge.
 const ALONG: f64 = 0.5;
 
-/// So far in front, in mm; and how many angles of triangles are looked at for that.
+/// So far in front, in mm; and how many angles of triangles are looked at.
 const BEFORE_MM: f64 = 1e-3;
 const MOST_ANGLES: usize = 5_000_000;
 
@@ -51,13 +52,13 @@ pub struct Deepest {
 
 /// How much deeper moved skin passes through itself than at rest, and where; none where no depth is known.
 pub(super) fn added_overlap(skin: &Skin, moved: &TriangleSurface) -> Option<Deepest> {
-    let depth_of = |surface: &TriangleSurface| {
+    let depth_of = |surface: &TriangleSurface, rest: Option<&TriangleSurface>| {
         let passes = |pair: &TrianglePair| pass(surface, pair, TOUCHING_MM);
-        deepest(surface, &self_crossings(surface, passes).pairs)
+        deepest(surface, rest, &self_crossings(surface, passes).pairs)
     };
-    let found = depth_of(moved)?;
-    let at_rest = depth_of(&skin.surface).map_or(0.0, |own| own.depth);
-    Some(Deepest { depth: found.depth - at_rest, ..found })
+    let found = depth_of(moved, Some(&skin.surface))?;
+    let in_all = |surface| depth_of(surface, None).map_or(0.0, |own| own.depth);
+    Some(Deepest { depth: found.depth.min(in_all(moved) - in_all(&skin.surface)), ..found })
 }
 
 /// A warning that counts the triangles of a moved skin that cross and did not cross at rest. The points of the moved
@@ -71,7 +72,7 @@ pub fn skin_overlap(skin: &Skin, moved: &TriangleSurface) -> Option<Warning> {
     }
     let at_rest = self_crossings(rest, |pair| passes(rest, pair)).count;
     let through = |pair: &TrianglePair| pass(moved, pair, TOUCHING_MM);
-    let deepest = deepest(moved, &self_crossings(moved, through).pairs);
+    let deepest = deepest(moved, Some(rest), &self_crossings(moved, through).pairs);
     // Edges may cross what they only lie on.
     if found.untried == 0 && deepest.as_ref().is_some_and(|own| own.depth <= TOLD_MM) {
         return None;
@@ -126,8 +127,12 @@ fn place(skin: &Skin, pairs: &[TrianglePair]) -> String {
 }
 
 /// The deepest of the points and edges that lie behind skin that is not theirs, if any is found there.
-fn deepest(surface: &TriangleSurface, pairs: &[TrianglePair]) -> Option<Deepest> {
-    let skin = Penetration::new(surface, pairs)?;
+fn deepest(
+    surface: &TriangleSurface,
+    rest: Option<&TriangleSurface>,
+    pairs: &[TrianglePair],
+) -> Option<Deepest> {
+    let skin = Penetration::new(surface, rest, pairs)?;
     let share_inside = |triangle: usize| {
         let corners = surface.triangles[triangle].iter();
         corners.filter(|&&corner| skin.part_of[corner as usize].is_some()).count() as f64 / 3.0
@@ -177,6 +182,7 @@ struct EdgeInside {
 /// Skin some of whose triangles cross others.
 struct Penetration<'a> {
     surface: &'a TriangleSurface,
+    rest: Option<&'a TriangleSurface>,
     search: SurfaceSearch,
     /// For each point the part behind other skin that it belongs to.
     part_of: Vec<Option<u32>>,
@@ -187,7 +193,11 @@ struct Penetration<'a> {
 }
 
 impl<'a> Penetration<'a> {
-    fn new(surface: &'a TriangleSurface, pairs: &[TrianglePair]) -> Option<Self> {
+    fn new(
+        surface: &'a TriangleSurface,
+        rest: Option<&'a TriangleSurface>,
+        pairs: &[TrianglePair],
+    ) -> Option<Self> {
         let part_of = parts_inside(surface, pairs);
         let crosses: BTreeSet<u32> = pairs.as_flattened().iter().copied().collect();
         let is_near = |(number, corners): (u32, &[u32; 3])| {
@@ -197,7 +207,7 @@ impl<'a> Penetration<'a> {
         let near = (0_u32..).zip(&surface.triangles).map(is_near).collect();
         let search = SurfaceSearch::new(surface).ok()?;
         let (normals, body_of) = (surface.point_normals(), bodies(surface));
-        Some(Penetration { surface, search, part_of, near, normals, body_of })
+        Some(Penetration { surface, rest, search, part_of, near, normals, body_of })
     }
 
     fn body(&self, triangle: usize) -> u32 {
@@ -221,26 +231,40 @@ impl<'a> Penetration<'a> {
         };
         let is_of_other = other != self.body_of[point as usize];
         let nearer = is_of_other.then(|| search.closest_within_where(&at, behind, faces)).flatten();
-        let depth = nearer.map_or(behind, |facing| facing.distance);
-        (depth > 0.0).then_some(PlaceBehind { at, normal, depth })
+        let depth = nearer.as_ref().map_or(behind, |facing| facing.distance);
+        let most = self.approach(&[(point, 1.0)], &nearer.unwrap_or(closest));
+        (depth > 0.0).then_some(PlaceBehind { at, normal, depth: depth.min(most) })
     }
 
     fn of_edge(&self, EdgeInside { edge, part }: &EdgeInside) -> Option<PlaceBehind> {
         let Penetration { surface, search, .. } = self;
         let [from, to] = edge.map(|end| surface.points[end as usize]);
-        let at = from + (to - from) * (0.5 * (part[0] + part[1]));
+        let along = 0.5 * (part[0] + part[1]);
+        let at = from + (to - from) * along;
         let normal: Vector = edge.iter().map(|&end| self.normals[end as usize]).sum();
         let normal = normal.try_normalize(0.0)?;
-        let own = self.body_of[edge[0] as usize];
         let is_other = |triangle: usize| {
             let area = surface.area_vector(triangle);
             let turns = || area.dot(&normal) < ALONG * area.norm();
             let is_around = edge.iter().any(|end| surface.triangles[triangle].contains(end));
-            !is_around && (self.body(triangle) != own || turns())
+            !is_around && (self.body(triangle) != self.body_of[edge[0] as usize] || turns())
         };
         let closest = search.closest_where(&at, is_other)?;
         let is_behind = (closest.point - at).dot(&search.pseudo_normal(&closest)) >= 0.0;
-        is_behind.then_some(PlaceBehind { at, normal, depth: closest.distance })
+        let middle = [(edge[0], 1.0 - along), (edge[1], along)];
+        let depth = closest.distance.min(self.approach(&middle, &closest));
+        is_behind.then_some(PlaceBehind { at, normal, depth })
+    }
+
+    /// How far the mean of points by their weights moved against a place of the skin, in mm; infinite without a rest that it moved from.
+    fn approach(&self, points: &[(u32, f64)], place: &ClosestPoint) -> f64 {
+        let Some(rest) = self.rest else { return f64::INFINITY };
+        let moved = |&(point, weight): &(u32, f64)| {
+            (self.surface.points[point as usize] - rest.points[point as usize]) * weight
+        };
+        let corners = self.surface.triangles[place.triangle].into_iter().zip(place.barycentric);
+        let of_place: Vector = corners.map(|corner| moved(&corner)).sum();
+        (points.iter().map(moved).sum::<Vector>() - of_place).norm()
     }
 }
 
